@@ -30,6 +30,7 @@ use smoothing::{SignalSpline, SplineValues, bridged_parts, nearest, smooth, want
 
 mod band;
 mod basis;
+mod corners;
 mod joint;
 mod law_text;
 mod penalty;
@@ -42,12 +43,13 @@ mod warnings;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape, UnknownForm};
+use corners::corners;
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
 pub use sample::Sample;
 pub use types::{FittedMotion, Identification, IdentificationSettings};
-use warnings::warnings;
+use warnings::{FEWEST_CORNERS, warnings};
 
 #[cfg(test)]
 mod tests;
@@ -279,9 +281,15 @@ impl Fit<'_> {
             warnings: Vec::new(),
         };
         identification.warnings = warnings(&identification, joint.recording, signals);
-        let at = (&self.state, &identification.motion);
-        let suspects = suspects::suspects(joint, at, (found, [misfit, freedom]));
-        identification.warnings.extend(suspects::warning(&suspects));
+        // A spline that cannot follow the motion would blame the recording.
+        let is_followed = !signals.0.coarse
+            && !signals.1.coarse
+            && corners(&joint.recording.extension).len() < FEWEST_CORNERS;
+        if is_followed {
+            let at = (&self.state, &identification.motion);
+            let suspects = suspects::suspects(joint, at, (found, [misfit, freedom]));
+            identification.warnings.extend(suspects::warning(&suspects));
+        }
         Some(identification)
     }
 

@@ -100,8 +100,7 @@ pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
     let off = (nu - 1.0 / 3.0).abs() > NEGLIGIBLE;
     off.then(|| {
         format!(
-            "Warning: springs alone have ν = ⅓, and the sheet has ν = {nu:.3} in its plane at small strain; an area term \
-             (`area_term` of a plate's lattice) gives them the sheet's ν"
+            "Warning: springs alone have ν = ⅓, and the sheet has ν = {nu:.3} in its plane at small strain"
         )
     })
 }

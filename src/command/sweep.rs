@@ -145,7 +145,8 @@ fn sweep(options: &Options) -> Result<Sweep, Error> {
         .collect::<Result<_, _>>()
         .map_err(|fault| Error::Input(vec![fault]))?;
     let fitted = options.fit.as_deref().map(|path| {
-        let text = read_text(path)?;
+        let hint = "`gelbench materials fit` writes it beside the card";
+        let text = document::read_text(path, file::MOST_OF_DATA, hint)?;
         let read = FittedParameters::parse(&path.display().to_string(), &text);
         read.map_err(|fault| Error::Input(vec![fault]))
     });

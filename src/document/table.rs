@@ -180,29 +180,43 @@ impl Table {
         decimals: &mut Decimals,
         faults: &Faults,
     ) {
-        let count = record.len();
+        // A separator behind the last field, as some programs write, is none of a further column.
+        let known = self.columns.len();
+        let beyond = record
+            .iter()
+            .skip(known)
+            .all(|field| field.trim().is_empty());
+        let count = match known > 0 && beyond {
+            true => record.len().min(known),
+            false => record.len(),
+        };
         if self.columns.is_empty() {
             self.columns = vec![Column::default(); count];
         }
         let columns = self.columns.len();
         if count != columns {
             let message = format!("{count} fields where there are {columns} columns");
-            let hint = "numbers with decimal commas need semicolons or tabs between the columns";
+            let hint = "every row needs as many fields as the head; numbers with decimal commas need semicolons or tabs between the columns, and \
+                        lines above the head a # in front";
             return faults.push(self.fault(place, message, hint));
         }
         self.faults.resize(count, None);
         self.nonsense.resize(count, None);
-        let row = record.iter().enumerate().map(|(column, field)| {
-            let field = unquoted(field);
-            decimals.read(field).unwrap_or_else(|reason| {
-                let fault = (self.rows.len(), reason);
-                if !is_hole(field) {
-                    self.nonsense[column].get_or_insert(fault.clone());
-                }
-                self.faults[column].get_or_insert(fault);
-                f64::NAN
-            })
-        });
+        let row = record
+            .iter()
+            .take(count)
+            .enumerate()
+            .map(|(column, field)| {
+                let field = unquoted(field);
+                decimals.read(field).unwrap_or_else(|reason| {
+                    let fault = (self.rows.len(), reason);
+                    if !is_hole(field) {
+                        self.nonsense[column].get_or_insert(fault.clone());
+                    }
+                    self.faults[column].get_or_insert(fault);
+                    f64::NAN
+                })
+            });
         let row = row.collect();
         self.rows.push((row, place));
     }

@@ -1,5 +1,6 @@
 //! What deserves attention in an identification.
 
+use super::corners::corners;
 use super::recording::Recording;
 use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
 use super::types::Identification;
@@ -30,6 +31,9 @@ fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
     })
 }
 
+/// A corner alone is a jerk, or chance.
+pub const FEWEST_CORNERS: usize = 4;
+
 /// The warnings of an identification from the splines of extension and force.
 pub fn warnings(
     found: &Identification,
@@ -37,6 +41,13 @@ pub fn warnings(
     signals: &(SignalSpline, SignalSpline),
 ) -> Vec<String> {
     let mut warnings = Vec::new();
+    let corners = corners(&recording.extension).len();
+    if corners >= FEWEST_CORNERS {
+        warnings.push(format!(
+            "the motion has {corners} corners, as where a machine turns at a constant rate: the smooth motion that is fitted goes past them, \
+             so that intervals and bands do not hold; drive it by sines, or identify the ways between corners by themselves"
+        ));
+    }
     if signals.0.coarse || signals.1.coarse {
         warnings
             .push("the motion is sampled too coarsely for its noise to be told from it".to_owned());

@@ -239,14 +239,34 @@ fn packed(values: Vec<f64>) -> Value {
 /// The nodes of triangles that fill the cells.
 fn triangles(grid: &Grid) -> impl Iterator<Item = u32> {
     let mut first = 0;
+    let middle = middle(grid.points.iter().copied());
     grid.cells.iter().flat_map(move |cell| {
         let nodes = &grid.connectivity[first..first + cell.points()];
         first += cell.points();
-        parts(*cell)
-            .iter()
-            .flatten()
-            .map(|local| nodes[*local] as u32)
+        let own = match cell {
+            GridCell::Mesh(CellShape::Quad4) if turned(grid, nodes, middle) => &TURNED,
+            _ => parts(*cell),
+        };
+        own.iter().flatten().map(|local| nodes[*local] as u32)
     })
+}
+
+/// A quadrilateral's triangles by its other diagonal.
+const TURNED: [[usize; 3]; 2] = [[0, 1, 3], [1, 2, 3]];
+
+/// The middle of the box around points.
+fn middle(points: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let [low, high] = extremes(points.clone().map(|point| point[axis]));
+        0.5 * (low + high)
+    })
+}
+
+/// Whether a quadrilateral is cut by its other diagonal: what lies left of the middle as what lies right of it, mirrored, and likewise above
+/// and below.
+fn turned(grid: &Grid, nodes: &[usize], of_all: [f64; 2]) -> bool {
+    let own = middle(nodes.iter().map(|node| grid.points[*node]));
+    (own[0] - of_all[0]) * (own[1] - of_all[1]) < 0.0
 }
 
 /// Triangles of a cell's own nodes: corners, then middles of the sides, then the centre.
@@ -269,12 +289,13 @@ fn parts(cell: GridCell) -> &'static [[usize; 3]] {
         CellShape::Quad9 => &[
             [0, 4, 8],
             [0, 8, 7],
-            [4, 1, 5],
-            [4, 5, 8],
+            // All through the centre: a symmetric field is drawn as one.
+            [4, 1, 8],
+            [1, 5, 8],
             [8, 5, 2],
             [8, 2, 6],
-            [7, 8, 6],
-            [7, 6, 3],
+            [3, 8, 6],
+            [3, 7, 8],
         ],
     }
 }

@@ -241,7 +241,12 @@ fn read_force(section: &Section, problem: &ClampedPlate) -> PointForce {
     let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let time = if section.has("begin") || section.has("end") {
-        let (begin, end) = (instant("begin"), instant("end"));
+        let begin = if section.has("begin") {
+            instant("begin")
+        } else {
+            0.0
+        };
+        let end = instant("end");
         if end <= begin {
             section.fault("end", "must be after the begin", "give a later time");
         }

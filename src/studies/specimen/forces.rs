@@ -85,8 +85,8 @@ pub fn unbalanced(models: &Models) -> Option<String> {
     ))
 }
 
-/// The largest force at any group, and its moment over the specimen's larger side.
-fn scales(specimen: &Specimen, models: &Models) -> [f64; 2] {
+/// The largest force at any group, its moment over the specimen's larger side, and that side.
+fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
     let named = models.named();
     let steps = 0..specimen.factors.len();
     let all = steps.flat_map(|step| {
@@ -99,20 +99,26 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 2] {
         .map(|state| state.force[0].hypot(state.force[1]));
     let force = sizes.fold(0.0, f64::max);
     let [low, high] = models.on_lattice.springs.mesh.bounding_box();
-    [force, force * (high[0] - low[0]).max(high[1] - low[1])]
+    let side = (high[0] - low[0]).max(high[1] - low[1]);
+    [force, force * side, side]
 }
 
-fn cells(state: &GroupState, [force, moment]: [f64; 2]) -> Vec<String> {
+fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> Vec<String> {
     const ROUNDING: f64 = 1e-12;
     let [x, y] = state.force;
     let [u, v] = state.displacement;
     let is_rounding = state.size <= 10.0 * state.rounding;
-    let shown = |(value, scale): (f64, f64)| match is_rounding || value.abs() < ROUNDING * scale {
+    let shown = |value: f64, scale: f64| match value.abs() < ROUNDING * scale {
         true => number(0.0),
         false => number(value),
     };
-    let forces = [(x, force), (y, force), (state.moment, moment)].map(shown);
-    forces.into_iter().chain([u, v].map(number)).collect()
+    let forces = [(x, force), (y, force), (state.moment, moment)];
+    let forces = forces.map(|(value, scale)| match is_rounding {
+        true => number(0.0),
+        false => shown(value, scale),
+    });
+    let displacements = [u, v].map(|value| shown(value, side));
+    forces.into_iter().chain(displacements).collect()
 }
 
 /// What happens at all groups in a model at a load factor, for machines; `None` where it has no solution.

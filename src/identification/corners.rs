@@ -1,0 +1,80 @@
+//! Corners of a motion, such as a machine makes at constant rates: one smooth spline goes past them.
+//!
+//! The second difference over k instants, xᵢ₊ₖ − 2 xᵢ + xᵢ₋ₖ, is k times the change of the rate within k instants of a corner, and small
+//! beside; of a smooth motion it is nowhere many times larger than what surrounds it.
+
+use crate::statistics::median;
+
+/// Strides of the differences.
+const STRIDES: [usize; 4] = [1, 2, 4, 8];
+
+/// The surroundings of an instant, in strides.
+const AROUND: usize = 6;
+
+/// How many times larger than the median of its surroundings a corner's difference is: noise alone reaches six.
+const CLEARLY: f64 = 10.0;
+
+/// The instants at which a motion sampled at even times has corners.
+pub fn corners(motion: &[f64]) -> Vec<usize> {
+    let found = STRIDES.map(|stride| at_stride(motion, stride));
+    let most = found.into_iter().max_by_key(Vec::len);
+    most.unwrap_or_default()
+}
+
+fn at_stride(motion: &[f64], stride: usize) -> Vec<usize> {
+    let Some(count) = motion.len().checked_sub(2 * stride) else {
+        return Vec::new();
+    };
+    let difference = |i: usize| motion[i] - 2.0 * motion[i + stride] + motion[i + 2 * stride];
+    let sizes: Vec<f64> = (0..count).map(|i| difference(i).abs()).collect();
+    let mut found: Vec<usize> = Vec::new();
+    for (i, size) in sizes.iter().enumerate() {
+        let around = i.saturating_sub(AROUND * stride)..(i + AROUND * stride + 1).min(count);
+        let is_first = found
+            .last()
+            .is_none_or(|last| i + stride - last > 4 * stride);
+        if is_first && *size > CLEARLY * median(sizes[around].iter().copied()) && *size > 0.0 {
+            found.push(i + stride);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    /// A motion over ten periods of 120 instants.
+    fn sampled(place: impl Fn(f64) -> f64, noise: f64) -> Vec<f64> {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        (0..1200)
+            .map(|i| place(f64::from(i) / 120.0) + noise * draw())
+            .collect()
+    }
+
+    #[test]
+    fn triangles_and_trapezoids_have_corners_and_smooth_motions_have_none() {
+        let triangle = |t: f64| 4.0 * (t - (t + 0.5).floor()).abs();
+        let hold = |t: f64| triangle(t).min(1.5);
+        for noise in [0.0, 1e-4, 3e-3] {
+            assert!(corners(&sampled(triangle, noise)).len() >= 15, "{noise}");
+            assert!(corners(&sampled(hold, noise)).len() >= 15, "{noise}");
+        }
+        let sine = |t: f64| (TAU * t).sin();
+        let decay = |t: f64| (TAU * t).sin() * (-0.5 * t).exp();
+        let two = |t: f64| (TAU * t).sin() + 0.5 * (3.1 * TAU * t).sin();
+        let chirp = |t: f64| (TAU * 0.3 * t * t).sin();
+        for noise in [0.0, 1e-4, 3e-3, 0.1] {
+            for smooth in [&sine as &dyn Fn(f64) -> f64, &decay, &two, &chirp] {
+                assert!(corners(&sampled(smooth, noise)).len() < 4, "{noise}");
+            }
+        }
+    }
+}
