@@ -33,7 +33,7 @@ mod softening;
 mod softening_misfit;
 mod terms;
 mod test_data;
-mod unlike;
+mod uneven_noise;
 mod verdict;
 mod warnings;
 mod zero;

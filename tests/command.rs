@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 mod common;
 
-use common::{SMALL, folder_with, gelbench, number, words};
+use common::{SMALL, folder_with, gelbench, machine_report, number, words};
 
 /// The main job: the figures that the README promises, at every stretch.
 #[test]
@@ -27,8 +27,7 @@ fn the_pva_plate_study_reaches_its_accuracy() {
         assert!(readme.contains(line), "the README does not show: {line}");
     }
 
-    let text = fs::read_to_string(folder.path().join("report.json")).unwrap();
-    let report: Value = serde_json::from_str(&text).unwrap();
+    let report = machine_report(folder.path());
     let steps = report["steps"].as_array().unwrap();
     let stretches: Vec<f64> = steps.iter().map(|step| number(step, &["at"])).collect();
     assert_eq!(stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
@@ -181,8 +180,7 @@ fn faults_of_a_study_are_told_at_once_with_code_2() {
 
 /// The report for programs of a study that ended with a code.
 fn report_of(folder: &TempDir) -> Value {
-    let path = folder.path().join("output/small/report.json");
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+    machine_report(&folder.path().join("output/small"))
 }
 
 fn judgements(report: &Value) -> Vec<&str> {
@@ -286,16 +284,22 @@ fn where_the_finite_elements_end_springs_and_corrected_field_are_complete() {
 }
 
 #[test]
-fn nothing_is_written_where_no_model_has_a_solution() {
+fn where_no_model_has_a_solution_the_report_says_why_each_ended() {
     let folder = folder_with(&format!(
         "{}\n[mass_spring]\nmax_iterations = 1\n[corrector]\nmethod = \"direct\"\nmax_steps = 1\n",
         SMALL.replace("[24, 8]", "[24, 8]\nmax_iterations = 1")
     ));
-    gelbench(folder.path(), &["run", "small.toml"]).code(3);
-    assert!(
-        !folder.path().join("output/small").exists(),
-        "no empty folder is left"
-    );
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+    let told = words(&done.get_output().stderr);
+    let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();
+    for model in ["mass-spring (", "finite elements (Q2"] {
+        assert!(
+            told.contains(model) && text.contains(model),
+            "{model}: {told}"
+        );
+    }
+    assert_eq!(judgements(&report_of(&folder)), ["cannot be judged"; 4]);
+    assert!(!folder.path().join("output/small/errors.png").exists());
 }
 
 #[test]

@@ -7,13 +7,12 @@ use std::fs;
 use std::process::{Command, ExitCode};
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
-use serde_json::Value;
 use tempfile::TempDir;
 
 mod common;
 
 use common::browser::Browser;
-use common::{gelbench, number};
+use common::{gelbench, machine_report, number};
 
 const STUDY: &str = "[plate]\ncells = [12, 4]\n[load]\nstretches = [\"20 %\", \"50 %\"]\n[finite_element]\ncells = [24, 8]\n\
     [tolerances]\ndisplacement = \"5 %\"\ndeparture = \"30 %\"\nforce = \"5 %\"\n";
@@ -71,8 +70,7 @@ fn row(browser: &Browser, table: &str, begin: &str) -> Vec<String> {
 
 fn a_reader_points_drags_and_chooses() {
     let folder = report();
-    let text = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
-    let results: Value = serde_json::from_str(&text).unwrap();
+    let results = machine_report(&folder.path().join("out"));
     let browser = browser();
     browser.open(&folder.path().join("out/report.html"), [1400, 1000]);
     assert_eq!(

@@ -2,15 +2,13 @@
 
 use std::fmt::Write;
 use std::fs;
-use std::path::Path;
 
 use gelbench::material::Card;
-use serde_json::Value;
 use tempfile::TempDir;
 
 mod common;
 
-use common::{gelbench, number, root, words};
+use common::{gelbench, number, report_of_correction, root, words};
 
 const TRUTH: [f64; 2] = [0.08, 0.03];
 
@@ -78,11 +76,6 @@ column = "load"
     folder
 }
 
-fn report(folder: &Path) -> Value {
-    let text = fs::read_to_string(folder.join("output/correct/report.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
-}
-
 const TWO: [&str; 7] = [
     "correct",
     "--specimen",
@@ -103,7 +96,7 @@ fn two_specimens_give_two_parameters_a_card_and_a_ranking() {
         printed.contains("strip a (3 frames), strip b (3 frames)"),
         "{printed}"
     );
-    let found = report(folder.path());
+    let found = report_of_correction(folder.path());
     let parameters = found["problem"]["parameters"].as_array().unwrap();
     for (parameter, truth) in parameters.iter().zip(TRUTH) {
         let interval: [f64; 2] = [0, 1].map(|end| parameter["interval"][end].as_f64().unwrap());
@@ -141,7 +134,7 @@ fn a_wrong_thickness_of_one_specimen_is_told_and_leaves_no_interval() {
         printed.contains("no interval: not all frames are explained"),
         "{printed}"
     );
-    let found = report(folder.path());
+    let found = report_of_correction(folder.path());
     assert!(found["problem"]["parameters"][0]["interval"].is_null());
 }
 
@@ -209,7 +202,7 @@ fn the_example_gives_what_the_guide_says() {
         "--together",
     ];
     gelbench(folder.path(), &arguments).success();
-    let found = report(folder.path());
+    let found = report_of_correction(folder.path());
     let combinations = found["problem"]["combinations"].as_array().unwrap();
     assert_eq!(combinations.len(), 3);
     assert!(combinations[0]["is_determined"].as_bool().unwrap());

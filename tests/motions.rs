@@ -4,7 +4,7 @@ use std::fs;
 
 mod common;
 
-use common::{folder_with, gelbench, words};
+use common::{folder_with, gelbench, machine_report, words};
 
 /// A motion study with little to compute; the rest says what is not released from 10 % stretch.
 fn motion(rest: &str) -> String {
@@ -317,7 +317,7 @@ fn the_finite_elements_own_error_is_what_finer_ones_differ_by() {
             gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
             let file =
                 |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
-            let report: serde_json::Value = serde_json::from_str(&file("report.json")).unwrap();
+            let report = machine_report(&folder.path().join("out"));
             let own =
                 report["problem"]["finite_element_own_error"]["displacement_percent"].as_f64();
             let table = columns(&file("motion_finite_element.csv"), "displacement");

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 mod common;
 
 use common::schema::faults;
-use common::{SMALL, folder_with, gelbench, root, words};
+use common::{SMALL, folder_with, gelbench, machine_report, root, words};
 
 fn schema() -> Value {
     serde_json::from_str(REPORT_SCHEMA).unwrap()
@@ -17,8 +17,7 @@ fn schema() -> Value {
 
 /// The report in a folder, which follows the schema.
 fn report(folder: &TempDir, kind: &str, along: Option<&str>, steps: usize) -> Value {
-    let text = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
-    let report: Value = serde_json::from_str(&text).unwrap();
+    let report = machine_report(&folder.path().join("out"));
     let found = faults(&schema(), &report, "report");
     assert!(found.is_empty(), "{found:#?}");
     assert_eq!(report["kind"], kind);

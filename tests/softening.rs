@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{gelbench, words};
+use common::{gelbench, machine_report, words};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -97,8 +97,7 @@ fn a_strip_is_loaded_unloaded_and_loaded_again() {
     fs::write(&file, study.replace("cells = 8", "cells = 4")).unwrap();
     let done = gelbench(folder.path(), &["run", "softening_strip.toml"]).code(0);
     let told = words(&done.get_output().stdout);
-    let report = folder.path().join("output/softening_strip/report.json");
-    let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+    let report = machine_report(&folder.path().join("output/softening_strip"));
     let steps = report["steps"].as_array().unwrap();
     assert_eq!(steps.len(), 9, "{told}");
     for model in ["mass_spring", "corrected", "finite_element"] {

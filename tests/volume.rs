@@ -13,12 +13,11 @@ use gelbench::material::{
 };
 use gelbench::problem::{ClampedPlate, Measures};
 use gelbench::solve::NewtonSettings;
-use serde_json::Value;
 use tempfile::TempDir;
 
 mod common;
 
-use common::{SMALL, gelbench, words};
+use common::{SMALL, gelbench, machine_report, words};
 
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -185,8 +184,7 @@ fn plates_run_in_all_models_in_both_plane_states() {
         let done = gelbench(folder.path(), &["run", "small.toml"]);
         let printed = words(&done.get_output().stdout);
         done.code(0);
-        let report = fs::read_to_string(folder.path().join("output/small/report.json")).unwrap();
-        let report: Value = serde_json::from_str(&report).unwrap();
+        let report = machine_report(&folder.path().join("output/small"));
         assert_eq!(report["material"]["sheet"], sheet);
         let corrected = printed.matches("pass").count();
         assert_eq!(corrected, 4, "{printed}");
@@ -224,8 +222,7 @@ fn laws_of_volume_change_run_in_studies() {
                 4,
                 "{law} {sheet}: {printed}"
             );
-            let report = folder.path().join("output/small/report.json");
-            let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+            let report = machine_report(&folder.path().join("output/small"));
             assert!(report["material"]["bulk_modulus_MPa"].as_f64().unwrap() > 0.0);
             let warnings = report["warnings"].to_string();
             let own = samples::card(law, parameters).law;

@@ -23,7 +23,7 @@ use super::search::Search;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;
 use super::test_data::{Observation, Test, TestData};
-use super::unlike::unlike;
+use super::uneven_noise::noise_warnings;
 use super::warnings::warnings;
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
@@ -219,18 +219,16 @@ fn finished(
     let stiffness = begun.misfit.stiffness();
     let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();
     let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
-        let (law, _) = misfit.build(values);
-        let (weighting, law, least) = (settings.weighting, &*law, &*least);
-        Assessment {
+        let own = Assessment {
             misfit,
-            weighting,
+            weighting: settings.weighting,
             tests,
-            law,
+            law: &*misfit.build(values).0,
             values,
             bounds,
-            least,
-        }
-        .is_noise()
+            least: &least,
+        };
+        own.is_noise()
     };
     let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &begun.bounds);
     let (misfit, values) = settled(&begun.misfit, begun.values, &begun.bounds, of_law);
@@ -257,8 +255,8 @@ fn finished(
     };
     let mut quality = assessment.quality();
     quality.warnings = warnings(&quality, &built.parameters, other.as_deref());
-    let unlike = unlike(&quality, &*fitted, assessment.tests, settings.weighting);
-    quality.warnings.extend(unlike);
+    let of_noise = noise_warnings(&quality, &*fitted, assessment.tests, settings.weighting);
+    quality.warnings.extend(of_noise);
     Fit {
         law,
         fitted,
@@ -284,7 +282,9 @@ fn size(parameter: &Parameter, stiffness: f64) -> f64 {
 
 /// Tests of one fit have one stress measure.
 pub(super) fn check_measures(tests: &[TestData]) -> Result<(), Error> {
-    let first = &tests[0];
+    let Some(first) = tests.first() else {
+        return Err(Error::input("there are no tests", "give one at least"));
+    };
     let other = |test: &&TestData| test.stress_measure != first.stress_measure;
     let Some(other) = tests.iter().find(other) else {
         return Ok(());

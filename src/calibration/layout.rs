@@ -112,13 +112,12 @@ impl Layout {
         check_signs(head, &observations, self.test)?;
         let sizes = |axis: usize| observations.iter().map(move |one| one.strains[axis].abs());
         let widest = [0, 1].map(|axis| sizes(axis).fold(0.0, f64::max));
-        let implausible = implausible(head, self.strain, widest[0].max(widest[1]));
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
-        let warnings = turns
-            .warning(head)
-            .into_iter()
-            .chain(implausible)
-            .chain(at_rest);
+        let warnings = [
+            turns.warning(head),
+            implausible(head, self.strain, widest[0].max(widest[1])),
+            at_rest,
+        ];
         Ok(TestData {
             name: table.source.name.clone(),
             test: self.test,
@@ -134,7 +133,7 @@ impl Layout {
             found_zero: part.found_zero,
             remarks: part.remarks,
             head: head.written(),
-            warnings: warnings.collect(),
+            warnings: warnings.into_iter().flatten().collect(),
         })
     }
 

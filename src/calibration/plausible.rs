@@ -11,11 +11,11 @@ const SCATTER: f64 = 1e-3;
 /// Data that say nothing, or a test of compression that counts pressing as positive, are refused.
 pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
     let strains = || observations.iter().map(|one| one.strains[one.axis]);
-    let nothing = observations.iter().all(|one| one.stress == 0.0)
+    let says_nothing = observations.iter().all(|one| one.stress == 0.0)
         || observations
             .iter()
             .all(|one| one.strains.iter().all(|x| *x == 0.0 || x.is_nan()));
-    if nothing {
+    if says_nothing {
         let hint = "look at the columns and their units";
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
     }
@@ -34,8 +34,8 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
     }
     let compression = head.setting("test", None)?.as_deref() == Some("compression");
     // A machine's reading at rest scatters about zero.
-    let nothing = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;
-    if compression && strains().any(|x| x > nothing) {
+    let at_rest = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;
+    if compression && strains().any(|x| x > at_rest) {
         let message = "a compression test has positive strains";
         let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
         return Err(head.fault(head.place("test"), message, hint));
@@ -107,4 +107,29 @@ pub fn implausible(head: &Head, strain: StrainColumn, largest: f64) -> Option<Di
         let hint = "if the column is in percent, write [%] behind its name in place of [-]";
         Diagnostic::warning("", message).hint(hint)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::calibration::TestData;
+    use crate::document::Statements;
+
+    #[test]
+    fn a_stress_at_rest_is_told_where_it_is_more_than_scatter() {
+        let told = |head: &str, rest: f64, noise: f64| {
+            let mut text = format!("# test: uniaxial\n{head}\n");
+            for row in 0..30 {
+                let strain = 0.01 * f64::from(row);
+                let scatter = noise * f64::from((7 * row) % 5 - 2);
+                text += &format!("{strain:.3},{:.6}\n", rest + 0.3 * strain + scatter);
+            }
+            let read = TestData::parse("a.csv", &text, &Statements::default()).unwrap();
+            let mut warnings = read.warnings.iter();
+            warnings.any(|warning| warning.message.contains("nothing is stretched"))
+        };
+        let table = "nominal_strain [-],nominal_stress [MPa]";
+        assert!(told(table, 0.01, 0.0) && told(table, 0.01, 1e-4));
+        assert!(!told(table, 0.0, 1e-4) && !told(table, 1e-4, 0.0));
+        assert!(!told(table, 0.002, 2e-3));
+    }
 }

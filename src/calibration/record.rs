@@ -159,34 +159,15 @@ impl Part {
         match zero {
             Zero::AsWritten => {}
             Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
-            Zero::Displacement(_) | Zero::Force(_) => {
-                let (reached, found) = match zero {
-                    Zero::Displacement(u) => {
-                        let found = FoundZero::Stress { area: machine.area };
-                        (either(x, u / machine.length), Some(found))
-                    }
-                    Zero::Force(f) => {
-                        let length = machine.length;
-                        (
-                            either(y, f / machine.area),
-                            Some(FoundZero::Strain { length }),
-                        )
-                    }
-                    _ => (None, None),
-                };
-                let Some(place) = reached else {
-                    let message = "the loading branch does not pass the stated zero";
-                    let hint = "give a displacement or a force that it passes, or none";
-                    return Err(head.fault(head.place(ZERO), message, hint));
-                };
-                (self.zero, self.offset) = (at(x, place), at(y, place));
-                // What one row reads there scatters.
-                self.found_zero = found;
-                self.remarks.push(format!(
-                    "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is taken off",
-                    machine.length * self.zero,
-                    machine.area * self.offset
-                ));
+            Zero::Displacement(u) => {
+                let found = FoundZero::Stress { area: machine.area };
+                let place = either(x, u / machine.length);
+                self.take_stated((head, machine), [x, y], place, found)?;
+            }
+            Zero::Force(f) => {
+                let length = machine.length;
+                let place = either(y, f / machine.area);
+                self.take_stated((head, machine), [x, y], place, FoundZero::Strain { length })?;
             }
         }
         // What lies before the zero is not fitted.
@@ -198,6 +179,30 @@ impl Part {
         if self.zero != 0.0 && self.rows.start <= loading.start {
             self.rows.start = loading.start + before;
         }
+        Ok(())
+    }
+
+    /// Takes the zero at a stated place of a branch, as a row and the part of the step behind it; what one row reads there scatters, so that the
+    /// `found` one is found again with the law.
+    fn take_stated(
+        &mut self,
+        (head, machine): (&Head, Machine),
+        [x, y]: [&[f64]; 2],
+        place: Option<(usize, f64)>,
+        found: FoundZero,
+    ) -> Faulty<()> {
+        let Some(place) = place else {
+            let message = "the loading branch does not pass the stated zero";
+            let hint = "give a displacement or a force that it passes, or none";
+            return Err(head.fault(head.place(ZERO), message, hint));
+        };
+        (self.zero, self.offset) = (at(x, place), at(y, place));
+        self.found_zero = Some(found);
+        self.remarks.push(format!(
+            "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is taken off",
+            machine.length * self.zero,
+            machine.area * self.offset
+        ));
         Ok(())
     }
 

@@ -82,17 +82,21 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
             false => Judgement::Fail,
         };
     }
-    let reason = match own_error.is_finite() {
-        true => format!(
-            "the reference is too coarse: its own error, {} %, is more than a tenth of the deviation, \
-             {} %",
-            percent(own_error),
-            percent(deviation)
-        ),
-        false => "the reference's own error is not known".to_owned(),
-    };
+    let told = format!(
+        "the reference is too coarse: its own error, {} %, is more than a tenth of the deviation, {} %",
+        percent(own_error),
+        percent(deviation)
+    );
+    too_coarse(own_error, told, remedy)
+}
+
+/// What cannot be judged for the reference's own error, and why.
+fn too_coarse(own_error: f64, told: String, remedy: &str) -> Judgement {
     Judgement::CannotBeJudged {
-        reason,
+        reason: match own_error.is_finite() {
+            true => told,
+            false => "the reference's own error is not known".to_owned(),
+        },
         remedy: remedy.to_owned(),
     }
 }
@@ -112,7 +116,7 @@ pub fn judge_correction(
     }
     // The rounding level is that of the deviations, not of their ratio.
     match judge(after, own_error, f64::INFINITY, remedy) {
-        Judgement::Pass if 100.0 * after / before > limit => Judgement::Fail,
+        Judgement::Pass if before.is_nan() || 100.0 * after / before > limit => Judgement::Fail,
         judged => judged,
     }
 }
@@ -125,14 +129,12 @@ pub fn judge_by_margin(deviation: f64, own_error: f64, limit: f64, remedy: &str)
     if deviation + own_error <= limit {
         return Judgement::Pass;
     }
-    Judgement::CannotBeJudged {
-        reason: format!(
-            "the reference's own error, {} %, decides whether the deviation, {} %, is within the limit",
-            percent(own_error),
-            percent(deviation)
-        ),
-        remedy: remedy.to_owned(),
-    }
+    let told = format!(
+        "the reference's own error, {} %, decides whether the deviation, {} %, is within the limit",
+        percent(own_error),
+        percent(deviation)
+    );
+    too_coarse(own_error, told, remedy)
 }
 
 /// A deviation in % as a sentence shows it.
@@ -163,6 +165,16 @@ mod tests {
             assert!(is_open(&open) && open.word() == "cannot be judged", "{d}");
             assert!(open.remark().unwrap().ends_with("; refine"));
         }
+    }
+
+    #[test]
+    fn by_margin_the_own_error_must_not_decide() {
+        let judged = |d, e| judge_by_margin(d, e, 16.0, "refine");
+        assert_eq!(judged(8.0, 3.0), Judgement::Pass);
+        assert_eq!(judged(20.0, 3.0), Judgement::Fail);
+        assert!(is_open(&judged(14.0, 3.0)) && is_open(&judged(18.0, 3.0)));
+        assert!(is_open(&judged(8.0, f64::NAN)));
+        assert_eq!(judged(f64::NAN, 1.0), Judgement::Fail);
     }
 
     #[test]

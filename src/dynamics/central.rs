@@ -17,7 +17,7 @@ use super::stepper::Stepper;
 use super::viscosity::Viscosity;
 use crate::error::SolveFault;
 use crate::solve::Assembly;
-use crate::solve::krylov::conjugate_gradients;
+use crate::solve::krylov::solve_by_diagonal;
 use crate::solve::vector::{gather, largest};
 
 /// Share of the longest stable step that is taken: at one half the energy of the fastest vibrations is right to a third.
@@ -166,6 +166,6 @@ impl DampedEnd<'_> {
         for (i, place) in self.assembly.free().iter().zip(pattern.diagonal()) {
             values[*place] += self.motion.mass[*i];
         }
-        conjugate_gradients(pattern, &values, b)
+        solve_by_diagonal(pattern, &values, b)
     }
 }

@@ -5,7 +5,7 @@
 //! of both functions together: its half width is c standard errors with
 //!
 //! ```text
-//! Σ κ/π (1 + c²/ν)^(−ν/2) + P(|t_ν| > c) = 5 %        κ = ∫ ‖d(l/‖l‖)/dx‖ dx,  l lᵀ = b(x)ᵀ Cov b(x)
+//! Σ [κ/π (1 + c²/ν)^(−ν/2) + P(|t_ν| > c)] = 5 %        κ = ∫ ‖d(l/‖l‖)/dx‖ dx,  l lᵀ = b(x)ᵀ Cov b(x)
 //! ```
 //!
 //! # References

@@ -144,8 +144,8 @@ impl NormalEquations {
         })
     }
 
-    /// The exponents of least (‖r‖²/N)/(1 − γ p/N)², γ = 1.4, for N observations and p effective coefficients, `others` of
-    /// them in the motion, one function after the other; less [`UNDERSMOOTHING`].
+    /// The exponents of least (‖r‖²/N)/(1 − (m + γ p)/N)², γ = 1.4, for N observations, p effective coefficients of the functions, and m
+    /// `others` of the motion, one function after the other; less [`UNDERSMOOTHING`].
     pub fn choose(
         &self,
         from: &DVector<f64>,

@@ -117,7 +117,7 @@ pub fn nearest(spline: &BSpline, times: &[f64], signal: &[f64]) -> Result<Vec<f6
 }
 
 /// The number of equal parts for which generalised cross-validation, (‖y − ŷ‖²/n)/(1 − p/n)² with p functions, is
-/// least, and the noise ‖y − ŷ‖²/(n − p) that is left.
+/// least, and the noise √(‖y − ŷ‖²/(n − p)) that is left.
 pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpline> {
     let n = times.len() as f64;
     let range = [times[0], times[times.len() - 1]];

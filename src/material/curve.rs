@@ -200,3 +200,32 @@ pub fn tension(response: &dyn Fn(&Kinematics) -> SheetResponse, strain: f64) -> 
         slope: f64::NAN,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::parameters::{StrainMeasure, StressMeasure};
+    use crate::material::registry::Law;
+
+    /// λₜ = λ^(−ν) and P = 2μ/(αλ) (λ^α − λ^(−να)), however far a foam is pressed.
+    #[test]
+    fn a_pressed_foam_has_free_edges() {
+        for exponent in [-6.0, -4.0, -3.0, -2.0, 2.0, 8.0] {
+            for poisson_ratio in [1e-4_f64, 0.02, 0.3] {
+                let values = [0.1, exponent, poisson_ratio];
+                let law = Law::named("ogden-hill-1").unwrap();
+                let (law, _) =
+                    law.with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal);
+                for stretch in [0.15_f64, 0.3, 0.4, 0.7, 1.3, 2.5] {
+                    let found = Mode::Uniaxial.nominal_stress(&*law, stretch - 1.0);
+                    let drawn = stretch.powf(exponent) - stretch.powf(-poisson_ratio * exponent);
+                    let exact = 0.2 / (exponent * stretch) * drawn;
+                    assert!(
+                        (found - exact).abs() < 1e-9 * exact.abs(),
+                        "α {exponent}, ν {poisson_ratio}, λ {stretch}: {found} {exact}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! A function of one number, for the stiffness K(·) of springs and the damping D(·) of dashpots.
 
+use std::fmt;
+
 use super::monotone_cubic::{Cubic, slopes};
 
 /// A function f(x).
@@ -9,6 +11,31 @@ pub enum ScalarFunction {
     Polynomial(Vec<f64>),
     /// Shape-preserving cubics through points, constant beyond them.
     Table(Table),
+}
+
+impl fmt::Display for ScalarFunction {
+    /// `0.14 + 0.1 x + 0.2 x^2`, or `a table through (0, 0.14), (1, 0.2)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Polynomial(coefficients) => {
+                let term = |(power, c): (usize, &f64)| match power {
+                    0 => c.to_string(),
+                    1 => format!("{c} x"),
+                    _ => format!("{c} x^{power}"),
+                };
+                let terms: Vec<String> = coefficients.iter().enumerate().map(term).collect();
+                f.write_str(&terms.join(" + "))
+            }
+            Self::Table(table) => {
+                let points = table.points.iter().map(|[x, y]| format!("({x}, {y})"));
+                write!(
+                    f,
+                    "a table through {}",
+                    points.collect::<Vec<_>>().join(", ")
+                )
+            }
+        }
+    }
 }
 
 /// Points of a table with their slopes.

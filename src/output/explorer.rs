@@ -163,12 +163,19 @@ fn label(name: &str) -> String {
     let (words, unit) = found.unwrap_or((&name, String::new()));
     let words = words
         .replace('_', " ")
-        .replace("mass spring", "mass-spring")
-        .replace("finite element", "finite elements")
         .replace("mises", "Mises")
         .replace("cauchy", "Cauchy")
         .replace("green lagrange", "Green-Lagrange");
     format!("{words}{unit}")
+}
+
+/// A model as reports call it.
+fn model_label(name: &str) -> String {
+    match name {
+        "mass_spring" => "mass-spring".to_owned(),
+        "finite_element" => "finite elements".to_owned(),
+        other => other.replace('_', " "),
+    }
 }
 
 fn model(series: &GridSeries, shown: &[f64]) -> Value {
@@ -182,11 +189,7 @@ fn model(series: &GridSeries, shown: &[f64]) -> Value {
         .map(|time| at(time).map(|own| values(&own.grid)));
     json!({
         "name": series.name,
-        "label": match series.name.as_str() {
-            "mass_spring" => "mass-spring".to_owned(),
-            "finite_element" => "finite elements".to_owned(),
-            name => name.replace('_', " "),
-        },
+        "label": model_label(&series.name),
         "points": STANDARD.encode(points),
         "triangles": STANDARD.encode(triangles),
         "steps": steps.collect::<Vec<_>>(),
@@ -327,7 +330,7 @@ fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
             };
             let points: Vec<Option<f64>> = shown.iter().map(at).collect();
             let known = points.iter().flatten().count();
-            (known > 1).then(|| (label(model), json!(points)))
+            (known > 1).then(|| (model_label(model), json!(points)))
         };
         let of_models: Map<String, Value> = models.iter().filter_map(of_model).collect();
         (!of_models.is_empty()).then(|| json!({ "label": label(name), "models": of_models }))
@@ -347,6 +350,11 @@ mod tests {
         );
         assert_eq!(label("grip_force_N"), "grip force [N]");
         assert_eq!(label("wrinkling"), "wrinkling");
+        assert_eq!(
+            label("difference_to_finite_elements_mm"),
+            "difference to finite elements [mm]"
+        );
+        assert_eq!(model_label("finite_element"), "finite elements");
     }
 
     #[test]

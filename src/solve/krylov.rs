@@ -58,9 +58,9 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
     bounds.fold(0.0, f64::max)
 }
 
-/// x of A x = b for a positive definite matrix, to 14 digits or as near as rounding allows; its diagonal is the
+/// x of A x = b by conjugate gradients for a positive definite matrix, to 14 digits or as near as rounding allows; its diagonal is the
 /// preconditioner.
-pub fn conjugate_gradients(pattern: &SymmetricPattern, values: &[f64], b: &[f64]) -> Vec<f64> {
+pub fn solve_by_diagonal(pattern: &SymmetricPattern, values: &[f64], b: &[f64]) -> Vec<f64> {
     let precondition = |r: &[f64]| -> Vec<f64> {
         let diagonal = pattern.diagonal().iter().map(|place| values[*place]);
         r.iter().zip(diagonal).map(|(r, d)| r / d).collect()

@@ -75,7 +75,7 @@ pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error
     let (_, cells) = plate.element;
     let elements_moved = plate.elements_moved(cells, plate.time, progress, "finite elements")?;
     let own_error = OwnError::of(plate, &elements_moved, progress);
-    let corrected = plate.corrected(&springs_moved, progress)?;
+    let corrected = plate.correct(&springs_moved, progress)?;
     let models = [springs_moved, elements_moved];
     Ok(outcome::outcome(
         plate,

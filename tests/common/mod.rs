@@ -38,10 +38,15 @@ pub fn number(value: &Value, path: &[&str]) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+/// The report for programs in an output folder.
+pub fn machine_report(output: &Path) -> Value {
+    let text = fs::read_to_string(output.join("report.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
 /// The report of `correct` in a folder.
 pub fn report_of_correction(folder: &Path) -> Value {
-    let text = fs::read_to_string(folder.join("output/correct/report.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    machine_report(&folder.join("output/correct"))
 }
 
 pub fn root() -> &'static Path {

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::common::{folder_with, gelbench, words};
+use super::common::{folder_with, gelbench, machine_report, words};
 use super::{PULLED, specimen};
 
 /// What is measured and how far the field is from the finite elements, of the corrected field at each load factor.
@@ -13,7 +13,7 @@ fn corrected(shape: &str, rest: &str, method: &str) -> (Vec<[f64; 2]>, Value, St
     let folder = folder_with(&specimen(shape, &format!("{rest}{corrector}")));
     gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
     let read = |file: &str| fs::read_to_string(folder.path().join("out").join(file)).unwrap();
-    let json: Value = serde_json::from_str(&read("report.json")).unwrap();
+    let json = machine_report(&folder.path().join("out"));
     let steps = json["steps"].as_array().unwrap().iter();
     let figures = steps.map(|step| {
         let own = &step["corrected"];

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use super::common::{folder_with, gelbench, words};
-use super::{PULLED, machine_report, specimen};
+use super::common::{folder_with, gelbench, machine_report, words};
+use super::{PULLED, specimen};
 
 /// A specimen refines itself to the error that the study wants; where the cells do not suffice, that is told.
 #[test]
@@ -117,7 +117,7 @@ fn the_end_of_the_springs_is_told_and_the_other_models_complete() {
         report.contains("The springs have no equilibrium at the load factors 1."),
         "{report}"
     );
-    let json = machine_report(folder.path());
+    let json = machine_report(&folder.path().join("out"));
     let steps = |model: &str| {
         let steps = json["steps"].as_array().unwrap().iter();
         steps.filter(|step| step[model].is_object()).count()

@@ -2,8 +2,6 @@
 
 use std::fs;
 
-use serde_json::Value;
-
 mod climbs;
 #[path = "../common/mod.rs"]
 mod common;
@@ -12,7 +10,7 @@ mod faults;
 mod nothing;
 mod paths;
 
-use common::{folder_with, gelbench, words};
+use common::{folder_with, gelbench, machine_report, words};
 
 /// A specimen study with little to compute; `shape` gives the measures, `rest` the supports and loads.
 fn specimen(shape: &str, rest: &str) -> String {
@@ -118,8 +116,7 @@ fn a_mesh_of_another_program_is_a_specimen() {
     fs::write(folder.path().join("file.toml"), specimen(file, PULLED)).unwrap();
     gelbench(folder.path(), &["run", "file.toml", "--output", "again"]).code(0);
     let figure = |folder_name: &str| {
-        let path = folder.path().join(folder_name).join("report.json");
-        let report: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+        let report = machine_report(&folder.path().join(folder_name));
         report["requirements"][0]["computed"].as_f64().unwrap()
     };
     // The outline of the file is a polygon: its finite elements are not those of the circle.
@@ -129,12 +126,6 @@ fn a_mesh_of_another_program_is_a_specimen() {
         figure("out"),
         figure("again")
     );
-}
-
-/// The report for machines of a run into `out`.
-fn machine_report(folder: &std::path::Path) -> Value {
-    let text = fs::read_to_string(folder.join("out/report.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
 }
 
 const STRIP: &str = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
@@ -178,7 +169,7 @@ fn a_load_that_is_given_is_not_compared_with_itself() {
     ] {
         assert!(report.contains(said), "{said}: {report}");
     }
-    let json = machine_report(folder.path());
+    let json = machine_report(&folder.path().join("out"));
     assert_eq!(json["problem"]["thickness_mm"], 2.0);
     assert_eq!(json["problem"]["loads"][0]["group"], "right");
     // 20 kPa on 10 × 2 mm.
@@ -224,7 +215,7 @@ fn forces_of_all_supports_balance_on_every_shape_and_law() {
         let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
         let told = words(&done.get_output().stderr);
         assert!(!told.contains("do not balance"), "{told}");
-        let json = machine_report(folder.path());
+        let json = machine_report(&folder.path().join("out"));
         for model in ["mass_spring", "corrected", "finite_element"] {
             let groups = &json["steps"][0][model]["groups"];
             let force = |group: &str, axis: usize| groups[group]["force_N"][axis].as_f64().unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{folder_with, gelbench, number, words};
+use crate::common::{folder_with, gelbench, machine_report, number, words};
 
 const STRIP: &str = "kind = \"specimen\"\n[finite_element]\nelement = \"Q2\"\n\
     [specimen]\nshape = \"strip\"\nlength = \"40 mm\"\nthickness = \"1 mm\"\ncells = 8\n\
@@ -13,8 +13,7 @@ const STRIP: &str = "kind = \"specimen\"\n[finite_element]\nelement = \"Q2\"\n\
 
 /// The report of `small.toml` in a folder.
 fn report_of(folder: &Path) -> Value {
-    let text = fs::read_to_string(folder.join("output/small/report.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    machine_report(&folder.join("output/small"))
 }
 
 /// The symmetric part of its tangent, which says nothing of its stability, is not positive definite beyond a fifth of the load.

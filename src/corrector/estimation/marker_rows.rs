@@ -29,9 +29,10 @@ impl MarkerRows<'_> {
         root.tr_mul(&root) * noise.variance
     }
 
-    fn scaled(&self) -> DMatrix<f64> {
+    /// Ã.
+    pub fn scaled(&self) -> DMatrix<f64> {
         let scale = |row: usize| {
-            let weight = self.weights[row] * self.trade.trust[row / 2];
+            let weight = self.trade.weight(self.weights, row);
             (weight / self.trade.variance).sqrt()
         };
         DMatrix::from_fn(self.design.nrows(), self.design.ncols(), |row, column| {

@@ -258,9 +258,8 @@ impl Equations<'_> {
         (linear, trade): (&Linear, &Trade),
     ) -> DVector<f64> {
         let weights = &self.task.observations.weights;
-        let weight = |row: usize| weights[row] * trade.trust[row / 2];
         let weighted = displacements.iter().enumerate();
-        let weighted = weighted.map(|(row, d)| -weight(row) * d / trade.variance);
+        let weighted = weighted.map(|(row, d)| -trade.weight(weights, row) * d / trade.variance);
         let weighted = DVector::from_iterator(displacements.len(), weighted);
         linear.design.tr_mul(&weighted)
     }

@@ -181,7 +181,7 @@ impl NearestField<'_> {
         trade: &Trade,
     ) -> DVector<f64> {
         let weights = &self.observations().weights;
-        let weight = |row: usize| weights[row] * trade.trust[row / 2] / trade.variance;
+        let weight = |row: usize| trade.weight(weights, row) / trade.variance;
         let pull = DVector::from_fn(residual.len(), |row, _| -weight(row) * residual[row]);
         design.tr_mul(&pull)
     }

@@ -71,6 +71,13 @@ pub struct Trade {
     pub sound: f64,
 }
 
+impl Trade {
+    /// What a row of the markers, of which each has two, weighs with the trust in its marker.
+    pub fn weight(&self, weights: &[f64], row: usize) -> f64 {
+        weights[row] * self.trust[row / 2]
+    }
+}
+
 /// A fit.
 pub struct Fit {
     /// δ.
@@ -123,7 +130,7 @@ impl Regression<'_> {
     /// [`Undetermined`].
     pub fn fit(&self, trade: &mut Trade) -> Result<Fit, Undetermined> {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
-        let mut normal = self.normal(&trade.trust);
+        let mut normal = self.normal(trade);
         let scales = self.scales(&normal.0, trade);
         if trade.smoothing.is_empty() {
             trade.smoothing.clone_from(&scales);
@@ -144,17 +151,16 @@ impl Regression<'_> {
             }
             last = Some(fit.effective);
             if !trusted {
-                normal = self.normal(&trade.trust);
+                normal = self.normal(trade);
             }
         }
         unreachable!("the iterations end")
     }
 
     /// AᵀWA and AᵀWr.
-    fn normal(&self, trust: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    fn normal(&self, trade: &Trade) -> (DMatrix<f64>, DVector<f64>) {
         let mut weighted = self.design.clone();
-        let weight = |row: usize| self.weights[row] * trust[row / 2];
-        let weights = DVector::from_fn(weighted.nrows(), |row, _| weight(row));
+        let weights = DVector::from_fn(weighted.nrows(), |row, _| trade.weight(self.weights, row));
         for mut column in weighted.column_iter_mut() {
             column.component_mul_assign(&weights);
         }
@@ -173,7 +179,7 @@ impl Regression<'_> {
     /// M and Mδ at a trade that stays, and the misfit at δ = 0.
     pub fn equations(&self, trade: &Trade) -> NormalEquations {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
-        let (matrix, target, _) = self.system(&self.normal(&trade.trust), &forms, trade);
+        let (matrix, target, _) = self.system(&self.normal(trade), &forms, trade);
         let data = weighted_square(self.residual, self.weights, &trade.trust);
         let rough = self.priors.iter().zip(&trade.smoothing);
         let rough = rough.map(|(prior, smoothing)| {

@@ -188,7 +188,7 @@ impl<'a> Equations<'a> {
     fn multipliers(&mut self, fit: &Fit, trade: &Trade) -> Result<Vec<f64>, Error> {
         let Observations { weights, .. } = self.task.observations;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let weight = |row: usize| weights[row] * trade.trust[row / 2] / mean;
+        let weight = |row: usize| trade.weight(weights, row) / mean;
         let residual = fit.residual.iter().enumerate();
         let pull: Vec<f64> = residual.map(|(row, r)| -weight(row) * r).collect();
         let force = self

@@ -14,9 +14,8 @@
 //! P. A. P. Moran, Biometrika 37, 17 (1950), doi:10.1093/biomet/37.1-2.17;
 //! A. D. Cliff, J. K. Ord, Spatial Processes (1981), chapter 8 (residuals of a regression)
 
-use nalgebra::DMatrix;
-
 use super::field_estimate::{VariogramBin, Whiteness};
+use super::marker_rows::MarkerRows;
 use super::mesh_error::MeshError;
 use super::rows::Rows;
 use super::search::NearestField;
@@ -67,13 +66,12 @@ impl NearestField<'_> {
 
     /// E[I].
     fn expected(&self, rows: &[usize], pairs: &Pairs) -> f64 {
-        let weights = &self.equations.task.observations.weights;
-        let scale =
-            |row: usize| (weights[row] * self.trade.trust[row / 2] / self.trade.variance).sqrt();
-        let design = &self.linear.design;
-        let scaled = DMatrix::from_fn(design.nrows(), design.ncols(), |row, column| {
-            scale(row) * design[(row, column)]
-        });
+        let rows_of_markers = MarkerRows {
+            design: &self.linear.design,
+            weights: &self.equations.task.observations.weights,
+            trade: &self.trade,
+        };
+        let scaled = rows_of_markers.scaled();
         let covariance = &self.fit.covariance;
         let twice = covariance * 2.0 - covariance * (scaled.tr_mul(&scaled)) * covariance;
         let spread = &scaled * twice;

@@ -205,20 +205,6 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Whether a key has a list of bare numbers.
-    pub fn is_of_numbers(&self, key: &'static str) -> bool {
-        let is_number = |item: &Spanned<DeValue>| {
-            matches!(item.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
-        };
-        let Some(value) = self.value(key) else {
-            return false;
-        };
-        match value.get_ref() {
-            DeValue::Array(items) => items.iter().all(is_number),
-            _ => false,
-        }
-    }
-
     /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.
     pub fn unit(&self, key: &'static str, dimension: Dimension) -> f64 {
         self.asks(key, Some(Takes::Unit(dimension)));

@@ -4,13 +4,13 @@ use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use crate::corrector::DifferenceScheme;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
-use crate::dynamics::{Instant, SheetViscosity, Viscosity};
-use crate::error::Error;
+use crate::dynamics::{Instant, Motion, SheetViscosity, Viscosity};
+use crate::error::{Error, SolveFault};
 use crate::results::number;
 use crate::studies::Progress;
 
 /// The corrected motion at the instants that are written.
-pub struct CorrectedMotion {
+pub struct CorrectedInstants {
     /// In mm.
     pub displacement: Vec<Vec<f64>>,
     /// In mm/s.
@@ -23,7 +23,31 @@ pub struct CorrectedMotion {
     pub end: Option<Error>,
 }
 
-impl CorrectedMotion {
+impl CorrectedInstants {
+    /// Of displacements at all steps, of which `within` lie in an interval and each takes `step` s.
+    ///
+    /// # Errors
+    /// [`SolveFault::Inverted`].
+    fn of(
+        motion: &Motion,
+        fine: &[Vec<f64>],
+        within: usize,
+        step: f64,
+    ) -> Result<Self, SolveFault> {
+        // The start alone is no motion.
+        let count = if fine.len() > within { fine.len() } else { 0 };
+        let instants = (0..count).step_by(within);
+        let mut all = Self::none(String::new());
+        for i in instants {
+            let velocity = velocity(fine, i, step, &motion.start.velocity);
+            let forces = motion.support_forces(step * i as f64, [&fine[i], &velocity])?;
+            all.displacement.push(fine[i].clone());
+            all.velocity.push(velocity);
+            all.right_force.push(forces[1]);
+        }
+        Ok(all)
+    }
+
     /// No motion, and why.
     fn none(note: String) -> Self {
         Self {
@@ -49,13 +73,13 @@ const WINDOWS: WindowSettings = WindowSettings {
 impl MovingPlate {
     /// Corrects the motion of the springs; nothing but a note where three consecutive instants do not hold the equation
     /// of motion.
-    pub fn corrected(
+    pub fn correct(
         &self,
         springs: &ModelMotion,
         progress: Progress,
-    ) -> Result<CorrectedMotion, Error> {
-        if !self.corrected {
-            return Ok(CorrectedMotion::none(
+    ) -> Result<CorrectedInstants, Error> {
+        if !self.is_corrected {
+            return Ok(CorrectedInstants::none(
                 "The study says that the motion is not corrected.".into(),
             ));
         }
@@ -73,7 +97,7 @@ impl MovingPlate {
             Ok(equation) => equation,
             Err(reason) => {
                 let note = format!("The motion of the springs is not corrected: {reason}.");
-                return Ok(CorrectedMotion::none(note));
+                return Ok(CorrectedInstants::none(note));
             }
         };
         let data = between(&springs.history.instants, within);
@@ -82,42 +106,24 @@ impl MovingPlate {
             Ok(found) => (found, None),
             Err(end) => (*end.corrected, Some(end.fault)),
         };
-        let note = format!(
-            "The corrector brings the springs' motion to the nearest one that satisfies the equation of motion of the \
-             sheet at every three consecutive instants, {within} steps in an interval: {} Newton steps, {} \
-             factorisations. The start being known, its result does not depend on the springs.",
-            found.iterations, found.factorisations
-        );
-        let fine = found.displacement;
-        let reached = step * (fine.len() - 1) as f64;
-        let end = fault.map(|fault| Error::Solve {
+        let reached = step * (found.displacement.len() - 1) as f64;
+        let error = |step: String, fault| Error::Solve {
             model: model.name.clone(),
-            step: format!("time {} s", number(reached)),
+            step,
             fault,
-        });
-        // The start alone is no motion.
-        let count = if fine.len() > within { fine.len() } else { 0 };
-        let instants = || (0..count).step_by(within);
-        let velocity: Vec<_> = instants()
-            .map(|i| velocity(&fine, i, step, &motion.start.velocity))
-            .collect();
-        let forces = instants().zip(&velocity).map(|(i, velocity)| {
-            let forces = motion.support_forces(step * i as f64, [&fine[i], velocity]);
-            forces.map(|own| own[1])
-        });
-        let right_force = forces
-            .collect::<Result<_, _>>()
-            .map_err(|fault| Error::Solve {
-                model: model.name.clone(),
-                step: "the force of the right grip".into(),
-                fault,
-            })?;
-        Ok(CorrectedMotion {
-            displacement: instants().map(|i| fine[i].clone()).collect(),
-            velocity,
-            right_force,
-            note,
-            end,
+        };
+        let at_instants = CorrectedInstants::of(&motion, &found.displacement, within, step);
+        let at_instants =
+            at_instants.map_err(|fault| error("the force of the right grip".into(), fault))?;
+        Ok(CorrectedInstants {
+            note: format!(
+                "The corrector brings the springs' motion to the nearest one that satisfies the equation of motion of the \
+                 sheet at every three consecutive instants, {within} steps in an interval: {} Newton steps, {} \
+                 factorisations. The start being known, its result does not depend on the springs.",
+                found.iterations, found.factorisations
+            ),
+            end: fault.map(|fault| error(format!("time {} s", number(reached)), fault)),
+            ..at_instants
         })
     }
 

@@ -1,10 +1,10 @@
 //! How far a motion is from the finite elements', and how far these may be from the truth.
 
-use super::corrected::CorrectedMotion;
+use super::corrected::CorrectedInstants;
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use crate::compare::judgement::percent;
-use crate::dynamics::{Integrator, Step, TimeSettings, lumped_mass};
+use crate::dynamics::{History, Integrator, Step, TimeSettings, lumped_mass};
 use crate::finite_element::convergence::of_distances;
 use crate::mesh::Mesh;
 use crate::studies::Progress;
@@ -61,7 +61,7 @@ impl Deviations {
     /// Of the springs and of the corrected motion, from the finite elements at the nodes of the lattice.
     pub fn both(
         [springs, elements]: &[ModelMotion; 2],
-        corrected: &CorrectedMotion,
+        corrected: &CorrectedInstants,
         expected: &[Vec<f64>],
     ) -> [Self; 2] {
         let lattice = &springs.mesh;
@@ -95,7 +95,8 @@ pub struct OwnError {
     pub displacement: f64,
     /// Of the right grip's force, in %.
     pub force: Option<f64>,
-    /// Its share by the length of the steps, in % of the displacement; `None` where steps are far shorter than cells need.
+    /// Its share by the length of the steps, in % of the displacement; `None` where steps are far shorter than cells need, or half
+    /// of them are too many.
     pub by_steps: Option<f64>,
     /// The cells by which it is estimated.
     pub cells: Vec<[usize; 2]>,
@@ -125,7 +126,7 @@ impl OwnError {
         let coarse = moved(larger, plate.time)?;
         let coarsest = halves(fine).and(halves(larger));
         let coarsest = coarsest.and_then(|cells| Some((cells, moved(cells, plate.time)?)));
-        let quicker = plate.shorter_steps(coarse.history.steps);
+        let quicker = plate.halved_steps(&coarse.history);
         let quicker = quicker.and_then(|time| moved(larger, time));
         let distance = |a: &ModelMotion, b: &ModelMotion| {
             let (fields, forces) = (
@@ -161,7 +162,7 @@ impl OwnError {
     pub fn describe(&self) -> String {
         let cells = self.cells.iter().map(|[x, y]| format!("{x} × {y}"));
         let by_steps = self.by_steps.map_or_else(String::new, |share| {
-            format!(", {} % of it by the length of the steps", percent(share))
+            format!(" ({} % by the length of the steps)", percent(share))
         });
         let force = self.force.map_or_else(String::new, |force| {
             format!(", of the right grip's force {} %", percent(force))
@@ -179,9 +180,9 @@ impl OwnError {
 const BY_HALVED_STEPS: f64 = 4.0 / 3.0;
 
 impl MovingPlate {
-    /// The same time with twice so many steps; `None` where the smallest cell's vibration limits them: they are far shorter
+    /// The same time with twice as many steps as a motion took; `None` where the smallest cell's vibration limits them: they are far shorter
     /// then than what is seen of the motion needs.
-    fn shorter_steps(&self, steps: usize) -> Option<TimeSettings> {
+    fn halved_steps(&self, history: &History) -> Option<TimeSettings> {
         /// A rounding error makes no step more.
         const BARELY: f64 = 1.0 - 1e-9;
         if let (Step::Automatic, Integrator::VelocityVerlet) =
@@ -189,7 +190,7 @@ impl MovingPlate {
         {
             return None;
         }
-        let step = self.time.duration / (2 * steps.max(1)) as f64;
+        let step = history.instants.last()?.time / (2 * history.steps.max(1)) as f64;
         Some(TimeSettings {
             step: Step::AtMost(step / BARELY),
             ..self.time

@@ -1,7 +1,7 @@
 //! Pictures, grids and tables of a motion.
 
 use super::between::{PARTS, with_cubics};
-use super::corrected::CorrectedMotion;
+use super::corrected::CorrectedInstants;
 use super::plates::PlateMotion;
 use super::problem::{MovingPlate, Probe};
 use super::solution::ModelMotion;
@@ -65,7 +65,7 @@ impl ModelMotion {
 pub fn figures(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    (corrected, shown): (&CorrectedMotion, &[PlateMotion]),
+    (corrected, shown): (&CorrectedInstants, &[PlateMotion]),
 ) -> Vec<Figure> {
     let [springs, elements] = models;
     // The instants of all plates.
@@ -177,7 +177,7 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
 fn probes(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
+    corrected: &CorrectedInstants,
 ) -> LineChart {
     let mut lines = Vec::new();
     let [springs, _] = models;
@@ -300,7 +300,7 @@ pub fn grids(
 pub fn tables(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
+    corrected: &CorrectedInstants,
 ) -> Vec<(String, Content)> {
     let [springs, _] = models;
     let times = springs.history.times();

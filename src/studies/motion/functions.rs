@@ -8,7 +8,10 @@ use crate::statistics::extremes;
 use crate::units::Dimension;
 
 /// Stretches that a grip may reach.
-pub const STRETCHES: Bound = Bound::Within(-0.5, 10.0);
+pub const STRETCHES: Bound = Bound::Within(LEAST, 10.0);
+
+/// The least of them.
+const LEAST: f64 = -0.5;
 
 /// The motion of the right grip.
 pub struct GripMotion {
@@ -47,11 +50,22 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
         }
         Grip::Ramp => {
             let (begin, end, to) = (instant("begin"), instant("end"), stretch("to"));
-            let points = ascending(section, "end", vec![begin, end], vec![start, to])?;
-            TimeFunction::Table(points)
+            if end <= begin {
+                section.fault("end", "must be after the begin", "give a later time");
+                return None;
+            }
+            TimeFunction::Table(vec![[begin, start], [end, to]])
         }
         Grip::Sine => {
             let amplitude = stretch("amplitude");
+            if start - amplitude.abs() < LEAST {
+                let message = "presses the plate below half of its length";
+                section.fault(
+                    "amplitude",
+                    message,
+                    "take a smaller one, or a larger `start.stretch`",
+                );
+            }
             TimeFunction::Sine {
                 mean: start,
                 amplitude,
@@ -76,17 +90,15 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
     Some(GripMotion { stretch, release })
 }
 
-/// The largest stretch of a grip's motion.
-pub fn largest(motion: &TimeFunction) -> f64 {
+/// The least and the largest stretch of a grip's motion.
+pub fn reached_stretches(motion: &TimeFunction) -> [f64; 2] {
     match motion {
-        TimeFunction::Constant(stretch) => *stretch,
-        TimeFunction::Ramp { .. } => 1.0,
+        TimeFunction::Constant(stretch) => [*stretch; 2],
+        TimeFunction::Ramp { .. } => [0.0, 1.0],
         TimeFunction::Sine {
             mean, amplitude, ..
-        } => mean + amplitude.abs(),
-        TimeFunction::Table(points) => points
-            .iter()
-            .fold(f64::NEG_INFINITY, |most, point| most.max(point[1])),
+        } => [mean - amplitude.abs(), mean + amplitude.abs()],
+        TimeFunction::Table(points) => extremes(points.iter().map(|point| point[1])),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::corrected::CorrectedMotion;
+use super::corrected::CorrectedInstants;
 use super::deviations::{Deviations, OwnError, displacements_on};
 use super::files::{animation, figures, grids, tables};
 use super::plates::{compression, shown, times};
@@ -21,7 +21,7 @@ pub fn outcome(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
     own_error: Option<&OwnError>,
-    corrected: &CorrectedMotion,
+    corrected: &CorrectedInstants,
 ) -> Outcome {
     let [springs, elements] = models;
     let expected = displacements_on(&springs.mesh, elements);
@@ -71,7 +71,7 @@ pub fn outcome(
 /// The figures of every instant for machines.
 fn steps(
     [springs, elements]: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
+    corrected: &CorrectedInstants,
     deviations: &[Deviations; 2],
 ) -> Vec<Step> {
     let quantities = |now: &Instant, deviations: Option<&Deviations>, instant: usize| {
@@ -193,7 +193,7 @@ fn compared([of_springs, of_corrected]: &[Deviations; 2], own_error: Option<&Own
 
 fn in_time(
     [springs, elements]: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
+    corrected: &CorrectedInstants,
     deviations: &[Deviations; 2],
 ) -> Block {
     let head = [
@@ -261,11 +261,9 @@ fn checks(
         false => "over all instants".to_owned(),
     };
     let deviation = |quantity: &str, limit: f64, value: f64, own: Option<f64>| {
+        let own = own.unwrap_or(f64::NAN);
         let check = check(format!("{name}: {quantity} {over}"), limit, value);
-        match own {
-            Some(own) => check.judged(judge_by_margin(value, own, limit, REMEDY), own),
-            None => check,
-        }
+        check.judged(judge_by_margin(value, own, limit, REMEDY), own)
     };
     let own = own_error.map(|own| own.displacement);
     let displacement = deviation("displacement", limits.deviation_percent, last.whole, own);

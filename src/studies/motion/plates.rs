@@ -1,6 +1,6 @@
 //! The plates of a motion as pictures and grids show them: their fields at the instants, and what follows from them.
 
-use super::corrected::CorrectedMotion;
+use super::corrected::CorrectedInstants;
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use crate::mesh::Mesh;
@@ -36,7 +36,7 @@ pub fn times(models: &[ModelMotion; 2]) -> Vec<f64> {
 pub fn shown<'a>(
     plate: &MovingPlate,
     models: &'a [ModelMotion; 2],
-    corrected: &'a CorrectedMotion,
+    corrected: &'a CorrectedInstants,
 ) -> Vec<PlateMotion<'a>> {
     let times = times(models);
     let material = (&*plate.problem.law, &plate.viscosity);

@@ -82,7 +82,7 @@ pub struct MovingPlate {
     /// D(·).
     pub dashpots: DashpotLaw,
     /// Whether the springs' motion is corrected.
-    pub corrected: bool,
+    pub is_corrected: bool,
     /// The finite element, and how many.
     pub element: (Element, [usize; 2]),
     /// Points that are watched.

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::functions::{GripMotion, STRETCHES, largest, read_damping, read_grip, read_stiffness};
+use super::functions::{
+    GripMotion, STRETCHES, reached_stretches, read_damping, read_grip, read_stiffness,
+};
 use super::problem::{MovingPlate, PointForce, Probe, Tolerances};
 use super::timing::check_times;
 use crate::budget::Need;
@@ -54,22 +56,10 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     check_times(root, &in_time, motion, (&material.viscosity, &forces));
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
     let section = root.section("corrector");
-    let corrected = section.flag("enabled");
+    let is_corrected = section.flag("enabled");
     section.unknown_keys();
-    let section = root.section("finite_element");
-    let element = section.choice("element", &Element::NAMES);
-    let element_cells = section.count_pair("cells", 1, sections::MOST_CELLS);
-    section.unknown_keys();
-    let mut names = Vec::new();
-    let probes = tables(root, "probe", |probe| {
-        let read = read_probe(probe, &problem);
-        if names.contains(&read.name) {
-            let hint = "columns of tables are called by it: give each probe a name of its own";
-            probe.fault("name", "is that of another probe", hint);
-        }
-        names.push(read.name.clone());
-        read
-    });
+    let element = read_element(&root.section("finite_element"));
+    let probes = read_probes(root, &problem);
     let tolerances = read_tolerances(&root.section("tolerances"));
     let pictures = root.section("pictures");
     let pictures = Pictures::read(&pictures, ("times", Dimension::Time), &[]);
@@ -92,20 +82,20 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
         lattice: lattice.settings,
         springs: lattice.springs?,
         dashpots: lattice.dashpots?,
-        corrected,
-        element: (element?, element_cells?),
+        is_corrected,
+        element: element?,
         probes,
         tolerances,
         pictures,
     };
     let need = plate.need();
-    let (steps, rest) = (need.steps, Need { steps: 0.0, ..need });
-    let steps = Need {
-        steps,
+    let of_steps = Need {
+        steps: need.steps,
         ..Need::default()
     };
-    let affords =
-        in_time.affords("step", steps, FEWER_STEPS) && in_time.affords("interval", rest, SMALLER);
+    let others = Need { steps: 0.0, ..need };
+    let affords = in_time.affords("step", of_steps, FEWER_STEPS)
+        && in_time.affords("interval", others, SMALLER);
     affords.then_some(plate)
 }
 
@@ -169,9 +159,11 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     section.unknown_keys();
     let section = root.section("grip").requiring(&["motion", "time"]);
     let grip = read_grip(&section, start);
-    let most = grip.as_ref().map_or(0.0, |grip| largest(&grip.stretch));
-    if let Some(card) = card.filter(|_| most > start) {
-        sections::check_range(&section, "motion", &[most], card);
+    let reached = grip.as_ref().map(|grip| reached_stretches(&grip.stretch));
+    if let Some((card, [least, most])) = card.zip(reached) {
+        let beyond: Vec<f64> = [least.min(start), most.max(start)].into();
+        let beyond: Vec<f64> = beyond.into_iter().filter(|end| *end != start).collect();
+        sections::check_range(&section, "motion", &beyond, card);
     }
     section.unknown_keys();
     (start, grip)
@@ -228,6 +220,28 @@ fn read_point(section: &Section, problem: &ClampedPlate) -> [f64; 2] {
     }
 }
 
+/// The finite element, and how many.
+fn read_element(section: &Section) -> Option<(Element, [usize; 2])> {
+    let element = section.choice("element", &Element::NAMES);
+    let cells = section.count_pair("cells", 1, sections::MOST_CELLS);
+    section.unknown_keys();
+    element.zip(cells)
+}
+
+/// All probes; tables have columns of their names.
+fn read_probes(root: &Section, problem: &ClampedPlate) -> Vec<Probe> {
+    let mut names = Vec::new();
+    tables(root, "probe", |section| {
+        let probe = read_probe(section, problem);
+        if names.contains(&probe.name) {
+            let hint = "columns of tables are called by it: give each probe a name of its own";
+            section.fault("name", "is that of another probe", hint);
+        }
+        names.push(probe.name.clone());
+        probe
+    })
+}
+
 fn read_probe(section: &Section, problem: &ClampedPlate) -> Probe {
     let probe = Probe {
         name: section.heading("name"),
@@ -273,8 +287,7 @@ fn read_time(section: &Section) -> Option<TimeSettings> {
             "take a shorter one",
         );
     }
-    const STEP: &str = "step";
-    let step = section.quantity_or("automatic", STEP, Dimension::Time, Bound::Positive);
+    let step = section.quantity_or("automatic", "step", Dimension::Time, Bound::Positive);
     let step = step.map_or(Step::Automatic, Step::AtMost);
     let alpha = Integrator::GeneralisedAlpha {
         spectral_radius: section.number("spectral_radius", Bound::Within(0.0, 1.0)),

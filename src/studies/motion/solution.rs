@@ -27,6 +27,9 @@ pub struct ModelMotion {
     pub seconds: f64,
 }
 
+/// Vibrations among which the first longitudinal one is looked for.
+const MODES: usize = 6;
+
 impl MovingPlate {
     /// Computes the motion of one model; `progress` is told the instants that are reached.
     pub fn moved(
@@ -43,6 +46,10 @@ impl MovingPlate {
             step: time,
             fault,
         };
+        let held = motion.held(time.duration);
+        let rest = vec![0.0; motion.mass.len()];
+        let modes = slowest(&motion, &held, &rest, MODES);
+        let modes = modes.map_err(|found| fault("rest".into(), found))?;
         let (history, end) = match follow(&motion, time, progress) {
             Ok(history) => (history, None),
             Err(end) => {
@@ -54,10 +61,6 @@ impl MovingPlate {
                 (end.history, Some(error))
             }
         };
-        let held = motion.held(time.duration);
-        let rest = vec![0.0; motion.mass.len()];
-        let modes = slowest(&motion, &held, &rest, 6);
-        let modes = modes.map_err(|found| fault("rest".into(), found))?;
         Ok(ModelMotion {
             name,
             file,

@@ -143,7 +143,7 @@ fn springs(plate: &MovingPlate) -> String {
     match &plate.springs {
         SpringLaw::Material => "follow the material's curve".into(),
         SpringLaw::SecantModulus(function) => {
-            format!("K(·) = a E/x₀ with a function E of λ − 1 of the study: {function:?}, in MPa")
+            format!("K(·) = a E/x₀ with a function E of λ − 1 of the study: {function}, in MPa")
         }
     }
 }
@@ -156,7 +156,7 @@ fn dashpots(plate: &MovingPlate) -> String {
             by_stretch,
             by_rate,
         } => format!(
-            "D(·) = a η/x₀ with η of the study in MPa·s: {by_stretch:?} of λ − 1 times {by_rate:?} of the rate in 1/s"
+            "D(·) = a η/x₀ with η of the study in MPa·s: {by_stretch} of λ − 1 times {by_rate} of the rate in 1/s"
         ),
     }
 }

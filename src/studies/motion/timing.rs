@@ -75,9 +75,10 @@ fn check_idle(root: &Section, (time, grip): (&TimeSettings, &GripMotion), forces
         TimeFunction::Ramp { begin, .. } => late(begin),
         _ => false,
     });
-    for _ in forces {
-        let message = "a force does not begin in the time that is computed";
-        root.section("time").warning("duration", message, hint);
+    for PointForce { at: [x, y], .. } in forces {
+        let message =
+            format!("the force at ({x}, {y}) mm does not begin in the time that is computed");
+        root.section("time").warning("duration", &message, hint);
     }
 }
 

@@ -290,11 +290,10 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
         section.fault(KEY, "must not hold zero", hint);
         return stretches;
     }
-    if section.is_of_numbers(KEY)
-        && stretches
-            .iter()
-            .all(|stretch| (1.0..=3.0).contains(stretch))
-    {
+    let are_like_lambda = stretches
+        .iter()
+        .all(|stretch| (1.0..=3.0).contains(stretch));
+    if are_like_lambda && !stretches.is_empty() && section.is_of_numbers(KEY) {
         let percent = 100.0 * stretches[0];
         let message = format!(
             "{} is a stretch of {percent:.0} %: the plate is {:.2} times as long",

@@ -63,7 +63,7 @@ impl Measured {
         (self.of(groups).abs() <= none).then_some(all)
     }
 
-    /// `force` or `displacement`.
+    /// `force` or `displacement of the group`.
     pub fn name(&self) -> &'static str {
         match self.quantity {
             Quantity::Force => "force",

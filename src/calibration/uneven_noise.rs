@@ -13,7 +13,7 @@ const CLEARLY: f64 = 3.29;
 const FEWEST: usize = 10;
 
 /// The warnings of a fit whose residuals are noise; none of others.
-pub(super) fn unlike(
+pub(super) fn noise_warnings(
     quality: &Quality,
     law: &dyn HyperelasticLaw,
     tests: &[TestData],
@@ -23,28 +23,28 @@ pub(super) fn unlike(
         return Vec::new();
     }
     let independent = quality.effective_points() / quality.points as f64;
-    let compared = Compared {
+    let residuals = WeightedResiduals {
         law,
         weighting,
         independent: independent.min(1.0),
     };
-    let uneven = compared.uneven(tests);
+    let uneven = residuals.uneven(tests);
     uneven
         .into_iter()
-        .chain(compared.specimens(tests))
+        .chain(residuals.specimens(tests))
         .collect()
 }
 
-struct Compared<'a> {
+struct WeightedResiduals<'a> {
     law: &'a dyn HyperelasticLaw,
     weighting: Weighting,
     /// Independent points for each point.
     independent: f64,
 }
 
-impl Compared<'_> {
+impl WeightedResiduals<'_> {
     /// The law's stress at an observation, and how far it is from the measured one, both by the weights of the fit.
-    fn pair(&self, test: &TestData, one: &Observation) -> [f64; 2] {
+    fn fitted_and_residual(&self, test: &TestData, one: &Observation) -> [f64; 2] {
         let fitted = test.stress_of(self.law, one);
         let weight = self.weighting.weight_of(test, fitted);
         [weight * fitted, weight * (one.stress - fitted)]
@@ -57,7 +57,7 @@ impl Compared<'_> {
             let (stresses, left): (Vec<f64>, Vec<f64>) = rows
                 .map(|one| {
                     let fitted = test.stress_of(self.law, one);
-                    (fitted.abs(), self.pair(test, one)[1].abs())
+                    (fitted.abs(), self.fitted_and_residual(test, one)[1].abs())
                 })
                 .unzip();
             let count = self.independent * stresses.len() as f64;
@@ -81,17 +81,25 @@ impl Compared<'_> {
         }
     }
 
-    /// How many times the law's stress a test measured, and its variance by the noise.
+    /// How many times the law's stress a test measured, and its variance by the noise of its own, neighbours of which may correlate.
     fn factor(&self, test: &TestData) -> Option<[f64; 2]> {
         let count = test.observations.len();
-        let pairs = || test.observations.iter().map(|one| self.pair(test, one));
-        let square: f64 = pairs().map(|[fitted, _]| fitted * fitted).sum();
-        let along: f64 = pairs().map(|[fitted, left]| fitted * left).sum();
+        let rows = test.observations.iter();
+        let pairs: Vec<[f64; 2]> = rows
+            .map(|one| self.fitted_and_residual(test, one))
+            .collect();
+        let square: f64 = pairs.iter().map(|[fitted, _]| fitted * fitted).sum();
+        let along: f64 = pairs.iter().map(|[fitted, left]| fitted * left).sum();
         let factor = along / square;
-        let rest: f64 = pairs()
-            .map(|[fitted, left]| (left - factor * fitted).powi(2))
-            .sum();
-        let variance = rest / (count as f64 - 1.0) / square / self.independent;
+        let rest: Vec<f64> = pairs
+            .iter()
+            .map(|[fitted, left]| left - factor * fitted)
+            .collect();
+        let squares: f64 = rest.iter().map(|left| left * left).sum();
+        let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
+        let correlation = (products / squares).clamp(0.0, 0.99);
+        let fewer = (1.0 + correlation) / (1.0 - correlation);
+        let variance = fewer * squares / (count as f64 - 1.0) / square;
         (count >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
     }
 
@@ -128,5 +136,75 @@ impl Compared<'_> {
                 told.join(", "),
             )
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use crate::calibration::{FitSettings, TestData, Weighting, fit};
+    use crate::document::Statements;
+    use crate::material::registry::Law;
+
+    /// Tension of a neo-Hookean strip with noise of a size for each stress.
+    fn tension(c10: f64, seed: u64, noise: fn(f64) -> f64) -> TestData {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n".to_owned();
+        for row in 0..80 {
+            let stretch = 1.02 + 0.0125 * f64::from(row);
+            let stress = 2.0 * c10 * (stretch - stretch.powi(-2));
+            let draw: f64 = StandardNormal.sample(&mut random);
+            text += &format!("{stretch},{:.7}\n", stress + noise(stress) * draw);
+        }
+        TestData::parse("a.csv", &text, &Statements::default()).unwrap()
+    }
+
+    fn warned(tests: &[TestData], weighting: Weighting, words: &str) -> bool {
+        let settings = FitSettings {
+            weighting,
+            ..FitSettings::default()
+        };
+        let found = fit(Law::named("neo-hooke").unwrap(), tests, &settings).unwrap();
+        assert!(found.quality.has_intervals());
+        found
+            .quality
+            .warnings
+            .iter()
+            .any(|told| told.contains(words))
+    }
+
+    #[test]
+    fn noise_that_grows_with_the_stress_is_told_and_even_noise_is_not() {
+        let grows = "grows with the stress";
+        let mut found = 0;
+        for seed in 0..10 {
+            let uneven = tension(0.05, seed, |stress| 0.05 * stress);
+            found += usize::from(warned(&[uneven.clone()], Weighting::Absolute, grows));
+            assert!(
+                !warned(&[uneven], Weighting::Relative, "relative to the stress"),
+                "{seed}"
+            );
+            let even = tension(0.05, seed, |_| 0.002);
+            assert!(!warned(&[even], Weighting::Absolute, grows), "{seed}");
+        }
+        // Of eighty points some seven in ten.
+        assert!(found >= 6, "{found} of 10");
+    }
+
+    #[test]
+    fn specimens_that_differ_by_more_than_their_noise_are_told() {
+        let differ = "specimens differ";
+        let of = |moduli: [f64; 3]| {
+            let tests = moduli
+                .iter()
+                .zip(0..)
+                .map(|(c10, seed)| tension(*c10, seed, |_| 0.003));
+            warned(&tests.collect::<Vec<_>>(), Weighting::Absolute, differ)
+        };
+        assert!(of([0.0502, 0.0518, 0.0509]));
+        assert!(!of([0.05; 3]));
     }
 }

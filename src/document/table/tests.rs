@@ -1,0 +1,98 @@
+use super::*;
+use crate::document::head::pairs;
+
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    let table = Table::parse("a.csv", text).unwrap();
+    table.rows.into_iter().map(|(row, _)| row).collect()
+}
+
+fn refusal(text: &str) -> String {
+    Table::parse("a.csv", text).unwrap_err().to_string()
+}
+
+#[test]
+fn the_usual_ways_of_writing_a_table_are_read_alike() {
+    let expected = vec![vec![1.0, 0.0], vec![1.5, -0.25]];
+    for text in [
+        "stretch [-],stress [MPa]\n1,0\n1.5,-0.25\n",
+        "\u{feff}stretch [-],stress [MPa]\r\n1.0,0.0\r\n1.5,-2.5e-1\r\n",
+        "stretch [-];stress [MPa]\n1,0;0,0\n1,5;-0,25\n",
+        "stretch [-]\tstress [MPa]\n1\t0\n\n1,5\t-0,25",
+        "\"Stretch\",\"Stress\"\n\"(-)\",\"(MPa)\"\n\"1\",\"0\"\n\"1.5\",\"-0.25\"\n",
+        "# test: uniaxial\n1, 0\n# a remark\n1.5, -0.25\n",
+    ] {
+        assert_eq!(rows(text), expected, "{text:?}");
+    }
+}
+
+#[test]
+fn names_units_and_head_are_found() {
+    let text = "# test: uniaxial; direction: 2\n# A remark.\nNominal Stress (kPa),stretch\n1,2\n";
+    let table = Table::parse("a.csv", text).unwrap();
+    assert_eq!(table.columns[0].name, "nominal_stress");
+    assert_eq!(table.columns[0].unit.as_deref(), Some("kPa"));
+    assert_eq!(table.columns[1].unit, None);
+    let head = pairs(&table, &["test"]).unwrap();
+    assert_eq!(head["test"].0, "uniaxial");
+    assert_eq!(head["direction"].0, "2");
+}
+
+#[test]
+fn bad_tables_are_refused_with_line_and_reason() {
+    for (text, reason) in [
+        ("", "no columns"),
+        ("# only a head\n", "no columns"),
+        ("a,b\n", "no rows"),
+        (
+            "a,b\n1,5,0,2\n",
+            "a.csv:2: 4 fields where there are 2 columns",
+        ),
+        ("a\tb\n1,050\t2\n950\t3\n", "group thousands"),
+    ] {
+        let found = refusal(text);
+        assert!(found.contains(reason), "{text:?}: {found}");
+    }
+}
+
+#[test]
+fn fields_that_are_no_numbers_are_told_by_their_column() {
+    for (text, line, reason) in [
+        (
+            "a,b\n1,0\n# pause\n\n2,NaN\n",
+            5,
+            "NaN is not a finite number",
+        ),
+        ("a,b\n1,0\n2,inf\n", 3, "inf is not a finite number"),
+        ("a,b\n1,0\n2,x\n", 3, "\"x\" is not a number"),
+        ("a,b\n1,0\n2,0.1 MPa\n", 3, "\"0.1 MPa\" is not a number"),
+        ("a,b\n1,0\n2,\n", 3, "a field is empty"),
+        ("a;b\n1,5;0,2\n1,6;0.3\n", 3, "are mixed in this file"),
+        ("a;b\n1,0;1.000,5\n", 2, "is not a number"),
+    ] {
+        let table = Table::parse("a.csv", text).unwrap();
+        let found = table.check_numbers([1], "").unwrap_err().to_string();
+        let place = format!("a.csv:{line}: column `b`: ");
+        assert!(
+            found.contains(&place) && found.contains(reason),
+            "{text:?}: {found}"
+        );
+        assert!(table.check_numbers([0], "").is_ok(), "{text:?}");
+    }
+}
+
+#[test]
+fn remarks_old_line_ends_and_citations_are_read() {
+    let text = "#test:uniaxial\r# source: Smith A 2001; Jones B: Aorta tests\ra [-],b [MPa]\r1,2\r";
+    let table = Table::parse("a.csv", text).unwrap();
+    let head = pairs(&table, &["test"]).unwrap();
+    assert_eq!(head["test"].0, "uniaxial");
+    assert_eq!(head["source"].0, "Smith A 2001; Jones B: Aorta tests");
+    assert_eq!(table.rows.len(), 1);
+    let twice = Table::parse("a.csv", "# test: planar\n# test: uniaxial\na,b\n1,2\n").unwrap();
+    let faults = pairs(&twice, &["test"]).unwrap_err();
+    assert!(
+        faults[0]
+            .to_string()
+            .contains("a.csv:2: the test is said twice")
+    );
+}
