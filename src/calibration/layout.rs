@@ -73,6 +73,14 @@ impl Layout {
         self.columns().chain(time)
     }
 
+    /// The strains of an observation along an axis: what a strip across the first one does along it is not known.
+    fn along(&self, axis: usize, [first, second]: [f64; 2]) -> [f64; 2] {
+        match self.test == Test::Uniaxial && axis == 1 {
+            true => [f64::NAN, first],
+            false => [first, second],
+        }
+    }
+
     /// Reads the rows.
     pub fn read(&self, head: &Head) -> Faulty<TestData> {
         let table = head.table;
@@ -94,13 +102,8 @@ impl Layout {
                 turns.add(index, first);
             }
             for (column, factor, axis) in &self.stresses {
-                let strains = if self.test == Test::Uniaxial && *axis == 1 {
-                    [f64::NAN, first]
-                } else {
-                    [first, second]
-                };
                 observations.push(Observation {
-                    strains,
+                    strains: self.along(*axis, [first, second]),
                     axis: *axis,
                     stress: part.stress(row[*column] * factor),
                 });

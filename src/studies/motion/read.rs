@@ -38,10 +38,8 @@ struct Lattice {
 
 /// Reads a study; `None` where it has faults, which are recorded.
 pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
-    let material = read_material(
-        &root.section("material").requiring(&["card", "density"]),
-        folder,
-    );
+    let section = root.section("material");
+    let material = read_material(&section.requiring(&["card", "density"]), folder);
     let plate = root
         .section("plate")
         .requiring(&["length", "width", "thickness"]);
@@ -61,8 +59,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let element = read_element(&root.section("finite_element"));
     let probes = read_probes(root, &problem);
     let tolerances = read_tolerances(&root.section("tolerances"));
-    let pictures = root.section("pictures");
-    let pictures = Pictures::read(&pictures, ("times", Dimension::Time), &[]);
+    let times = ("times", Dimension::Time);
+    let pictures = Pictures::read(&root.section("pictures"), times, &[]);
     let (grip, card) = (grip?, material.card?);
     let plate = MovingPlate {
         problem: ClampedPlate {
