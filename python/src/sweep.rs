@@ -229,6 +229,8 @@ fn values<'py>(py: Python<'py>, settings: &[&Setting]) -> PyResult<Bound<'py, Py
 pub struct SweepTable {
     name: String,
     keys: Vec<String>,
+    /// What steps run along, as an axis is called.
+    along: &'static str,
     rows: Vec<Row>,
     files: Vec<PathBuf>,
     warnings: Vec<String>,
@@ -239,6 +241,7 @@ impl SweepTable {
         Self {
             name: name(&sweep.study.path),
             keys: sweep.keys(),
+            along: sweep.study.steps_run_along(),
             rows,
             files: Vec::new(),
             warnings: Vec::new(),
@@ -256,6 +259,8 @@ impl SweepTable {
             rows: rows.map_err(|error| exception(py, &error))?,
             name,
             keys,
+            // A table does not tell the kind of its study.
+            along: "step",
             files: Vec::new(),
             warnings: Vec::new(),
         })
@@ -348,7 +353,7 @@ impl SweepTable {
     /// Names of the report's pictures, and each as a PNG.
     fn pictures<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let drawn = py.detach(|| {
-            let figures = sweep::figures(&self.keys, &self.rows);
+            let figures = sweep::figures(&self.keys, &self.rows, self.along);
             let drawn = figures
                 .iter()
                 .map(|figure| Ok((figure.name.clone(), output::png(&figure.drawing)?)));
