@@ -72,6 +72,20 @@ def label(name: str) -> str:
     return text.replace("von mises", "von Mises").replace("cauchy", "Cauchy").replace("green lagrange", "Green–Lagrange")
 
 
+def _limits(places: Floats, values: Floats) -> tuple[float, float, str]:
+    """The values between which all but 0.2 % of the area lies at either end, and the ends beyond which values reach far, as of corners."""
+    sides = places[:, 1:] - places[:, :1]
+    areas = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
+    means = values.mean(axis=1)
+    order = np.argsort(means)
+    passed = np.cumsum(areas[order]) / areas.sum()
+    low, high = (float(means[order][min(np.searchsorted(passed, share), order.size - 1)]) for share in (0.002, 0.998))
+    far = 0.15 * (high - low)
+    beyond = (low - values.min() > far, values.max() - high > far)
+    low, high = (low if beyond[0] else float(values.min())), (high if beyond[1] else float(values.max()))
+    return low, high, {(True, True): "both", (True, False): "min", (False, True): "max"}.get(beyond, "neither")
+
+
 def deformed(state: State, quantity: str, ax: Axes | None, options: dict[str, Any]) -> Axes:
     """The deformed sheet, coloured by an array at its nodes."""
     from ._errors import fault
@@ -83,13 +97,16 @@ def deformed(state: State, quantity: str, ax: Axes | None, options: dict[str, An
     values = data[quantity]
     values = values if values.ndim == 1 else values[:, 0]
     place = state.solution.points + state.displacement
-    settings: dict[str, Any] = {"shading": "gouraud", "cmap": "viridis", **options}
-    drawn = own.tripcolor(place[:, 0], place[:, 1], triangles(state.solution.cells), values, **settings)
+    corners = triangles(state.solution.cells)
+    low, high, extend = _limits(place[corners], values[corners])
+    settings: dict[str, Any] = {"shading": "gouraud", "cmap": "viridis", "vmin": low, "vmax": high, **options}
+    drawn = own.tripcolor(place[:, 0], place[:, 1], corners, values, **settings)
     own.set_aspect("equal")
     own.set_xlabel("x [mm]")
     own.set_ylabel("y [mm]")
-    own.set_title(f"{state.solution.model}, at {state.factor:g}")
-    own.figure.colorbar(drawn, ax=own, label=label(quantity), shrink=0.8)
+    own.set_title(f"{state.solution.model}, load factor {state.factor:g}")
+    extend = "neither" if {"vmin", "vmax", "norm"} & options.keys() else extend
+    own.figure.colorbar(drawn, ax=own, label=label(quantity), shrink=0.8, extend=extend)
     found: Axes = own
     return found
 

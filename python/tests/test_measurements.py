@@ -38,6 +38,15 @@ def test_arrays_and_tables_are_fitted_alike():
     assert np.sqrt(np.diag(array.covariance)) == pytest.approx([own.standard_error for own in array.parameters.values()])
 
 
+def test_a_parameter_that_a_bound_holds_has_no_interval():
+    stretch = np.linspace(1.02, 1.9, 60)
+    stress = 0.1 * (stretch - stretch**-2) + np.random.default_rng(1).normal(scale=2e-4, size=stretch.size)
+    said = dict(test="uniaxial", stress="nominal", strain="stretch", bounds={"c10": (0.06, 0.1)})
+    found = gb.fit(np.column_stack([stretch, stress]), "neo-hooke", **said)
+    assert found.parameters["c10"].interval is None
+    assert "c10" in repr(found)
+
+
 @pytest.mark.parametrize(
     "data",
     [np.ones((3, 3)), [[1.0, np.nan]] * 20, {"stretch [-]": [1.0, 1.1], "stress [MPa]": [0.0]}, "no_such_file.csv"],
