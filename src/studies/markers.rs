@@ -21,6 +21,7 @@ use crate::results::locking;
 
 mod alike;
 mod area;
+mod axes;
 mod computed;
 mod conditions;
 mod doubts;

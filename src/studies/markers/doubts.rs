@@ -3,6 +3,7 @@
 //! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
+use super::axes::mistaken;
 use super::gross_errors::has_many;
 use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw};
@@ -17,7 +18,12 @@ impl MarkerStudy {
         let mut all = self.doubts.clone();
         let frames = self.series.frames.iter().zip(estimates);
         for (frame, estimate) in frames {
-            let strained = [self.strains(estimate), self.beyond_card(estimate)];
+            let axes = (!estimate.is_explained()).then(|| mistaken(frame, &*self.law(estimate)));
+            let strained = [
+                axes.flatten(),
+                self.strains(estimate),
+                self.beyond_card(estimate),
+            ];
             all.extend(of_frame(frame, estimate, strained));
             all.extend(self.unknown_edge(estimate).map(|(message, hint)| {
                 let message = format!("frame {}: {message}", frame.number);
@@ -102,7 +108,7 @@ fn widen(estimate: &mut Estimate, by: f64) {
 fn of_frame(
     frame: &Frame,
     estimate: &FieldEstimate,
-    strained: [Option<Doubt>; 2],
+    strained: [Option<Doubt>; 3],
 ) -> Vec<Diagnostic> {
     let doubts = [
         noise(estimate),
