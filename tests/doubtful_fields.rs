@@ -361,3 +361,20 @@ fn cells_that_are_given_are_not_made_smaller() {
     let given = said(&["--mesh", mesh.to_str().unwrap()]);
     assert!(given.contains("leave out --refine"), "{given}");
 }
+
+#[test]
+fn a_mirrored_axis_of_the_pictures_is_named() {
+    let text = second_frame(|_| true);
+    let mirrored = |line: &str| {
+        let (rest, uy) = line.rsplit_once(',').unwrap();
+        match uy.parse::<f64>() {
+            Ok(uy) => format!("{rest},{}\n", -uy),
+            Err(_) => format!("{line}\n"),
+        }
+    };
+    let turned: String = text.lines().map(mirrored).collect();
+    let (told, _) = corrected(&turned, &[], 5);
+    assert!(told.contains("along y seem to be mirrored"), "{told}");
+    let (told, _) = corrected(&text, &[], 0);
+    assert!(!told.contains("mirrored"), "{told}");
+}
