@@ -21,6 +21,7 @@ mod identification;
 mod json;
 pub mod locking;
 mod material;
+pub mod models;
 mod picture_style;
 mod relaxation;
 mod report;

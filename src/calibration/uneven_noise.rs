@@ -182,7 +182,11 @@ mod tests {
         let mut found = 0;
         for seed in 0..10 {
             let uneven = tension(0.05, seed, |stress| 0.05 * stress);
-            found += usize::from(warned(&[uneven.clone()], Weighting::Absolute, grows));
+            found += usize::from(warned(
+                std::slice::from_ref(&uneven),
+                Weighting::Absolute,
+                grows,
+            ));
             assert!(
                 !warned(&[uneven], Weighting::Relative, "relative to the stress"),
                 "{seed}"

@@ -12,6 +12,7 @@ use serde_json::{Map, Value, json};
 
 use super::picture::bar_colours;
 use crate::mesh::CellShape;
+use crate::results::models::MODELS;
 use crate::results::{Array, Components, Grid, GridCell, GridSeries, Results};
 use crate::statistics::extremes;
 
@@ -72,6 +73,7 @@ impl Explorer {
             "fields": fields(&models[0].grids[0].grid),
             "curves": curves(results, &shown),
             "colours": { "even": colours(false), "signed": colours(true) },
+            "lines": line_colours(),
         });
         Some(Self {
             // Nothing in a script may look like its end.
@@ -79,6 +81,13 @@ impl Explorer {
             note: notes.join(" "),
         })
     }
+}
+
+/// The colours of the models' lines by their names.
+fn line_colours() -> Map<String, Value> {
+    let hexadecimal = |[r, g, b]: [u8; 3]| json!(format!("#{r:02x}{g:02x}{b:02x}"));
+    let lines = MODELS.map(|style| (style.name.to_owned(), hexadecimal(style.colour)));
+    lines.into_iter().collect()
 }
 
 fn colours(is_signed: bool) -> String {
@@ -171,11 +180,8 @@ fn label(name: &str) -> String {
 
 /// A model as reports call it.
 fn model_label(name: &str) -> String {
-    match name {
-        "mass_spring" => "mass-spring".to_owned(),
-        "finite_element" => "finite elements".to_owned(),
-        other => other.replace('_', " "),
-    }
+    let known = MODELS.into_iter().find(|style| style.key == name);
+    known.map_or_else(|| name.replace('_', " "), |style| style.name.to_owned())
 }
 
 fn model(series: &GridSeries, shown: &[f64]) -> Value {

@@ -9,6 +9,7 @@ use crate::error::{Diagnostic, Error};
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::softened_law::check_memory;
+use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Outcome, number};
 use crate::studies::{Computation, Kind, Progress};
 
@@ -69,11 +70,10 @@ pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error
     };
     let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
     let model = springs.model(&plate.problem);
-    let names = ["mass-spring", "mass_spring"];
-    let told = |time: f64| progress.tell(&plate.at(names[0], time));
-    let springs_moved = plate.moved(names, (&model, dashpots), plate.time, &told)?;
+    let told = |time: f64| progress.tell(&plate.at(MASS_SPRING.name, time));
+    let springs_moved = plate.moved(MASS_SPRING, (&model, dashpots), plate.time, &told)?;
     let (_, cells) = plate.element;
-    let elements_moved = plate.elements_moved(cells, plate.time, progress, "finite elements")?;
+    let elements_moved = plate.elements_moved(cells, plate.time, progress, FINITE_ELEMENTS.name)?;
     let own_error = OwnError::of(plate, &elements_moved, progress);
     let corrected = plate.correct(&springs_moved, progress)?;
     let models = [springs_moved, elements_moved];
@@ -99,12 +99,7 @@ impl MovingPlate {
         let sheet = (!self.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
         let model = elements.model(&self.problem);
         let told = |now: f64| progress.tell(&self.at(what, now));
-        self.moved(
-            ["finite elements", "finite_element"],
-            (&model, sheet),
-            time,
-            &told,
-        )
+        self.moved(FINITE_ELEMENTS, (&model, sheet), time, &told)
     }
 
     /// How far a computation is.

@@ -6,15 +6,9 @@ use serde_json::{Value, json};
 
 use super::figures::Row;
 use super::table::{heads, names};
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke, number};
 use crate::statistics::{quantile, rank_correlation};
-
-/// Models by the names of figures, as reports call them, with the colours of their lines.
-const MODELS: [(&str, &str, [u8; 3]); 3] = [
-    ("mass_spring", "mass-spring", PALETTE[1]),
-    ("corrected", "corrected", PALETTE[0]),
-    ("finite_element", "finite elements", [30, 30, 30]),
-];
 
 /// Below so many runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;
@@ -293,10 +287,10 @@ fn is_force(name: &str) -> bool {
 fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
     let mut lines = Vec::new();
     // The corrected model's band is that which is filled.
-    for (name, words, colour) in [1, 0, 2].map(|model: usize| MODELS[model]) {
+    for ModelStyle { name, key, colour } in [CORRECTED, MASS_SPRING, FINITE_ELEMENTS] {
         let own = forces
             .iter()
-            .filter(|one| one.name.split('.').next() == Some(name) && one.runs >= FEWEST);
+            .filter(|one| one.name.split('.').next() == Some(key) && one.runs >= FEWEST);
         // In the order of the path: a load factor may come again, as its second time `0.3#2`.
         let at = |one: &Statistics| {
             let (_, at) = one.name.rsplit_once('@')?;
@@ -311,19 +305,14 @@ fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
         let stroke = if lines.is_empty() {
             let there = steps.iter().map(|(at, [low, ..])| [*at, *low]);
             let back = steps.iter().rev().map(|(at, [.., high])| [*at, *high]);
-            let label = format!("{words}, 5 … 95 %");
+            let label = format!("{name}, 5 … 95 %");
             lines.push(Line::new(label, there.chain(back), colour, Stroke::Filled));
             Stroke::Solid
         } else {
             Stroke::Dashed
         };
         let middle = steps.iter().map(|(at, [_, middle, _])| [*at, *middle]);
-        lines.push(Line::new(
-            format!("{words}, median"),
-            middle,
-            colour,
-            stroke,
-        ));
+        lines.push(Line::new(format!("{name}, median"), middle, colour, stroke));
     }
     (!lines.is_empty()).then(|| {
         LineChart::new(

@@ -196,13 +196,12 @@
       table.insertRow().append(...row.map((text, index) => cell(kind, text, index)));
     });
   };
-  const COLOURS = { "mass-spring": "#d55e00", corrected: "#0072b2", "finite elements": "#1e1e1e" };
   // A place on the path in words.
-  const place = (at) => {
+  const described = (at) => {
     if (data.along === "stretch") return "stretch " + written(100 * at) + " %";
     return data.along + " " + written(at) + (data.along === "time" ? " s" : "");
   };
-  const colour = (name) => COLOURS[name] || "#009e73";
+  const colour = (name) => data.lines[name] || "#009e73";
   const frame = (canvas) => {
     const curve = data.curves[state.curve];
     const all = Object.values(curve.models).flat().filter(Number.isFinite);
@@ -243,8 +242,8 @@
       context.textAlign = align;
       context.fillText(words, at, height);
     };
-    text(place(ends.left), x(ends.left), canvas.height - 6 * scale, "left");
-    text(place(ends.right), x(ends.right), canvas.height - 6 * scale, "right");
+    text(described(ends.left), x(ends.left), canvas.height - 6 * scale, "left");
+    text(described(ends.right), x(ends.right), canvas.height - 6 * scale, "right");
     if (ends.high !== 0) text(end(ends.high), x(ends.left) + 4 * scale, y(ends.high) - 6 * scale, "left");
     if (ends.low !== 0) text(end(ends.low), x(ends.left) + 4 * scale, y(ends.low) - 4 * scale, "left");
     const now = x(data.steps[state.step].at);
@@ -264,12 +263,12 @@
       });
     });
     const rows = Object.entries(curve.models).map(([name, points]) => [name, written(points[state.step])]);
-    fill(element("forces"), [place(data.steps[state.step].at), curve.label], rows);
+    fill(element("forces"), [described(data.steps[state.step].at), curve.label], rows);
     [...element("forces").rows].slice(1).forEach((row) => (row.cells[0].style.color = colour(row.cells[0].textContent)));
   };
   const show = () => {
     element("step").value = state.step;
-    element("at").textContent = place(data.steps[state.step].at);
+    element("at").textContent = described(data.steps[state.step].at);
     element("model").value = state.model;
     element("name").value = state.field;
     read();

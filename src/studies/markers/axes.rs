@@ -27,10 +27,9 @@ fn mean_gradient(frame: &Frame) -> Option<Matrix2<f64>> {
             .iter()
             .map(|one| (Vector2::from(one.place), Vector2::from(one.displacement)))
     };
-    let mean = |which: fn((Vector2<f64>, Vector2<f64>)) -> Vector2<f64>| {
-        pairs().map(which).sum::<Vector2<f64>>() / count
-    };
-    let (place, displacement) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let (place, displacement): (Vec<Vector2<f64>>, Vec<Vector2<f64>>) = pairs().unzip();
+    let [place, displacement] =
+        [place, displacement].map(|all| all.into_iter().sum::<Vector2<f64>>() / count);
     let (mut squares, mut products) = (Matrix2::zeros(), Matrix2::zeros());
     for (x, u) in pairs() {
         squares += (x - place) * (x - place).transpose();

@@ -6,6 +6,7 @@ use super::plates::PlateMotion;
 use super::problem::{MovingPlate, Probe};
 use super::solution::ModelMotion;
 use crate::dynamics::{EnergyBalance, Instant};
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 use crate::results::{
     Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
     GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number, sheet_figures,
@@ -13,9 +14,8 @@ use crate::results::{
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
-/// The colours of springs and finite elements, as of plates, and of the corrected motion.
-const COLOURS: [[u8; 3]; 2] = [PALETTE[1], [30, 30, 30]];
-const CORRECTED: [u8; 3] = PALETTE[0];
+/// The styles of springs and finite elements.
+const STYLES: [ModelStyle; 2] = [MASS_SPRING, FINITE_ELEMENTS];
 
 fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
     LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
@@ -32,7 +32,10 @@ fn lines(
     models: &[ModelMotion; 2],
     point: impl Fn(&ModelMotion, &Instant) -> [f64; 2],
 ) -> Vec<Line> {
-    let models = models.iter().zip(STROKES).zip(COLOURS);
+    let models = models
+        .iter()
+        .zip(STROKES)
+        .zip(STYLES.map(|style| style.colour));
     let line = |((model, stroke), colour): ((&ModelMotion, _), _)| {
         let points = model.points(|now| point(model, now));
         Line::new(model.name, points, colour, stroke)
@@ -96,7 +99,7 @@ pub fn figures(
         let mut over_time = force(models, "time [s]", |_, now| now.time);
         let corrected = corrected.right_force.iter().zip(&springs.history.instants);
         let points = corrected.map(|(force, now)| [now.time, force[0]]);
-        let corrected = Line::new("corrected", points, CORRECTED, Stroke::Marked);
+        let corrected = Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Marked);
         over_time
             .lines
             .extend((!corrected.points.is_empty()).then_some(corrected));

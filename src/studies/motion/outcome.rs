@@ -11,6 +11,7 @@ use super::solution::ModelMotion;
 use super::statement;
 use crate::compare::judgement::{judge_by_margin, percent};
 use crate::dynamics::Instant;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted, number};
 
 /// Instants in the table of deviations.
@@ -98,11 +99,11 @@ fn steps(
         );
         let models = [
             (
-                "mass_spring",
+                MASS_SPRING.key,
                 quantities(springs, Some(of_springs), instant),
             ),
-            ("corrected", json!(of_corrected)),
-            ("finite_element", quantities(elements, None, instant)),
+            (CORRECTED.key, json!(of_corrected)),
+            (FINITE_ELEMENTS.key, quantities(elements, None, instant)),
         ];
         Step {
             at: springs.time,
@@ -250,8 +251,8 @@ fn checks(
     };
     let [of_springs, of_corrected] = deviations;
     let (name, last) = match of_corrected.displacement.is_empty() {
-        true => ("mass-spring", of_springs),
-        false => ("corrected", of_corrected),
+        true => (MASS_SPRING.name, of_springs),
+        false => (CORRECTED.name, of_corrected),
     };
     let compared = last.displacement.len();
     let until = times(models)[..compared].last().copied();

@@ -8,6 +8,7 @@ use crate::dynamics::{History, TimeSettings, Viscosity, follow};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Model;
+use crate::results::models::ModelStyle;
 
 /// One model's motion.
 pub struct ModelMotion {
@@ -34,7 +35,7 @@ impl MovingPlate {
     /// Computes the motion of one model; `progress` is told the instants that are reached.
     pub fn moved(
         &self,
-        [name, file]: [&'static str; 2],
+        style: ModelStyle,
         (model, viscosity): (&Model, Option<&dyn Viscosity>),
         time: TimeSettings,
         progress: &dyn Fn(f64),
@@ -62,8 +63,8 @@ impl MovingPlate {
             }
         };
         Ok(ModelMotion {
-            name,
-            file,
+            name: style.name,
+            file: style.key,
             mesh: model.mesh.clone(),
             history,
             end,

@@ -5,14 +5,11 @@ use super::results::{MODELS, Results};
 use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{
-    Axis, Deformed, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke,
-    material_chart, sheet_figures,
+    Axis, Deformed, Drawing, FieldFigure, Figure, Line, LineChart, Panel, Stroke, material_chart,
+    sheet_figures,
 };
-
-const CORRECTED: [u8; 3] = PALETTE[0];
-const MASS_SPRING: [u8; 3] = PALETTE[1];
-const FINITE_ELEMENT: [u8; 3] = [30, 30, 30];
 
 /// All pictures of a run, in the order of the report.
 pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
@@ -159,8 +156,8 @@ fn errors(results: &Results) -> LineChart {
     let before: OfStep = |step| step.mass_spring;
     let after: OfStep = |step| step.corrected;
     let models = [
-        (MODELS[0], before, MASS_SPRING),
-        (MODELS[1], after, CORRECTED),
+        (MODELS[0], before, MASS_SPRING.colour),
+        (MODELS[1], after, CORRECTED.colour),
     ];
     let lines = models.into_iter().flat_map(|(model, deviation, colour)| {
         measures.map(|(name, value, stroke)| {
@@ -204,9 +201,9 @@ fn force(results: &Results) -> Drawing {
         }
     };
     let lines = [
-        (2, FINITE_ELEMENT, Stroke::Solid),
-        (0, MASS_SPRING, Stroke::Dashed),
-        (1, CORRECTED, Stroke::Points),
+        (2, FINITE_ELEMENTS.colour, Stroke::Solid),
+        (0, MASS_SPRING.colour, Stroke::Dashed),
+        (1, CORRECTED.colour, Stroke::Points),
     ];
     let forces = LineChart::new(
         "Grip force",
@@ -233,7 +230,7 @@ fn force_differences(results: &Results) -> LineChart {
         let points = (0..results.comparison.len()).filter_map(point);
         Line::new(MODELS[model], points, colour, Stroke::Marked)
     };
-    let lines = [(0, MASS_SPRING), (1, CORRECTED)].map(line);
+    let lines = [(0, MASS_SPRING.colour), (1, CORRECTED.colour)].map(line);
     LineChart::new(
         "Difference of the grip force from the finite elements'",
         Axis::linear("stretch of the plate [%]"),
@@ -261,10 +258,14 @@ fn residuals(results: &Results) -> Drawing {
         let chart = LineChart::new(title, Axis::linear("iteration"), y, lines);
         (!chart.lines.is_empty()).then_some((chart, 340))
     };
-    let forces = [(0, MASS_SPRING), (2, FINITE_ELEMENT)];
+    let forces = [(0, MASS_SPRING.colour), (2, FINITE_ELEMENTS.colour)];
     let charts = [
         chart("Residual forces", "relative residual [–]", &forces),
-        chart("Corrections", "relative correction [–]", &[(1, CORRECTED)]),
+        chart(
+            "Corrections",
+            "relative correction [–]",
+            &[(1, CORRECTED.colour)],
+        ),
     ];
     Drawing::Charts(charts.into_iter().flatten().collect())
 }

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::compare::{Deviation, SelfConvergence, StepComparison};
 use crate::problem::Measures;
 use crate::results::Step;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::solve::State;
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::Results;
@@ -23,7 +24,7 @@ pub fn problem(study: &Study) -> Map<String, Value> {
 }
 
 /// The names of the models, in the order of [`super::results::MODELS`].
-const KEYS: [&str; 3] = ["mass_spring", "corrected", "finite_element"];
+const KEYS: [&str; 3] = [MASS_SPRING.key, CORRECTED.key, FINITE_ELEMENTS.key];
 
 /// The largest unbalanced force or moment of every model, over the largest one, and the largest force left at a free node
 /// over that on a grip.

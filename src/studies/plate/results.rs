@@ -8,13 +8,14 @@ use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::{Measures, Solution, Work};
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::solve::State;
 
 mod requirement;
 pub mod run;
 
 /// The names of the models, in the order of [`Results::models`].
-pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];
+pub const MODELS: [&str; 3] = [MASS_SPRING.name, CORRECTED.name, FINITE_ELEMENTS.name];
 
 /// One finite-element mesh and its solutions.
 #[derive(Debug)]

@@ -4,9 +4,10 @@ use super::problem::Specimen;
 use super::results::models::Models;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
+use crate::results::models::MODELS;
 use crate::results::{
-    Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart,
-    PALETTE, Panel, Stroke, mesh_outlines, sheet_figures,
+    Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
+    Stroke, mesh_outlines, sheet_figures,
 };
 use crate::studies::pictures::Shown;
 
@@ -104,7 +105,6 @@ const NO_FORCE: f64 = 1e-6;
 
 /// The forces of all groups that carry one, over the load factor; `None` where there is none.
 fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
-    const COLOURS: [[u8; 3]; 3] = [PALETTE[1], PALETTE[0], [30, 30, 30]];
     const STROKES: [Stroke; 3] = [Stroke::Dashed, Stroke::Points, Stroke::Solid];
     let named = &models.named();
     let points = |model: usize, group: usize, axis: usize| {
@@ -133,7 +133,8 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
         let line = |model: usize| {
             let points = points(model, group, axis);
-            let (name, colour, stroke) = (named[model].name, COLOURS[model], STROKES[model]);
+            let (style, stroke) = (MODELS[model], STROKES[model]);
+            let (name, colour) = (style.name, style.colour);
             (points.len() > 1).then(|| match specimen.problem.law.softening() {
                 // Loading and unloading are no function of the load factor.
                 Some(_) => Line::new(name, points, colour, stroke),

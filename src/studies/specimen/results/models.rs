@@ -5,6 +5,7 @@ use super::lattice::OnLattice;
 use super::reference::Reference;
 use crate::error::Error;
 use crate::problem::Solution;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 use crate::studies::Progress;
 use crate::studies::specimen::problem::Specimen;
 
@@ -47,15 +48,15 @@ impl Models {
 
     /// Springs, corrected springs, finite elements.
     pub fn named(&self) -> [NamedSolution<'_>; 3] {
-        let named = |name, file, solution| NamedSolution {
-            name,
-            file,
+        let named = |style: ModelStyle, solution| NamedSolution {
+            name: style.name,
+            file: style.key,
             solution,
         };
         [
-            named("mass-spring", "mass_spring", &self.on_lattice.uncorrected),
-            named("corrected", "corrected", &self.on_lattice.corrected),
-            named("finite elements", "finite_element", &self.reference.finest),
+            named(MASS_SPRING, &self.on_lattice.uncorrected),
+            named(CORRECTED, &self.on_lattice.corrected),
+            named(FINITE_ELEMENTS, &self.reference.finest),
         ]
     }
 

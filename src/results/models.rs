@@ -1,0 +1,38 @@
+//! The models as reports, files and pictures know them.
+
+use super::PALETTE;
+
+/// A model's name, its name in names of files and figures, and the colour of its lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModelStyle {
+    /// Its name.
+    pub name: &'static str,
+    /// Its name in names of files, arrays and figures.
+    pub key: &'static str,
+    /// The colour of its lines.
+    pub colour: [u8; 3],
+}
+
+/// The springs.
+pub const MASS_SPRING: ModelStyle = ModelStyle {
+    name: "mass-spring",
+    key: "mass_spring",
+    colour: PALETTE[1],
+};
+
+/// The springs' field after the correction.
+pub const CORRECTED: ModelStyle = ModelStyle {
+    name: "corrected",
+    key: "corrected",
+    colour: PALETTE[0],
+};
+
+/// What both are compared with.
+pub const FINITE_ELEMENTS: ModelStyle = ModelStyle {
+    name: "finite elements",
+    key: "finite_element",
+    colour: [30, 30, 30],
+};
+
+/// All of them, in the order of reports.
+pub const MODELS: [ModelStyle; 3] = [MASS_SPRING, CORRECTED, FINITE_ELEMENTS];
