@@ -37,7 +37,7 @@ impl Panel {
         Self {
             label: label.into(),
             surface: Surface::new(mesh, displacement),
-            values: Values::AtPoints(Surface::values(mesh, value)),
+            values: Values::AtPoints(Surface::field(mesh, value)),
         }
     }
 

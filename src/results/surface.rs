@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mesh::{CellShape, Mesh, NodalField};
+use crate::statistics::extremes;
 
 /// Triangles on the deformed mesh, and its edge deformed and at rest; all places in mm.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
@@ -78,6 +79,25 @@ impl Surface {
             cells: cells.collect(),
             ..Self::default()
         }
+    }
+
+    /// The same of a field that is shown: within a cell it is nowhere beyond what its nodes have, as parabolas through stresses would be, so that
+    /// what is said of its ends is in the arrays too.
+    pub fn field(mesh: &Mesh, at_node: &dyn Fn(usize) -> f64) -> Vec<f64> {
+        let mut values = Self::values(mesh, at_node);
+        let Some(division) = Division::of(mesh) else {
+            return values;
+        };
+        let mut rest = &mut values[..];
+        for cell in 0..mesh.cell_count() {
+            let count = division.part(mesh.shape(cell)).locals.len();
+            let (own, after) = rest.split_at_mut(count);
+            let [low, high] = extremes(mesh.cell(cell).iter().map(|node| at_node(*node)));
+            own.iter_mut()
+                .for_each(|value| *value = value.max(low).min(high));
+            rest = after;
+        }
+        values
     }
 
     /// The values of a field at the points from those at the nodes of the mesh that the surface was made of.
@@ -236,6 +256,10 @@ mod tests {
                 assert!((value - 2.0 * point[1]).abs() < 1e-12, "{name}");
             }
             assert_eq!(surface.outline.len(), mesh.boundary().len());
+            // One node stands out: the parabolas beside it would fall below the others.
+            let peak = |node: usize| f64::from(u8::from(node == 5));
+            let [low, high] = extremes(Surface::field(&mesh, &peak).into_iter());
+            assert_eq!([low, high], [0.0, 1.0], "{name}");
         }
     }
 
