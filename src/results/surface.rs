@@ -258,7 +258,7 @@ mod tests {
             assert_eq!(surface.outline.len(), mesh.boundary().len());
             // One node stands out: the parabolas beside it would fall below the others.
             let peak = |node: usize| f64::from(u8::from(node == 5));
-            let [low, high] = extremes(Surface::field(&mesh, &peak).into_iter());
+            let [low, high] = extremes(Surface::field(&mesh, &peak));
             assert_eq!([low, high], [0.0, 1.0], "{name}");
         }
     }

@@ -99,7 +99,7 @@ pub fn figures(
         let mut over_time = force(models, "time [s]", |_, now| now.time);
         let corrected = corrected.right_force.iter().zip(&springs.history.instants);
         let points = corrected.map(|(force, now)| [now.time, force[0]]);
-        let corrected = Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Marked);
+        let corrected = Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Points);
         over_time
             .lines
             .extend((!corrected.points.is_empty()).then_some(corrected));
@@ -189,7 +189,7 @@ fn probes(
         let fields = times.iter().zip(&corrected.displacement);
         let points = fields.map(|(time, field)| [*time, springs.at(field, probe)[0]]);
         let label = format!("{}, corrected", probe.name);
-        let between = Line::new(label, points, colour, Stroke::Marked);
+        let between = Line::new(label, points, colour, Stroke::Points);
         lines.extend((!between.points.is_empty()).then_some(between));
         lines.extend(models.iter().zip(STROKES).map(|(model, stroke)| {
             let points = model
