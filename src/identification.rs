@@ -280,12 +280,10 @@ impl Fit<'_> {
             freedom,
             warnings: Vec::new(),
         };
-        identification.warnings = warnings(&identification, joint.recording, signals);
+        let corners = corners(&joint.recording.extension).len();
+        identification.warnings = warnings(&identification, joint.recording, signals, corners);
         // A spline that cannot follow the motion would blame the recording.
-        let is_followed = !signals.0.coarse
-            && !signals.1.coarse
-            && corners(&joint.recording.extension).len() < FEWEST_CORNERS;
-        if is_followed {
+        if !signals.0.coarse && !signals.1.coarse && corners < FEWEST_CORNERS {
             let at = (&self.state, &identification.motion);
             let suspects = suspects::suspects(joint, at, (found, [misfit, freedom]));
             identification.warnings.extend(suspects::warning(&suspects));

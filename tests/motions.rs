@@ -236,15 +236,7 @@ fn viscous_work_of_a_slow_ramp_is_that_of_the_closed_form() {
     for model in ["mass_spring", "finite_element"] {
         let text =
             fs::read_to_string(folder.path().join(format!("out/motion_{model}.csv"))).unwrap();
-        let mut lines = text.lines().map(|line| line.split(','));
-        let column = lines
-            .next()
-            .unwrap()
-            .position(|head| head == "viscous work [mJ]")
-            .unwrap();
-        let work: Vec<f64> = lines
-            .map(|mut line| line.nth(column).unwrap().parse().unwrap())
-            .collect();
+        let work = columns(&text, "viscous work").concat();
         assert!(
             work.windows(2).all(|pair| pair[1] >= pair[0]),
             "{model}: {work:?}"

@@ -1,6 +1,5 @@
 //! What deserves attention in an identification.
 
-use super::corners::corners;
 use super::recording::Recording;
 use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
 use super::types::Identification;
@@ -34,14 +33,14 @@ fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
 /// A corner alone is a jerk, or chance.
 pub const FEWEST_CORNERS: usize = 4;
 
-/// The warnings of an identification from the splines of extension and force.
+/// The warnings of an identification from the splines of extension and force, and the number of the motion's corners.
 pub fn warnings(
     found: &Identification,
     recording: &Recording,
     signals: &(SignalSpline, SignalSpline),
+    corners: usize,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
-    let corners = corners(&recording.extension).len();
     if corners >= FEWEST_CORNERS {
         warnings.push(format!(
             "the motion has {corners} corners, as where a machine turns at a constant rate: the smooth motion that is fitted goes past them, \

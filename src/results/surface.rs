@@ -84,28 +84,38 @@ impl Surface {
     /// The same of a field that is shown: within a cell it is nowhere beyond what its nodes have, as parabolas through stresses would be, so that
     /// what is said of its ends is in the arrays too.
     pub fn field(mesh: &Mesh, at_node: &dyn Fn(usize) -> f64) -> Vec<f64> {
-        let mut values = Self::values(mesh, at_node);
-        let Some(division) = Division::of(mesh) else {
-            return values;
-        };
-        let mut rest = &mut values[..];
-        for cell in 0..mesh.cell_count() {
-            let count = division.part(mesh.shape(cell)).locals.len();
-            let (own, after) = rest.split_at_mut(count);
-            let [low, high] = extremes(mesh.cell(cell).iter().map(|node| at_node(*node)));
-            own.iter_mut()
-                .for_each(|value| *value = value.max(low).min(high));
-            rest = after;
-        }
-        values
+        Self::sampled(mesh, at_node, |nodal| extremes(nodal.iter().copied()))
     }
 
     /// The values of a field at the points from those at the nodes of the mesh that the surface was made of.
     pub fn values(mesh: &Mesh, at_node: &dyn Fn(usize) -> f64) -> Vec<f64> {
-        match Division::of(mesh) {
-            Some(division) => division.sampled(mesh, at_node),
-            None => (0..mesh.nodes.len()).map(at_node).collect(),
+        Self::sampled(mesh, at_node, |_| [f64::NEG_INFINITY, f64::INFINITY])
+    }
+
+    /// The values at the points within the limits that the values at the nodes of a cell set; what has no number there has none.
+    fn sampled(
+        mesh: &Mesh,
+        at_node: &dyn Fn(usize) -> f64,
+        limits: impl Fn(&[f64]) -> [f64; 2],
+    ) -> Vec<f64> {
+        let Some(division) = Division::of(mesh) else {
+            return (0..mesh.nodes.len()).map(at_node).collect();
+        };
+        let mut sampled = Vec::new();
+        for cell in 0..mesh.cell_count() {
+            let nodal: Vec<f64> = mesh.cell(cell).iter().map(|node| at_node(*node)).collect();
+            let [low, high] = limits(&nodal);
+            for values in &division.part(mesh.shape(cell)).values {
+                let value: f64 = values.iter().zip(&nodal).map(|(n, value)| n * value).sum();
+                let is_number = !value.is_nan();
+                sampled.push(if is_number {
+                    value.max(low).min(high)
+                } else {
+                    value
+                });
+            }
         }
+        sampled
     }
 }
 
@@ -149,18 +159,6 @@ impl Division {
     fn part(&self, shape: CellShape) -> &Part {
         let part = self.0.iter().find(|part| part.shape == shape);
         part.expect("every kind of cell is divided")
-    }
-
-    /// A nodal field at the points of cell after cell.
-    fn sampled(&self, mesh: &Mesh, at_node: &dyn Fn(usize) -> f64) -> Vec<f64> {
-        let mut sampled = Vec::new();
-        for cell in 0..mesh.cell_count() {
-            let nodal: Vec<f64> = mesh.cell(cell).iter().map(|node| at_node(*node)).collect();
-            for values in &self.part(mesh.shape(cell)).values {
-                sampled.push(values.iter().zip(&nodal).map(|(n, value)| n * value).sum());
-            }
-        }
-        sampled
     }
 }
 
@@ -260,6 +258,10 @@ mod tests {
             let peak = |node: usize| f64::from(u8::from(node == 5));
             let [low, high] = extremes(Surface::field(&mesh, &peak));
             assert_eq!([low, high], [0.0, 1.0], "{name}");
+            // What is inside out has no stress, and is drawn as such.
+            let hole = |node: usize| if node == 5 { f64::NAN } else { 1.0 };
+            let shown = Surface::field(&mesh, &hole);
+            assert!(shown.iter().any(|value| value.is_nan()), "{name}");
         }
     }
 
