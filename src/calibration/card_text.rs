@@ -2,9 +2,9 @@
 
 use std::fmt::{Display, Write};
 
+use super::data::TestData;
 use super::fit::Fit;
 use super::softened::Softened;
-use super::test_data::TestData;
 use crate::document::Statements;
 use crate::document::quoted;
 use crate::material::Softening;

@@ -13,18 +13,13 @@
 //! # References
 //! G. H. Golub, V. Pereyra, Inverse Problems 19, R1 (2003), doi:10.1088/0266-5611/19/2/201
 
-use super::assessment::Assessment;
+use super::data::{Observation, Test, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
-use super::misfit::Misfit;
-use super::quality::Quality;
-use super::refined_zero::{self, Found};
-use super::reweighed::settled;
-use super::search::Search;
+use super::regression::refined_zero::Found;
+use super::regression::{Misfit, Search, refined_zero, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;
-use super::test_data::{Observation, Test, TestData};
-use super::uneven_noise::noise_warnings;
-use super::warnings::warnings;
+use super::trust::{Assessment, Quality, noise_warnings, warnings};
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::material::marlow::{Marlow, TableCurve};
@@ -45,7 +40,7 @@ pub struct Fit {
     pub choices: Vec<(&'static str, String)>,
     /// The points (λ − 1, nominal stress in MPa) of a law that takes the curve as it is.
     pub curve: Vec<[f64; 2]>,
-    pub(super) stress_measure: StressMeasure,
+    pub(in crate::calibration) stress_measure: StressMeasure,
     /// The settings.
     pub settings: FitSettings,
     /// How far the fit can be trusted.
@@ -281,7 +276,7 @@ fn size(parameter: &Parameter, stiffness: f64) -> f64 {
 }
 
 /// Tests of one fit have one stress measure.
-pub(super) fn check_measures(tests: &[TestData]) -> Result<(), Error> {
+pub fn check_measures(tests: &[TestData]) -> Result<(), Error> {
     let Some(first) = tests.first() else {
         return Err(Error::input("there are no tests", "give one at least"));
     };

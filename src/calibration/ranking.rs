@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::data::TestData;
 use super::fit::{Fit, fit};
 use super::settings::{FitSettings, MEASURE};
-use super::test_data::TestData;
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};

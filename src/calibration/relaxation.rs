@@ -7,24 +7,32 @@
 
 use std::fmt::Write;
 
-use super::cycles::Branches;
+use super::data::{Branches, TestData, Times};
 use super::fit::{Fit, Relaxed, check_measures, fit};
-use super::history::History;
-use super::judged::{AT_BOUND, Judged, Values, at_bound};
 use super::least_squares::Residuals;
-use super::prony::{Found, ViscousMisfit};
-use super::quality::{Deviations, Quality, aicc, rounded};
-use super::reweighed::{Reweighed, settled};
+use super::regression::{Reweighed, settled};
 use super::settings::{FitSettings, MEASURE, limits};
-use super::terms::{SHARES, TIMES, Terms, parameters, transformed};
-use super::test_data::{TestData, Times};
-use super::warnings::{taken_zeros, warnings};
+use super::trust::{
+    AT_BOUND, Deviations, Judged, Quality, Values, aicc, at_bound, rounded, taken_zeros, warnings,
+};
 use crate::error::Error;
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::viscosity::Covered;
 use crate::statistics::{Estimate, extremes};
 use nalgebra::DMatrix;
+
+mod history;
+mod prony;
+mod terms;
+#[cfg(test)]
+mod tests;
+
+pub use terms::Terms;
+
+use history::History;
+use prony::{Found, ViscousMisfit};
+use terms::{SHARES, TIMES, parameters, transformed};
 
 /// Fits a law with a Prony series to some tests together.
 ///

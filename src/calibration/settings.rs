@@ -1,6 +1,6 @@
 //! How a law is fitted: weights, bounds, starts.
 
-use super::test_data::{Observation, TestData};
+use super::data::{Observation, TestData};
 use crate::document::{Bound, name_of};
 use crate::error::{Error, suggestion};
 use crate::material::parameters::{Parameter, StrainMeasure};
@@ -40,12 +40,12 @@ impl Weighting {
     }
 
     /// The weight of an observation by its own stress.
-    pub(super) fn weight(self, data: &TestData, observation: &Observation) -> f64 {
+    pub(in crate::calibration) fn weight(self, data: &TestData, observation: &Observation) -> f64 {
         self.weight_of(data, observation.stress)
     }
 
     /// The weight of a stress in MPa, measured or fitted.
-    pub(super) fn weight_of(self, data: &TestData, stress: f64) -> f64 {
+    pub(in crate::calibration) fn weight_of(self, data: &TestData, stress: f64) -> f64 {
         match self {
             Self::Absolute => 1.0,
             Self::Relative => {
@@ -84,10 +84,10 @@ impl Default for FitSettings {
 pub const SMALLEST_SHARE: f64 = 0.01;
 
 /// The strain measure that laws of a curve take in a fit.
-pub(super) const MEASURE: StrainMeasure = StrainMeasure::Nominal;
+pub const MEASURE: StrainMeasure = StrainMeasure::Nominal;
 
 /// Lower and upper limit of each parameter; `scale` is a stress that the data speak of.
-pub(super) fn limits(
+pub fn limits(
     law: &Law,
     parameters: &[Parameter],
     bounds: &Bounds,

@@ -1,7 +1,6 @@
 //! The softening of a fit: its parameters, and the cycles of the tests with what each of them dissipates.
 
-use super::cycles::Branches;
-use super::test_data::{Observation, Test, TestData};
+use super::data::{Branches, Observation, Test, TestData};
 use crate::material::{HyperelasticLaw, Softening};
 
 /// The softening of a fit.

@@ -7,20 +7,27 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::data::{Observation, TestData};
 use super::fit::{Fit, check_measures, fit};
-use super::judged::{AT_BOUND, Judged, Values, at_bound};
 use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
-use super::quality::{Deviations, Quality, aicc, rounded};
-use super::reweighed::settled;
+use super::regression::settled;
 use super::settings::{FitSettings, Weighting, limits};
 use super::softened::{Softened, cycles};
-use super::softening_misfit::{Base, SOFTENING, SofteningMisfit, softening_parameters};
-use super::test_data::{Observation, TestData};
-use super::warnings::{taken_zeros, warnings};
+use super::trust::{
+    AT_BOUND, Deviations, Judged, Quality, Values, aicc, at_bound, rounded, taken_zeros, warnings,
+};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::{Card, HyperelasticLaw, SoftenedLaw};
+
+mod misfit;
+#[cfg(test)]
+mod tests;
+
+pub use misfit::Base;
+
+use misfit::{SOFTENING, SofteningMisfit, softening_parameters};
 
 /// Fits a law that softens to some tests together.
 ///

@@ -9,6 +9,11 @@ use crate::material::curve::Mode;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::registry::{CARDS, DATA, Law};
 
+mod quality;
+mod uncertainty;
+mod verdict;
+mod weighting;
+
 fn data(names: &[&str]) -> Vec<TestData> {
     let read = |name: &&str| {
         let path = Path::new("materials/data").join(format!("{name}.csv"));

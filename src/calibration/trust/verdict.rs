@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::misfit::Rows;
+use crate::calibration::regression::Rows;
 use crate::statistics::{Curve, CurveNoise, CurveResiduals, DurbinWatson, extremes, f_tail};
 
 /// What the residuals are.
@@ -101,7 +101,7 @@ fn percent(probability: f64) -> String {
 const DOUBTED: f64 = 0.01;
 
 /// What a fit leaves, in the order of its curves.
-pub(super) struct LeftOver<'a> {
+pub struct LeftOver<'a> {
     /// The rows along each curve.
     pub curves: Vec<Rows>,
     /// Derivatives of the residuals by the parameters that no bound holds.

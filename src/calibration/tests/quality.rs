@@ -2,11 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit::{Fit, fit};
-use super::quality::StableRange;
-use super::search::differs;
-use super::settings::{FitSettings, Weighting};
-use super::test_data::TestData;
+use crate::calibration::regression::differs;
+use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::curve::Mode;
 use crate::material::registry::Law;

@@ -1,11 +1,11 @@
 //! How far a law that was fitted can be trusted.
 
 use super::judged::{Judged, Values, at_bound};
-use super::least_squares::{LEAST_SIZE, Residuals};
-use super::misfit::Misfit;
 use super::quality::{Deviations, Quality, aicc, rounded};
-use super::settings::Weighting;
-use super::test_data::{Observation, TestData};
+use crate::calibration::data::{Observation, TestData};
+use crate::calibration::least_squares::{LEAST_SIZE, Residuals};
+use crate::calibration::regression::Misfit;
+use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 
 /// What is assessed: a law with its values and the tests that it was fitted to.

@@ -1,16 +1,12 @@
 //! What a user must know before using a fit.
 
 use super::quality::{Quality, StableRange, knows_sign};
-use super::test_data::TestData;
+use crate::calibration::data::TestData;
 use crate::material::curve::Mode;
 use crate::material::parameters::Parameter;
 
 /// The warnings of a fit; `other` are the parameters of another minimum that is nearly as good.
-pub(super) fn warnings(
-    quality: &Quality,
-    parameters: &[Parameter],
-    other: Option<&[f64]>,
-) -> Vec<String> {
+pub fn warnings(quality: &Quality, parameters: &[Parameter], other: Option<&[f64]>) -> Vec<String> {
     let away = (quality.nmad_percent > 20.0).then(|| {
         let percent = quality.nmad_percent;
         format!("the law does not follow the data: they are {percent:.0} % apart in the mean")
@@ -31,7 +27,7 @@ pub(super) fn warnings(
 }
 
 /// Zeros that were found in the records and are taken as known.
-pub(super) fn taken_zeros(tests: &[TestData]) -> Option<String> {
+pub fn taken_zeros(tests: &[TestData]) -> Option<String> {
     let found = tests.iter().filter(|test| test.found_zero.is_some());
     let names: Vec<&str> = found.map(|test| &*test.name).collect();
     (!names.is_empty()).then(|| {

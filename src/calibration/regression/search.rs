@@ -5,8 +5,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::least_squares::{Precision, minimise, sum_of_squares};
 use super::misfit::Misfit;
+use crate::calibration::least_squares::{Precision, minimise, sum_of_squares};
 use crate::material::parameters::Parameter;
 
 /// Points above this number are thinned while starts are compared; the last improvement uses all of them.

@@ -1,8 +1,8 @@
 //! Noise that grows with the stress, and specimens that differ: what intervals of even noise do not hold.
 
 use super::quality::Quality;
-use super::settings::Weighting;
-use super::test_data::{Observation, TestData};
+use crate::calibration::data::{Observation, TestData};
+use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::statistics::rank_correlation;
 
@@ -13,7 +13,7 @@ const CLEARLY: f64 = 3.29;
 const FEWEST: usize = 10;
 
 /// The warnings of a fit whose residuals are noise; none of others.
-pub(super) fn noise_warnings(
+pub fn noise_warnings(
     quality: &Quality,
     law: &dyn HyperelasticLaw,
     tests: &[TestData],

@@ -4,7 +4,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::*;
+use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::registry::Law;

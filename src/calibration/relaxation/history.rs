@@ -8,7 +8,7 @@
 //! each part S∞ changes evenly, where the recursion of [`ViscousMaterial::recursions`] is exact: it is the one by which
 //! motions are computed. Edges that are free stay free: where the law has no stress, nothing relaxes.
 
-use super::test_data::{Observation, TestData, Times};
+use crate::calibration::data::{Observation, TestData, Times};
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
 use crate::material::viscosity::ViscousMaterial;

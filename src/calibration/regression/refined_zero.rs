@@ -5,10 +5,10 @@
 //! value of the fit, r(p, δ) = σᵢ − σ(p; λᵢ + δ) or σᵢ + δ − σ(p; λᵢ), and its uncertainty is part of the intervals. Where what
 //! is left then is no noise, the law would take its own misfit for a zero: the zero stays.
 
-use super::least_squares::{Precision, minimise};
 use super::misfit::{Misfit, Zero};
 use super::reweighed::settled;
-use super::test_data::{FoundZero, TestData};
+use crate::calibration::data::{FoundZero, TestData};
+use crate::calibration::least_squares::{Precision, minimise};
 use crate::statistics::Estimate;
 
 /// Zeros are moved by less than this share of the largest strain or stress.
@@ -25,7 +25,7 @@ pub struct MovedZero {
 
 impl MovedZero {
     /// Of a value's estimate.
-    pub(super) fn new(zero: Zero, value: &Estimate) -> Self {
+    pub(in crate::calibration) fn new(zero: Zero, value: &Estimate) -> Self {
         let by = Estimate {
             value: zero.by(value.value),
             standard_error: zero.scale * value.standard_error,
@@ -83,10 +83,10 @@ pub fn with_zeros(tests: &[TestData], zeros: &[MovedZero]) -> Vec<TestData> {
 }
 
 /// Whether what values within their bounds leave is noise.
-pub(super) type IsNoise<'a> = dyn Fn(&Misfit, &[f64], &[[f64; 2]]) -> bool + 'a;
+pub type IsNoise<'a> = dyn Fn(&Misfit, &[f64], &[[f64; 2]]) -> bool + 'a;
 
 /// Values with their bounds, and the residuals that they leave.
-pub(super) struct Found<'a> {
+pub struct Found<'a> {
     pub misfit: Misfit<'a>,
     pub values: Vec<f64>,
     pub bounds: Vec<[f64; 2]>,

@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::{self, LEAST_SIZE, Residuals};
-use super::misfit::Rows;
 use super::quality::{Deviations, Quality, stable_ranges, stretch_range, untested};
-use super::test_data::TestData;
 use super::verdict::{LeftOver, Verdict};
+use crate::calibration::data::TestData;
+use crate::calibration::least_squares::{self, LEAST_SIZE, Residuals};
+use crate::calibration::regression::Rows;
 use crate::material::HyperelasticLaw;
 use crate::statistics::{CurveNoise, Estimate};
 

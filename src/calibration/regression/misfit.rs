@@ -2,16 +2,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::{self, Residuals};
 use super::reweighed::Reweighed;
-use super::settings::{MEASURE, Weighting};
-use super::test_data::{FoundZero, Observation, TestData};
+use crate::calibration::data::{FoundZero, Observation, TestData};
+use crate::calibration::least_squares::{self, Residuals};
+use crate::calibration::settings::{MEASURE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::CardEntries;
 use crate::material::registry::Law;
 
 /// Rows of the residuals along a curve, with the strain that they are drawn over.
-pub(super) type Rows = Vec<(usize, f64)>;
+pub type Rows = Vec<(usize, f64)>;
 
 /// The residuals of a law at some observations, or at means of many neighbouring ones.
 pub struct Misfit<'a> {
@@ -27,7 +27,7 @@ pub struct Misfit<'a> {
 
 /// The zero of a test that is found with the law: its value, behind those of the law, is 1 + by/scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Zero {
+pub struct Zero {
     pub test: usize,
     /// The largest strain, or stress in MPa.
     pub scale: f64,

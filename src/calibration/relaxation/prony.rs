@@ -11,11 +11,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::history::History;
-use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
-use super::misfit::Rows;
-use super::reweighed::Reweighed;
-use super::settings::{MEASURE, Weighting};
-use super::test_data::TestData;
+use crate::calibration::data::TestData;
+use crate::calibration::least_squares::{Precision, Residuals, minimise, sum_of_squares};
+use crate::calibration::regression::{Reweighed, Rows};
+use crate::calibration::settings::{MEASURE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::Parameter;
 use crate::material::registry::Law;

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use super::least_squares::Residuals;
-use super::misfit::Rows;
-use super::reweighed::Reweighed;
-use super::settings::{MEASURE, Weighting};
-use super::test_data::{Observation, TestData};
+use crate::calibration::data::{Observation, TestData};
+use crate::calibration::least_squares::Residuals;
+use crate::calibration::regression::{Reweighed, Rows};
+use crate::calibration::settings::{MEASURE, Weighting};
 use crate::document::Bound;
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::Law;

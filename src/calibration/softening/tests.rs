@@ -6,6 +6,7 @@ use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
 
 use super::*;
+use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::registry::Law;
 use crate::material::{Card, HyperelasticLaw, NeoHooke, Softening};

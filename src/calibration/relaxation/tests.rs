@@ -6,8 +6,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::history::History;
 use super::*;
+use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::Card;
 use crate::material::registry::Law;

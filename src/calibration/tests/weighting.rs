@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
-use super::*;
+use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};

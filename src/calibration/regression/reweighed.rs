@@ -13,7 +13,7 @@
 //! # References
 //! R. W. M. Wedderburn, Biometrika 61, 439 (1974), doi:10.1093/biomet/61.3.439
 
-use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
+use crate::calibration::least_squares::{Precision, Residuals, minimise, sum_of_squares};
 
 /// Residuals whose weights may be those of fitted stresses.
 pub trait Reweighed: Residuals + Sized {

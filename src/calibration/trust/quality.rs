@@ -2,18 +2,17 @@
 
 use nalgebra::DMatrix;
 
-use super::misfit::Zero;
-use super::refined_zero::MovedZero;
-use super::settings::{SMALLEST_SHARE, Weighting};
-use super::test_data::{Observation, Test, TestData};
 use super::verdict::Verdict;
+use crate::calibration::data::{Observation, Test, TestData};
+use crate::calibration::regression::{MovedZero, Zero};
+use crate::calibration::settings::{SMALLEST_SHARE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::statistics::{CurveNoise, Estimate};
 
 /// Whether the interval of an estimate does not hold zero.
-pub(super) fn knows_sign(estimate: &Estimate) -> bool {
+pub fn knows_sign(estimate: &Estimate) -> bool {
     let [low, high] = estimate.interval;
     if estimate.value > 0.0 {
         low >= 0.0
@@ -74,7 +73,7 @@ pub struct Quality {
     /// Whether a bound holds it, for each parameter.
     pub at_bound: Vec<bool>,
     /// Whether a value is not estimated at all, for each parameter and zero.
-    pub(super) fixed: Vec<bool>,
+    pub(in crate::calibration) fixed: Vec<bool>,
     /// Zeros of the tests that were found again with the law.
     pub zeros: Vec<MovedZero>,
     /// Correlation of the parameters.
@@ -99,7 +98,7 @@ impl Quality {
     }
 
     /// With the last estimates as those of zeros.
-    pub(super) fn with_zeros(mut self, zeros: &[Zero]) -> Self {
+    pub(in crate::calibration) fn with_zeros(mut self, zeros: &[Zero]) -> Self {
         let parameters = self.estimates.len() - zeros.len();
         let own = self.estimates.drain(parameters..);
         let pairs = zeros.iter().zip(own);
@@ -141,11 +140,7 @@ impl Quality {
 
 /// The mean squares of weighted residuals that rounding of the stresses leaves, or that no test could tell from nothing, and
 /// that rounding of strains and stresses leaves.
-pub(super) fn rounded(
-    tests: &[TestData],
-    law: &dyn HyperelasticLaw,
-    weighting: Weighting,
-) -> [f64; 2] {
+pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighting) -> [f64; 2] {
     const NOTHING: f64 = 1e-6;
     let (mut sums, mut count) = ([0.0; 2], 0);
     for test in tests {
@@ -175,7 +170,7 @@ pub(super) fn rounded(
 }
 
 /// The stretches within which a law is stable in the usual tests.
-pub(super) fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<StableRange> {
+pub fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<StableRange> {
     let range = |(_, mode): (&str, Mode)| {
         let own = || tests.iter().filter(|data| is_of(data, mode));
         StableRange {
@@ -191,7 +186,7 @@ pub(super) fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Ve
 }
 
 /// nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1); infinite where there are too few points.
-pub(super) fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
+pub fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
     let left = effective - k - 1.0;
     match left > 0.0 {
         true => effective * (sum / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / left,
@@ -200,7 +195,7 @@ pub(super) fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
 }
 
 /// The stretches between which the data of some tests lie.
-pub(super) fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
+pub fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
     tests
         .map(TestData::stretch_range)
         .fold([1.0, 1.0], |all, one| {
@@ -210,7 +205,7 @@ pub(super) fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f
 
 /// Sums over all observations.
 #[derive(Default)]
-pub(super) struct Deviations {
+pub struct Deviations {
     pub squares: f64,
     pub weighted: f64,
     absolute: f64,
@@ -259,7 +254,7 @@ impl Deviations {
 }
 
 /// The usual tests that no data cover.
-pub(super) fn untested(tests: &[TestData]) -> Vec<Mode> {
+pub fn untested(tests: &[TestData]) -> Vec<Mode> {
     let modes = Mode::ALL.into_iter().map(|(_, mode)| mode);
     let untested = modes.filter(|mode| !tests.iter().any(|data| is_of(data, *mode)));
     untested.collect()

@@ -11,7 +11,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::linear;
+use crate::calibration::least_squares::linear;
 use crate::statistics::{inverse, median};
 
 /// The beginning of a branch ends at this share of its largest stress.

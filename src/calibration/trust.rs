@@ -1,0 +1,15 @@
+//! How far a fit can be trusted: intervals, what the residuals say, warnings.
+
+mod assessment;
+mod judged;
+mod quality;
+mod uneven_noise;
+mod verdict;
+mod warnings;
+
+pub use assessment::Assessment;
+pub use judged::{AT_BOUND, Judged, Values, at_bound};
+pub use quality::{Deviations, Quality, StableRange, aicc, rounded};
+pub use uneven_noise::noise_warnings;
+pub use verdict::{Answer, Verdict};
+pub use warnings::{taken_zeros, warnings};
