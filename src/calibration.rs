@@ -2,7 +2,7 @@
 //! be trusted.
 //!
 //! ```text
-//! table ─reading─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
+//! table ─data─▶ TestData ─regression─▶ parameters ─trust─▶ Quality ─▶ Fit: card, picture, JSON
 //! ```
 
 mod card_text;

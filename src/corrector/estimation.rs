@@ -26,59 +26,36 @@
 use crate::error::{Diagnostic, Error};
 use crate::markers::Marker;
 
-mod approach;
-mod bodies;
-mod body_force;
-mod edge_displacements;
-mod edge_motion;
+mod edges;
 mod equations;
-mod field_estimate;
 mod forces;
 mod free_edges;
-mod freedoms;
+mod given;
 mod joint;
 mod judge;
-mod knowledge;
-mod linear_model;
-mod linearise;
-mod marker_rows;
-mod mesh_error;
-mod moved_edges;
 mod noise;
-mod observations;
-mod outline;
-mod picture_scale;
-mod regressed_law;
+mod outcome;
 mod regression;
 mod result;
-mod robust;
-mod rows;
 mod search;
-mod smoothed_away;
-mod start;
-mod task;
 mod transfer;
-mod unknown_places;
-mod verdict;
-mod whiteness;
+mod uncertainty;
 
-pub use field_estimate::{
-    Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, MarkerEstimate, Smoothing,
-    StressEstimate, TRADE, TRADE_WEIGHTED, VariogramBin, Whiteness,
+pub use given::{
+    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Specimen, Unnamed,
 };
 pub use joint::{
     Direction, ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame,
     JointSettings, Told, VAGUE, check_joint_frames, estimate_jointly,
 };
-pub use knowledge::{
-    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
+pub use outcome::{
+    Answer, Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, Freedom,
+    MarkerEstimate, Mend, NoiseCorrelation, Reason, Smoothing, StressEstimate, TRADE,
+    TRADE_WEIGHTED, VariogramBin, Verdict, Whiteness, Worst,
 };
-pub use mesh_error::MOST_REFINED_CELLS;
-pub use picture_scale::ScaleChange;
-pub use regressed_law::RegressedLaw;
-pub use robust::Robust;
+pub use regression::Robust;
 pub use transfer::transfer;
-pub use verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst};
+pub use uncertainty::{MOST_REFINED_CELLS, ScaleChange};
 
 /// Estimates the field from the markers of one frame.
 ///
@@ -111,16 +88,16 @@ fn estimate_with(
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
     let input = |fault: Diagnostic| Error::Input(vec![fault]);
-    let outline = outline::parts(specimen.mesh, &knowledge.edges).map_err(input)?;
+    let outline = given::parts(specimen.mesh, &knowledge.edges).map_err(input)?;
     knowledge.check().map_err(input)?;
-    let observations = observations::Observations::new(specimen.mesh, markers, knowledge.noise);
+    let observations = given::Observations::new(specimen.mesh, markers, knowledge.noise);
     let mut observations = observations.map_err(input)?;
     let edges: Vec<_> = outline
         .iter()
-        .map(|segment| task::Edge::new(segment, knowledge))
+        .map(|segment| given::Edge::new(segment, knowledge))
         .collect();
-    let search = |observations: &observations::Observations| {
-        let task = task::Task {
+    let search = |observations: &given::Observations| {
+        let task = given::Task {
             specimen,
             observations,
             knowledge,
@@ -136,8 +113,8 @@ fn estimate_with(
 
 /// The estimate; where the noise is another one than was taken, that alone.
 fn result_of(
-    task: &task::Task,
-    edges: Vec<task::Edge>,
+    task: &given::Task,
+    edges: Vec<given::Edge>,
 ) -> Result<(FieldEstimate, noise::OtherNoise), Error> {
     let (mut found, edges) = free_edges::search(task, edges)?;
     let markers = found.markers();

@@ -4,20 +4,22 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::approach::approach;
-use super::bodies::{Body, bodies};
-use super::body_force::BodyForce;
-use super::edge_motion::EdgeMotion;
-use super::knowledge::{Physics, Specimen};
-use super::regression::Roughness;
-use super::robust::Robust;
-use super::start::{DEGREE, Polynomial};
-use super::task::{Edge, Task, singular_corners};
+use super::edges::{Body, EdgeMotion, bodies};
+use super::given::{DEGREE, Edge, Physics, Polynomial, Specimen, Task, singular_corners};
+use super::regression::{Robust, Roughness};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::vector::largest;
 use crate::solve::{Assembly, Inadmissible, Newton, NewtonSettings, Potential, Sum};
+
+mod approach;
+mod body_force;
+mod linearise;
+
+pub use approach::approach;
+pub use body_force::{BodyForce, nodal_areas};
+pub use linearise::{Grip, Linear, dot};
 
 /// How equilibria on the way and at the end are solved.
 pub const ON_THE_WAY: NewtonSettings = NewtonSettings {

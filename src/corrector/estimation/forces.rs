@@ -1,12 +1,11 @@
 //! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
 
-use super::bodies::Body;
-use super::field_estimate::{EdgeForce, ForceCheck, FoundParameter};
-use super::linearise::{Grip, dot};
-use super::mesh_error::MeshError;
-use super::picture_scale::ScaleChange;
+use super::edges::Body;
+use super::equations::{Grip, dot};
+use super::given::Edge;
+use super::outcome::{EdgeForce, ForceCheck, FoundParameter};
 use super::search::NearestField;
-use super::task::Edge;
+use super::uncertainty::{MeshError, ScaleChange};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics};

@@ -1,11 +1,10 @@
 //! Which of the edges without a stated condition are free, as the data decide.
 
 use super::equations::Equations;
-use super::field_estimate::EdgeForce;
-use super::knowledge::EdgeCondition;
+use super::given::{Edge, EdgeCondition, Task, singular_corners};
+use super::outcome::EdgeForce;
 use super::regression::weighted_square;
 use super::search::{MOST_STEPS, NearestField};
-use super::task::{Edge, Task, singular_corners};
 use crate::error::Error;
 use crate::statistics::f_tail;
 

@@ -28,7 +28,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::regressed_law::RegressedLaw;
+use super::given::RegressedLaw;
 use crate::error::{Diagnostic, Error};
 use crate::statistics::{normal_reach, student_reach};
 use descent::{Course, Descent};

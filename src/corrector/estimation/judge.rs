@@ -5,17 +5,22 @@
 //! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
 
 use super::equations::Equations;
-use super::field_estimate::{Contradiction, ForceCheck};
-use super::knowledge::EdgeCondition;
-use super::linear_model::{Model, Reference};
-use super::mesh_error::MeshError;
-use super::moved_edges::MovedEdge;
-use super::rows::{Rows, soundness};
+use super::given::{Edge, EdgeCondition, Task};
+use super::outcome::{
+    Answer, Contradiction, ForceCheck, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst,
+};
 use super::search::{NearestField, Scored};
-use super::task::{Edge, Task};
-use super::verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst};
+use super::uncertainty::{MeshError, MovedEdge};
 use crate::error::Error;
 use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
+
+mod freedoms;
+mod linear_model;
+mod rows;
+mod whiteness;
+
+pub use linear_model::{Model, Reference};
+pub use rows::{Rows, soundness};
 
 /// Probability by noise below which a freedom speaks against the equations. Nine are tried, and smoothness is chosen by the data.
 const LEVEL: f64 = 1e-5;

@@ -8,13 +8,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::field_estimate::MarkerEstimate;
+use super::given::{Edge, Observations};
 use super::judge::Judgement;
-use super::marker_rows::MarkerRows;
-use super::observations::Observations;
-use super::regression::Trade;
+use super::outcome::MarkerEstimate;
+use super::regression::{MarkerRows, Trade};
 use super::search::NearestField;
-use super::task::Edge;
 use crate::error::Error;
 use crate::statistics::{Sites, Unevenness, extremes, robust_deviation};
 

@@ -4,15 +4,15 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
 use super::equations::{Equations, Neighbours, solve};
-use super::field_estimate::{
-    EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE, TRADE_WEIGHTED,
-};
+use super::given::Edge;
 use super::judge::Judgement;
-use super::mesh_error::MeshError;
-use super::robust::Robust;
+use super::outcome::{
+    Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE,
+    TRADE_WEIGHTED,
+};
+use super::regression::Robust;
 use super::search::NearestField;
-use super::task::Edge;
-use super::verdict::Answer;
+use super::uncertainty::MeshError;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::Recovery;
 use crate::material::sheet::{Gradient, Kinematics};

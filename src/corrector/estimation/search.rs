@@ -1,8 +1,9 @@
 //! The search for the equilibrium nearest to the data.
 
-use super::equations::{AT_THE_END, Equations, ON_THE_WAY, Place, solve};
-use super::linearise::Linear;
-use super::observations::Observations;
+use nalgebra::DMatrix;
+
+use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, Place, solve};
+use super::given::Observations;
 use super::regression::{Fit, Regression, Trade, Undetermined};
 use crate::error::{Error, SolveFault};
 use crate::solve::vector::largest;
@@ -270,6 +271,21 @@ impl NearestField<'_> {
     /// The markers.
     pub fn observations(&self) -> &Observations {
         self.equations.task.observations
+    }
+
+    /// The displacements of the markers that small residual forces make, a column for each of several.
+    pub fn marker_changes(&mut self, forces: &[Vec<f64>]) -> Result<DMatrix<f64>, Error> {
+        let tangent = &mut self.equations.newton.tangent;
+        let changes = tangent.changes(forces).map_err(solve)?;
+        let interpolation = &self.observations().interpolation;
+        let values = changes
+            .iter()
+            .flat_map(|change| interpolation.multiply(change));
+        Ok(DMatrix::from_iterator(
+            interpolation.len(),
+            changes.len(),
+            values,
+        ))
     }
 
     /// √(s C sᵀ) of a row s of sensitivities.

@@ -11,15 +11,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::approach::approach;
-use super::bodies::{Body, bodies};
-use super::equations::solve;
-use super::field_estimate::{
-    EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate,
-};
-use super::knowledge::{EdgeCondition, Knowledge, Specimen};
-use super::outline::{Segment, parts};
-use super::task::Edge;
+use super::edges::{Body, bodies};
+use super::equations::{approach, solve};
+use super::given::{Edge, EdgeCondition, Knowledge, Segment, Specimen, parts};
+use super::outcome::{EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate};
 use crate::error::{Error, SolveFault};
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::Mesh;

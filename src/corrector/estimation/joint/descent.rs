@@ -5,11 +5,11 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::super::equations::solve;
-use super::super::regressed_law::RegressedLaw;
 use super::direction::{Direction, LOOSE, VAGUE, directions, inverse};
 use super::found::{Step, Told};
 use super::frame::{Judged, State};
+use crate::corrector::estimation::equations::solve;
+use crate::corrector::estimation::given::RegressedLaw;
 use crate::error::{Error, SolveFault};
 
 /// Steps allowed.

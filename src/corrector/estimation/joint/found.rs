@@ -2,9 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::super::knowledge::{Knowledge, MeasuredForce};
-use super::super::regressed_law::RegressedLaw;
 use super::direction::Direction;
+use crate::corrector::estimation::given::{Knowledge, MeasuredForce, RegressedLaw};
 use crate::markers::Marker;
 use crate::material::parameters::Parameter;
 use crate::mesh::Mesh;

@@ -4,22 +4,18 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::equations::{Equations, Place};
-use super::super::free_edges;
-use super::super::knowledge::{Knowledge, MeasuredForce, Specimen};
-use super::super::linear_model::Model;
-use super::super::marker_rows::MarkerRows;
-use super::super::mesh_error::MeshDifference;
-use super::super::noise::with_own_noise;
-use super::super::observations::Observations;
-use super::super::outline::{self, Segment};
-use super::super::regressed_law::RegressedLaw;
-use super::super::regression::Trade;
-use super::super::rows::{Rows, soundness};
-use super::super::search::{MOST_STEPS, NearestField, TRADING};
-use super::super::task::{Edge, Task};
 use super::found::{JointFrame, Step};
 use super::reduced::{Order, Ordered, Reduced};
+use crate::corrector::estimation::equations::{Equations, Place};
+use crate::corrector::estimation::free_edges;
+use crate::corrector::estimation::given::{
+    Edge, Knowledge, MeasuredForce, Observations, RegressedLaw, Segment, Specimen, Task, parts,
+};
+use crate::corrector::estimation::judge::{Model, Rows, soundness};
+use crate::corrector::estimation::noise::with_own_noise;
+use crate::corrector::estimation::regression::{MarkerRows, Trade};
+use crate::corrector::estimation::search::{MOST_STEPS, NearestField, TRADING};
+use crate::corrector::estimation::uncertainty::MeshDifference;
 use crate::error::{Diagnostic, Error};
 use crate::statistics::{CorrelatedNoise, Sites};
 
@@ -95,13 +91,13 @@ struct AboutField {
 
 impl<'a> Ground<'a> {
     /// # Errors
-    /// As [`super::super::estimate`].
+    /// As [`crate::corrector::estimation::estimate`].
     pub fn new(frame: &'a JointFrame<'a>) -> Result<Self, Error> {
         let input = |fault: Diagnostic| Error::Input(vec![fault]);
         let knowledge = &frame.knowledge;
         knowledge.check().map_err(input)?;
         Ok(Self {
-            outline: outline::parts(frame.mesh, &knowledge.edges).map_err(input)?,
+            outline: parts(frame.mesh, &knowledge.edges).map_err(input)?,
             observations: Observations::new(frame.mesh, frame.markers, knowledge.noise)
                 .map_err(input)?,
             frame,

@@ -3,10 +3,10 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::super::knowledge::MeasuredForce;
 use super::descent::{Course, Descent};
 use super::found::{ForcePrediction, FrameOutcome, JointSettings, Told};
 use super::frame::Say;
+use crate::corrector::estimation::given::MeasuredForce;
 use crate::error::Error;
 
 /// The forces of a frame, and what is left of its markers in mm.

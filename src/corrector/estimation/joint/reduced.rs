@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::equations::solve;
-use super::super::regression::NormalEquations;
 use super::found::Step;
+use crate::corrector::estimation::equations::solve;
+use crate::corrector::estimation::regression::NormalEquations;
 use crate::error::{Error, SolveFault};
 use crate::statistics::inverse;
 

@@ -4,10 +4,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::super::EdgeCondition;
-use super::super::tests::with_grips;
-use super::super::{Knowledge, MeasuredForce};
 use super::*;
+use crate::corrector::estimation::EdgeCondition;
+use crate::corrector::estimation::tests::with_grips;
+use crate::corrector::estimation::{Knowledge, MeasuredForce};
 use crate::markers::Marker;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::super::*;
 use super::truth::{SIZE, solved, specimen};
+use crate::corrector::estimation::*;
 use crate::mesh::{CellShape, Mesh};
 
 /// How the pad moves in mm.

@@ -6,7 +6,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::super::{EdgeCondition, Knowledge, Specimen};
+use crate::corrector::estimation::{EdgeCondition, Knowledge, Specimen};
 use crate::markers::Marker;
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{CellShape, Mesh};

@@ -8,11 +8,10 @@
 
 use nalgebra::DMatrix;
 
-use super::body_force::nodal_areas;
-use super::equations::solve;
-use super::mesh_error::MeshError;
-use super::search::NearestField;
-use super::verdict::Freedom;
+use crate::corrector::estimation::equations::nodal_areas;
+use crate::corrector::estimation::outcome::Freedom;
+use crate::corrector::estimation::search::NearestField;
+use crate::corrector::estimation::uncertainty::MeshError;
 use crate::error::Error;
 use crate::material::sheet::{Gradient, Kinematics, cofactor};
 use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
@@ -49,21 +48,6 @@ impl NearestField<'_> {
     pub(super) fn granted(&self) -> Vec<DMatrix<f64>> {
         let stated = self.equations.task.knowledge.scale_deviation > 0.0;
         stated.then(|| self.magnification()).into_iter().collect()
-    }
-
-    /// The displacements of the markers that small residual forces make, a column for each of several.
-    pub(super) fn marker_changes(&mut self, forces: &[Vec<f64>]) -> Result<DMatrix<f64>, Error> {
-        let tangent = &mut self.equations.newton.tangent;
-        let changes = tangent.changes(forces).map_err(solve)?;
-        let interpolation = &self.observations().interpolation;
-        let values = changes
-            .iter()
-            .flat_map(|change| interpolation.multiply(change));
-        Ok(DMatrix::from_iterator(
-            interpolation.len(),
-            changes.len(),
-            values,
-        ))
     }
 
     /// Forces along x and along y with smooth densities.

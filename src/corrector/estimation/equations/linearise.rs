@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::body_force::BodyForce;
-use super::equations::{Equations, Place, solve};
-use super::knowledge::MeasuredForce;
+use crate::corrector::estimation::equations::{Equations, Place, solve};
+use crate::corrector::estimation::given::MeasuredForce;
 use crate::error::Error;
 use crate::problem::corner_forces::Share;
 use crate::solve::Assembly;
@@ -23,7 +23,10 @@ pub struct Linear {
 
 impl Equations<'_> {
     /// The equations and the observations about a place.
-    pub(super) fn linearise(&mut self, place: &Place) -> Result<Linear, Error> {
+    pub(in crate::corrector::estimation) fn linearise(
+        &mut self,
+        place: &Place,
+    ) -> Result<Linear, Error> {
         let (mesh, field) = (self.task.specimen.mesh, &place.field);
         let describe = |cell: usize| mesh.describe_cell(cell);
         let residual =

@@ -5,9 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::DMatrix;
 
 use super::edge_displacements::{Combination, EdgeDisplacements};
-use super::knowledge::EdgeCondition;
-use super::outline::Segment;
-use super::regression::Roughness;
+use crate::corrector::estimation::given::{EdgeCondition, Segment};
+use crate::corrector::estimation::regression::Roughness;
 use crate::mesh::Mesh;
 use crate::statistics::{BSpline, Ends};
 

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::freedoms::Column;
-use super::mesh_error::MeshError;
 use super::rows::Rows;
-use super::search::{NearestField, Scored};
-use super::verdict::{Freedom, Mend};
+use crate::corrector::estimation::outcome::{Freedom, Mend};
+use crate::corrector::estimation::search::{NearestField, Scored};
+use crate::corrector::estimation::uncertainty::MeshError;
 use crate::statistics::{
     CorrelatedNoise, CorrelatedRegression, WhiteRegression, Whitening, f_tail,
 };

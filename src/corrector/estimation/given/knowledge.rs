@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::regressed_law::RegressedLaw;
-use super::robust::Robust;
+use crate::corrector::estimation::regression::Robust;
 use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
@@ -123,7 +123,7 @@ pub enum EdgeCondition {
 
 impl Knowledge {
     /// The measured forces that the field knows.
-    pub(super) fn facts(&self) -> &[MeasuredForce] {
+    pub(in crate::corrector::estimation) fn facts(&self) -> &[MeasuredForce] {
         match self.forces_are_checks {
             true => &[],
             false => &self.forces,
@@ -131,7 +131,7 @@ impl Knowledge {
     }
 
     /// Looks at the measured forces and the noise.
-    pub(super) fn check(&self) -> Result<(), Diagnostic> {
+    pub(in crate::corrector::estimation) fn check(&self) -> Result<(), Diagnostic> {
         let refuse = |fault: String, hint: &str| Err(Diagnostic::error("", fault).hint(hint));
         for force in &self.forces {
             let (edge, value, deviation) = (&force.edge, force.force, force.standard_deviation);

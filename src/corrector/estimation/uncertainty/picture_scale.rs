@@ -12,9 +12,8 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::equations::Equations;
-use super::linearise::dot;
-use super::search::NearestField;
+use crate::corrector::estimation::equations::{Equations, dot};
+use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
 
 /// What an error of the scale changes, per relative error.
@@ -41,13 +40,13 @@ impl Equations<'_> {
 
 impl NearestField<'_> {
     /// q as a column.
-    pub(super) fn magnification(&self) -> DMatrix<f64> {
+    pub(in crate::corrector::estimation) fn magnification(&self) -> DMatrix<f64> {
         let column = self.equations.magnified(&self.field);
         DMatrix::from_vec(column.len(), 1, column)
     }
 
     /// ∂p/∂e; before the covariance takes the noise found, as it has to be M⁻¹.
-    pub(super) fn scale_answer(&self) -> DVector<f64> {
+    pub(in crate::corrector::estimation) fn scale_answer(&self) -> DVector<f64> {
         let column = self.equations.magnified(&self.field);
         let target = self
             .equations
@@ -56,7 +55,10 @@ impl NearestField<'_> {
     }
 
     /// What follows from ∂p/∂e.
-    pub(super) fn scale_change(&self, answer: &DVector<f64>) -> Result<ScaleChange, Error> {
+    pub(in crate::corrector::estimation) fn scale_change(
+        &self,
+        answer: &DVector<f64>,
+    ) -> Result<ScaleChange, Error> {
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |body: usize, axis: usize| -> Result<f64, Error> {
             let (_, row) = self.grip_of((body, axis), &slopes)?;
@@ -70,7 +72,7 @@ impl NearestField<'_> {
     }
 
     /// Adds the variance of the scale.
-    pub(super) fn take_scale(&mut self, answer: &DVector<f64>) {
+    pub(in crate::corrector::estimation) fn take_scale(&mut self, answer: &DVector<f64>) {
         let deviation = self.equations.task.knowledge.scale_deviation;
         self.fit.covariance += answer * answer.transpose() * (deviation * deviation);
     }
@@ -78,8 +80,8 @@ impl NearestField<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{SIZE, Truth, specimen, with_grips};
-    use super::super::{
+    use crate::corrector::estimation::tests::{SIZE, Truth, specimen, with_grips};
+    use crate::corrector::estimation::{
         Answer, EdgeCondition, FieldEstimate, Freedom, Knowledge, MeasuredForce, estimate,
     };
     use crate::markers::Marker;

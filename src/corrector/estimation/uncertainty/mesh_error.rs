@@ -16,13 +16,11 @@ use std::collections::BTreeSet;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::bodies::Body;
-use super::equations::Equations;
-use super::knowledge::EdgeCondition;
-use super::linearise::{Linear, dot};
-use super::regression::Trade;
-use super::search::NearestField;
-use super::task::Edge;
+use crate::corrector::estimation::edges::Body;
+use crate::corrector::estimation::equations::{BodyForce, Equations, Linear, dot};
+use crate::corrector::estimation::given::{Edge, EdgeCondition};
+use crate::corrector::estimation::regression::Trade;
+use crate::corrector::estimation::search::NearestField;
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
 use crate::problem::sheet_energy::SheetEnergy;
@@ -178,8 +176,7 @@ impl NearestField<'_> {
         let thickness = self.equations.task.specimen.thickness;
         let energy = SheetEnergy::of_mesh(self.equations.law.clone(), &fine, thickness);
         let forces = match &self.equations.body {
-            Some(_) => super::body_force::BodyForce::new(&fine, &fixed)
-                .forces(self.body_coefficients(), fixed.len()),
+            Some(_) => BodyForce::new(&fine, &fixed).forces(self.body_coefficients(), fixed.len()),
             None => vec![0.0; fixed.len()],
         };
         let pushed = Sum::with_forces(&energy, &forces);

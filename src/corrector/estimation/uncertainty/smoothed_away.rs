@@ -14,15 +14,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::regression::Form;
-use super::search::NearestField;
+use crate::corrector::estimation::regression::Form;
+use crate::corrector::estimation::search::NearestField;
 
 /// ε.
 const EASED: f64 = 0.03;
 
 impl NearestField<'_> {
     /// Σ dⱼ dⱼᵀ at the nearest field, whose covariance is M⁻¹.
-    pub(super) fn smoothed_away(&self) -> DMatrix<f64> {
+    pub(in crate::corrector::estimation) fn smoothed_away(&self) -> DMatrix<f64> {
         let size = self.parameters.len();
         let priors = self.equations.priors(&self.parameters);
         let eased = priors.iter().map(Form::new).zip(&self.trade.smoothing);

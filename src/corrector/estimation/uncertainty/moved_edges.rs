@@ -9,8 +9,8 @@
 
 use nalgebra::DMatrix;
 
-use super::search::NearestField;
-use super::task::Edge;
+use crate::corrector::estimation::given::Edge;
+use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
 use crate::material::sheet::{Gradient, Kinematics};
 
@@ -19,7 +19,10 @@ pub type MovedEdge = (Option<String>, DMatrix<f64>);
 
 impl NearestField<'_> {
     /// Each of the free edges moved alone, and all of them together where there are several.
-    pub(super) fn moved_edges(&mut self, edges: &[Edge]) -> Result<Vec<MovedEdge>, Error> {
+    pub(in crate::corrector::estimation) fn moved_edges(
+        &mut self,
+        edges: &[Edge],
+    ) -> Result<Vec<MovedEdge>, Error> {
         let free = edges.iter().filter(|edge| edge.has_strip());
         let mut names: Vec<_> = free.map(|edge| Some(edge.segment.name.clone())).collect();
         let mut strips = self.strips(edges);
@@ -37,7 +40,7 @@ impl NearestField<'_> {
     }
 
     /// The forces in N/mm of a strip along each of the free edges.
-    pub(super) fn strips(&self, edges: &[Edge]) -> Vec<Vec<f64>> {
+    pub(in crate::corrector::estimation) fn strips(&self, edges: &[Edge]) -> Vec<Vec<f64>> {
         let free = edges.iter().filter(|edge| edge.has_strip());
         free.map(|edge| self.strip(&edge.segment.nodes)).collect()
     }
@@ -80,8 +83,8 @@ impl NearestField<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{SIZE, Truth, specimen, with_grips};
-    use super::super::{Answer, EdgeCondition, Freedom, estimate};
+    use crate::corrector::estimation::tests::{SIZE, Truth, specimen, with_grips};
+    use crate::corrector::estimation::{Answer, EdgeCondition, Freedom, estimate};
     use crate::markers::Marker;
     use crate::mesh::{CellShape, Outline};
 

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::mesh_error::MeshError;
-use super::regression::{Fit, Trade, squares};
-use super::search::NearestField;
+use crate::corrector::estimation::regression::{Fit, Trade, squares};
+use crate::corrector::estimation::search::NearestField;
+use crate::corrector::estimation::uncertainty::MeshError;
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
 /// Fewer markers tell nothing of each other.

@@ -16,10 +16,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::equations::solve;
-use super::linearise::dot;
-use super::search::NearestField;
-use super::task::Edge;
+use crate::corrector::estimation::equations::{dot, solve};
+use crate::corrector::estimation::given::Edge;
+use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
 use crate::problem::corner_forces::Share;
 
@@ -35,7 +34,7 @@ pub struct UnknownPlaces {
 
 impl NearestField<'_> {
     /// The free edges whose place is not known; before the covariance takes the noise found, as it has to be M⁻¹.
-    pub(super) fn unknown_places(
+    pub(in crate::corrector::estimation) fn unknown_places(
         &mut self,
         edges: &[Edge],
     ) -> Result<Option<UnknownPlaces>, Error> {
@@ -84,7 +83,7 @@ impl NearestField<'_> {
     }
 
     /// Makes the distances parameters of the field, behind the others.
-    pub(super) fn consider(&mut self, places: UnknownPlaces) {
+    pub(in crate::corrector::estimation) fn consider(&mut self, places: UnknownPlaces) {
         let UnknownPlaces {
             changes,
             answers,
@@ -108,8 +107,8 @@ impl NearestField<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{SIZE, Truth, law, specimen, with_grips};
-    use super::super::{Answer, EdgeCondition, FieldEstimate, Knowledge, estimate};
+    use crate::corrector::estimation::tests::{SIZE, Truth, law, specimen, with_grips};
+    use crate::corrector::estimation::{Answer, EdgeCondition, FieldEstimate, Knowledge, estimate};
     use crate::markers::Marker;
     use crate::material::sheet::{Gradient, Kinematics};
     use crate::mesh::{CellShape, Mesh, Outline};

@@ -1,7 +1,6 @@
 //! Bodies that hold the sheet: all sides of one name move and pull as one, and share the reactions of the nodes where they meet.
 
-use super::knowledge::EdgeCondition;
-use super::outline::Segment;
+use crate::corrector::estimation::given::{EdgeCondition, Segment};
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares, shared_rests};
 
@@ -117,11 +116,11 @@ fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> 
 mod corner_tests;
 #[cfg(test)]
 mod tests {
-    use super::super::edge_motion::EdgeMotion;
+    use crate::corrector::estimation::edges::edge_motion::EdgeMotion;
     use std::collections::BTreeSet;
 
-    use super::super::outline::segments;
     use super::*;
+    use crate::corrector::estimation::given::segments;
     use crate::mesh::CellShape;
 
     #[test]

@@ -3,9 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::super::knowledge::EdgeCondition;
-use super::super::outline::segments;
 use super::bodies;
+use crate::corrector::estimation::given::{EdgeCondition, segments};
 use crate::material::Card;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::{CellShape, Grid, Mesh};

@@ -1,7 +1,7 @@
 //! Edges under all conditions.
 
-use super::super::outline::segments;
 use super::*;
+use crate::corrector::estimation::given::segments;
 use crate::mesh::CellShape;
 
 fn motion(conditions: [EdgeCondition; 4]) -> (Mesh, EdgeMotion) {

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::regression::Trade;
+use super::penalised::Trade;
 use crate::statistics::{CorrelatedNoise, Sites, Whitening};
 
 /// The derivatives of the markers, two rows each, with their weights.

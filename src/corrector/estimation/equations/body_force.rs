@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use super::regression::Roughness;
+use crate::corrector::estimation::regression::Roughness;
 use crate::mesh::Mesh;
 use crate::statistics::{BSpline, Ends};
 

@@ -4,10 +4,10 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::knowledge::{EdgeCondition, MeasuredForce};
-use super::picture_scale::ScaleChange;
-use super::robust::Robust;
 use super::verdict::{Answer, Verdict};
+use crate::corrector::estimation::given::{EdgeCondition, MeasuredForce};
+use crate::corrector::estimation::regression::Robust;
+use crate::corrector::estimation::uncertainty::ScaleChange;
 use crate::mesh::Mesh;
 use crate::statistics::Estimate;
 

@@ -14,11 +14,11 @@
 //! P. A. P. Moran, Biometrika 37, 17 (1950), doi:10.1093/biomet/37.1-2.17;
 //! A. D. Cliff, J. K. Ord, Spatial Processes (1981), chapter 8 (residuals of a regression)
 
-use super::field_estimate::{VariogramBin, Whiteness};
-use super::marker_rows::MarkerRows;
-use super::mesh_error::MeshError;
 use super::rows::Rows;
-use super::search::NearestField;
+use crate::corrector::estimation::outcome::{VariogramBin, Whiteness};
+use crate::corrector::estimation::regression::MarkerRows;
+use crate::corrector::estimation::search::NearestField;
+use crate::corrector::estimation::uncertainty::MeshError;
 use crate::statistics::{Sites, nearest};
 
 /// Neighbours of a marker.

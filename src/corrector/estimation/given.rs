@@ -1,0 +1,19 @@
+//! What an estimate begins with: the specimen and its outline, the markers on it, what is known besides, and where to start.
+
+mod knowledge;
+mod observations;
+mod outline;
+mod regressed_law;
+mod start;
+mod task;
+
+pub use knowledge::{
+    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
+};
+pub use observations::Observations;
+#[cfg(test)]
+pub use outline::segments;
+pub use outline::{Segment, parts};
+pub use regressed_law::RegressedLaw;
+pub use start::{DEGREE, Polynomial};
+pub use task::{Edge, Task, singular_corners};

@@ -1,0 +1,297 @@
+//! Linear least squares with penalties on roughness, each weighted as the data decide.
+//!
+//! ```text
+//! data        r = A δ + noise,   variance v/wᵢ                                     n rows
+//! facts       g = G δ + noise,   variance 1                                        such as measured forces
+//! priors      ρⱼ + Bⱼ δ,         variance 1/λⱼ                                     rank qⱼ each
+//!
+//! M = AᵀWA/v + GᵀG + Σ λⱼ BⱼᵀBⱼ,   M δ = AᵀWr/v + Gᵀg − Σ λⱼ Bⱼᵀρⱼ,   Cov(δ) = M⁻¹
+//! λⱼ ← (qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ)) / ‖ρⱼ + Bⱼδ‖²
+//! v  ← Σ w r²/(n − tr(M⁻¹AᵀWA)/v)
+//! ```
+//!
+//! The λⱼ maximise the restricted likelihood, found by the fixed point of Fellner and Schall; one whose data know
+//! nothing of roughness grows without bound, and what it holds down becomes as smooth as it can be. M⁻¹ is the covariance given
+//! the data, the bias of the smoothing included, so that its intervals cover (Nychka).
+//!
+//! # References
+//! S. N. Wood, M. Fasiolo, Biometrics 73, 1071 (2017), doi:10.1111/biom.12666;
+//! D. Nychka, J. Am. Stat. Assoc. 83, 1134 (1988), doi:10.1080/01621459.1988.10478711
+
+use nalgebra::{DMatrix, DVector};
+
+use super::robust::Robust;
+use crate::statistics::inverse;
+
+/// The curvature of the displacement of one edge along one axis: Σ r² = ∫ (d²u/dt²)² dt with t = 0…1 along the edge.
+#[derive(Clone, Debug)]
+pub struct Roughness {
+    /// The edge.
+    pub edge: String,
+    /// The axis.
+    pub axis: usize,
+    /// The values r in mm.
+    pub values: Vec<f64>,
+    /// ∂r/∂p.
+    pub slopes: DMatrix<f64>,
+    /// Rank of the form.
+    pub rank: usize,
+}
+
+/// What is fitted.
+pub struct Regression<'a> {
+    /// A, two rows a marker.
+    pub design: &'a DMatrix<f64>,
+    /// r in mm.
+    pub residual: &'a DVector<f64>,
+    /// Weights of the markers; 1/variance in 1/mm² where the noise is known.
+    pub weights: &'a [f64],
+    /// Whether the noise is known: v is 1.
+    pub known_noise: bool,
+    /// G and g.
+    pub facts: (&'a DMatrix<f64>, &'a DVector<f64>),
+    /// The priors.
+    pub priors: &'a [Roughness],
+    /// How markers that are far off are weighted.
+    pub robust: Robust,
+    /// Whether the trade stays as it is.
+    pub settled: bool,
+}
+
+/// What goes on from one linearisation to the next.
+#[derive(Clone, Debug)]
+pub struct Trade {
+    /// λ of each prior; empty before the first fit.
+    pub smoothing: Vec<f64>,
+    /// Factor in 0…1 of each marker's weight.
+    pub trust: Vec<f64>,
+    /// v.
+    pub variance: f64,
+    /// Variance of the noise of sound markers at weight 1: v where all are trusted.
+    pub sound: f64,
+}
+
+impl Trade {
+    /// What a row of the markers, of which each has two, weighs with the trust in its marker.
+    pub fn weight(&self, weights: &[f64], row: usize) -> f64 {
+        weights[row] * self.trust[row / 2]
+    }
+}
+
+/// A fit.
+pub struct Fit {
+    /// δ.
+    pub step: DVector<f64>,
+    /// M⁻¹.
+    pub covariance: DMatrix<f64>,
+    /// r − A δ in mm.
+    pub residual: DVector<f64>,
+    /// √(δᵀ M δ): the length of the step in standard errors.
+    pub length: f64,
+    /// GᵀG + Σ λⱼ BⱼᵀBⱼ: M but for the data.
+    pub held: DMatrix<f64>,
+    /// tr(M⁻¹AᵀWA)/v, the effective number of parameters.
+    pub effective: f64,
+    /// qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ) of each prior: what is left of its freedom.
+    pub freedom: Vec<f64>,
+}
+
+/// The equations of a step at a trade that stays.
+pub struct NormalEquations {
+    /// M.
+    pub matrix: DMatrix<f64>,
+    /// Mδ.
+    pub target: DVector<f64>,
+    /// r'Wr/v + Σ λ ρ'ρ before the step.
+    pub misfit: f64,
+    /// g'g before the step.
+    pub fact_misfit: f64,
+}
+
+/// A system without a unique solution: the data do not determine the parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Undetermined;
+
+const MOST_ITERATIONS: usize = 200;
+
+/// The least pivot of a matrix scaled to a unit diagonal: √1e-13.
+const LEAST_PIVOT: f64 = 3.162_277_660_168_379e-7;
+
+/// Change of the effective number of parameters, and relative change of the variance, at which the fixed point is reached.
+const CLOSE: f64 = 1e-4;
+
+/// λ beyond which a prior counts as exact, relative to what the data weigh.
+const STIFFEST: f64 = 1e7;
+
+impl Regression<'_> {
+    /// Fits, beginning at a trade.
+    ///
+    /// # Errors
+    /// [`Undetermined`].
+    pub fn fit(&self, trade: &mut Trade) -> Result<Fit, Undetermined> {
+        let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
+        let mut normal = self.normal(trade);
+        let scales = self.scales(&normal.0, trade);
+        if trade.smoothing.is_empty() {
+            trade.smoothing.clone_from(&scales);
+        }
+        let mut last: Option<f64> = None;
+        for iteration in 0.. {
+            let fit = self.solve(&normal, &forms, trade)?;
+            if self.settled {
+                return Ok(fit);
+            }
+            let before = trade.variance;
+            let trusted = self.update(&fit, trade, &scales);
+            let settled = last.is_some_and(|last| (fit.effective - last).abs() < CLOSE)
+                && (trade.variance / before - 1.0).abs() < CLOSE
+                && trusted;
+            if settled || iteration == MOST_ITERATIONS {
+                return Ok(fit);
+            }
+            last = Some(fit.effective);
+            if !trusted {
+                normal = self.normal(trade);
+            }
+        }
+        unreachable!("the iterations end")
+    }
+
+    /// AᵀWA and AᵀWr.
+    fn normal(&self, trade: &Trade) -> (DMatrix<f64>, DVector<f64>) {
+        let mut weighted = self.design.clone();
+        let weights = DVector::from_fn(weighted.nrows(), |row, _| trade.weight(self.weights, row));
+        for mut column in weighted.column_iter_mut() {
+            column.component_mul_assign(&weights);
+        }
+        let weighted = weighted.transpose();
+        (&weighted * self.design, weighted * self.residual)
+    }
+
+    /// λ at which each prior weighs as much as the data.
+    fn scales(&self, normal: &DMatrix<f64>, trade: &Trade) -> Vec<f64> {
+        let data = normal.trace() / trade.variance;
+        let rough = |prior: &Roughness| prior.slopes.norm_squared().max(f64::MIN_POSITIVE);
+        let priors = self.priors.iter();
+        priors.map(|prior| data / rough(prior)).collect()
+    }
+
+    /// M and Mδ at a trade that stays, and the misfit at δ = 0.
+    pub fn equations(&self, trade: &Trade) -> NormalEquations {
+        let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
+        let (matrix, target, _) = self.system(&self.normal(trade), &forms, trade);
+        let data = weighted_square(self.residual, self.weights, &trade.trust);
+        let rough = self.priors.iter().zip(&trade.smoothing);
+        let rough = rough.map(|(prior, smoothing)| {
+            let square: f64 = prior.values.iter().map(|value| value * value).sum();
+            smoothing * square
+        });
+        NormalEquations {
+            matrix,
+            target,
+            misfit: data / trade.variance + rough.sum::<f64>(),
+            fact_misfit: self.facts.1.norm_squared(),
+        }
+    }
+
+    /// M, Mδ, and M but for the data.
+    fn system(
+        &self,
+        (normal, right): &(DMatrix<f64>, DVector<f64>),
+        forms: &[Form],
+        trade: &Trade,
+    ) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
+        let (facts, values) = self.facts;
+        let mut held = facts.tr_mul(facts);
+        let mut target = right / trade.variance + facts.tr_mul(values);
+        for (form, smoothing) in forms.iter().zip(&trade.smoothing) {
+            held += &form.square * *smoothing;
+            target -= &form.slope * *smoothing;
+        }
+        (normal / trade.variance + &held, target, held)
+    }
+
+    fn solve(
+        &self,
+        normal: &(DMatrix<f64>, DVector<f64>),
+        forms: &[Form],
+        trade: &Trade,
+    ) -> Result<Fit, Undetermined> {
+        let (matrix, target, held) = self.system(normal, forms, trade);
+        let (normal, _) = normal;
+        let covariance = inverse(&matrix, LEAST_PIVOT).ok_or(Undetermined)?;
+        let step = &covariance * &target;
+        let left = |(form, smoothing): (&Form, &f64)| {
+            (form.rank - smoothing * form.square.dot(&covariance)).max(0.0)
+        };
+        let priors = forms.iter().zip(&trade.smoothing);
+        Ok(Fit {
+            residual: self.residual - self.design * &step,
+            effective: normal.dot(&covariance) / trade.variance,
+            freedom: priors.map(left).collect(),
+            length: step.dot(&target).max(0.0).sqrt(),
+            covariance,
+            held,
+            step,
+        })
+    }
+
+    /// New λ, v and trust; whether the trust stayed.
+    fn update(&self, fit: &Fit, trade: &mut Trade, scales: &[f64]) -> bool {
+        for (index, prior) in self.priors.iter().enumerate() {
+            let values = DVector::from_column_slice(&prior.values);
+            let rough = (values + &prior.slopes * &fit.step).norm_squared();
+            let most = STIFFEST * scales[index];
+            let next = fit.freedom[index] / rough.max(f64::MIN_POSITIVE);
+            trade.smoothing[index] = next.clamp(scales[index] / STIFFEST, most);
+        }
+        let distances = self.distances(fit);
+        let noise = self
+            .robust
+            .noise(&distances, fit.effective, self.known_noise);
+        (trade.variance, trade.sound) = (noise.variance, noise.sound);
+        let change = noise.trust.iter().zip(&trade.trust);
+        let changed = change.fold(0.0, |most: f64, (new, old)| most.max((new - old).abs()));
+        trade.trust = noise.trust;
+        changed < 1e-3
+    }
+
+    /// √(wx rx² + wy ry²) of each marker.
+    fn distances(&self, fit: &Fit) -> Vec<f64> {
+        let squares = squares(&fit.residual, self.weights);
+        squares.map(f64::sqrt).collect()
+    }
+}
+
+/// wx rx² + wy ry² of each marker.
+pub fn squares(residual: &DVector<f64>, weights: &[f64]) -> impl Iterator<Item = f64> {
+    let markers = residual.as_slice().chunks_exact(2);
+    let pairs = markers.zip(weights.chunks_exact(2));
+    pairs.map(|(r, w)| w[0] * r[0] * r[0] + w[1] * r[1] * r[1])
+}
+
+/// Σ ω (wx rx² + wy ry²) of markers.
+pub fn weighted_square(residual: &DVector<f64>, weights: &[f64], trust: &[f64]) -> f64 {
+    let squares = squares(residual, weights).zip(trust);
+    squares.map(|(square, trust)| trust * square).sum()
+}
+
+/// ‖ρ + Bδ‖² of a prior.
+pub struct Form {
+    /// BᵀB.
+    pub square: DMatrix<f64>,
+    /// Bᵀρ.
+    pub slope: DVector<f64>,
+    rank: f64,
+}
+
+impl Form {
+    pub fn new(prior: &Roughness) -> Self {
+        let transposed = prior.slopes.transpose();
+        Self {
+            square: &transposed * &prior.slopes,
+            slope: transposed * DVector::from_column_slice(&prior.values),
+            rank: prior.rank as f64,
+        }
+    }
+}

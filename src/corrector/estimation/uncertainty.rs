@@ -1,0 +1,11 @@
+//! What makes an estimated field uncertain besides the noise: its mesh, the scale of the picture, edges nobody has seen, smoothness.
+
+mod mesh_error;
+mod moved_edges;
+mod picture_scale;
+mod smoothed_away;
+mod unknown_places;
+
+pub use mesh_error::{MOST_REFINED_CELLS, MeshDifference, MeshError};
+pub use moved_edges::MovedEdge;
+pub use picture_scale::ScaleChange;
