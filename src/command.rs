@@ -276,6 +276,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let identity = identity::of(&format!("{path:?} {budget:?}"));
     let results_folder = ResultFolder::resume(&folder, "run", &[path], &identity)?;
     interrupt::guard(&results_folder);
+    ready.warnings.extend(results_folder.replaces());
     let journal = FolderJournal::open(results_folder);
     ready.warnings.extend(journal.told());
     warn(&ready.warnings);

@@ -195,6 +195,12 @@ impl Dimension {
         }
     }
 
+    /// A quantity of this dimension as a file has it.
+    pub fn one_example(self) -> &'static str {
+        let example = self.example();
+        example.split_once(" or ").map_or(example, |(_, last)| last)
+    }
+
     /// An example of a well-formed quantity, for hints.
     pub fn example(self) -> &'static str {
         match self {
@@ -263,13 +269,17 @@ impl fmt::Display for QuantityFault {
     }
 }
 
+/// The minus sign that is not the hyphen of the keyboard.
+const MINUS: char = '\u{2212}';
+
 /// Reads text such as `"15 cm"` and returns its value in the internal unit of `dimension`.
 ///
 /// # Errors
 /// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension, or the quantity one that
 /// nothing has.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
-    let text = text.trim();
+    // A minus sign as word processors write it.
+    let text = &text.trim().replace(MINUS, "-");
     let split = number_length(text);
     let number: f64 = text[..split]
         .parse()

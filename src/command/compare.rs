@@ -95,6 +95,7 @@ pub fn run(options: Options) -> Outcome {
         let mut results = ResultFolder::open(folder, "compare", &inputs)?;
         let judged = (&*differences, &*doubts);
         interrupt::guard(&results);
+        warn(results.replaces().as_slice());
         warn(&write(&compared, judged, &options.field, &mut results)?);
         tell_files(&results.finish()?);
         print(&format!("report: {}\n", folder.join("report.md").display()))?;

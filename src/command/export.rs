@@ -77,7 +77,7 @@ pub fn run(options: &Options) -> Outcome {
     let usual = || Path::new("output").join(&stem).join(name);
     let target = options.output.clone().unwrap_or_else(usual);
     output::refuse_inputs(&target, &[path])?;
-    output::save(&target, written.text.as_bytes())?;
+    warn(output::save(&target, written.text.as_bytes())?.as_slice());
     for remark in written.remarks {
         warn(&[Diagnostic::warning("", remark)]);
     }

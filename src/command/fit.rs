@@ -226,12 +226,12 @@ impl Written<'_> {
             files: self
                 .data
                 .iter()
-                .map(|path| relative(path, folder))
+                .map(|path| output::relative(path, folder))
                 .collect(),
             reading: self.reading,
             base_card: self.base.map(|card| match shipped(card) {
                 true => card.to_owned(),
-                false => relative(Path::new(card), folder),
+                false => output::relative(Path::new(card), folder),
             }),
         };
         let text = calibration::card_text(self.fit, self.tests, &provenance);
@@ -259,14 +259,6 @@ fn guard(card: &Path, others: &[PathBuf]) -> Result<(), Error> {
         .iter()
         .find(|path| path.exists())
         .map_or(Ok(()), |path| refuse(path))
-}
-
-/// A file as a card in `folder` names it.
-fn relative(path: &Path, folder: &Path) -> String {
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let found = pathdiff::diff_paths(absolute(path), absolute(folder));
-    let found = found.unwrap_or_else(|| path.to_owned());
-    found.to_string_lossy().replace('\\', "/")
 }
 
 fn law(name: &str) -> Result<&'static Law, Error> {
@@ -373,11 +365,12 @@ pub fn convert(arguments: ConvertArguments) -> Outcome {
         unit,
     }
     .table(&data)?;
+    let text = format!("# source: gelbench materials convert\n{text}");
     match arguments.output {
         None => print(&text)?,
         Some(file) => {
             output::refuse_inputs(&file, &[&arguments.data])?;
-            output::save(&file, text.as_bytes())?;
+            warn(output::save(&file, text.as_bytes())?.as_slice());
             print(&format!("{} written\n", file.display()))?;
         }
     }

@@ -120,7 +120,7 @@ pub fn run(options: Options) -> Outcome {
             seed: options.seed,
             ..Sample::default()
         };
-        output::save(&file, sample.csv().as_bytes())?;
+        warn(output::save(&file, sample.csv().as_bytes())?.as_slice());
         print(&format!("{} written\n", file.display()))?;
         return Ok(0);
     }
@@ -159,6 +159,7 @@ pub fn run(options: Options) -> Outcome {
     let folder = options.output.unwrap_or_else(usual);
     let mut results = ResultFolder::open(&folder, &format!("identify {stem}"), &[&path])?;
     interrupt::guard(&results);
+    warn(results.replaces().as_slice());
     let progress = Progress::of(0);
     let found = identify(&recording, settings, &|what| progress.tell(what))?;
     progress.tell("files");

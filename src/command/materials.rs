@@ -6,7 +6,7 @@ use clap::Subcommand;
 
 use super::fit::{ConvertArguments, FitArguments, convert, fit, load, refit, together};
 use super::message;
-use super::terminal::{Outcome, print};
+use super::terminal::{Outcome, print, warn};
 use crate::error::Error;
 use crate::material::registry::{CARDS, LAWS};
 use crate::output;
@@ -140,5 +140,6 @@ fn compare(names: &[String], file: &Path) -> Outcome {
 /// Draws what was asked for and nothing else: a picture that cannot be drawn is a fault here.
 fn save_picture(file: &Path, drawing: &Drawing) -> Result<(), Error> {
     let picture = output::png(drawing).map_err(|fault| Error::write(file, fault))?;
-    output::save(file, &picture).map(drop)
+    warn(output::save(file, &picture)?.as_slice());
+    Ok(())
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Command;
 use clap_complete::Shell;
 
-use super::terminal::{Outcome, print};
+use super::terminal::{Outcome, print, warn};
 use crate::error::Error;
 use crate::output;
 
@@ -33,7 +33,7 @@ fn pages(command: &Command, folder: &Path) -> Result<usize, Error> {
     manual
         .render(&mut page)
         .map_err(|cause| Error::write(&target, cause))?;
-    output::save(&target, &page)?;
+    warn(output::save(&target, &page)?.as_slice());
     let parts = command.get_subcommands();
     let mut parts = parts.filter(|part| part.get_name() != "help");
     parts.try_fold(1, |written, part| Ok(written + pages(part, folder)?))

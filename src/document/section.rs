@@ -1,6 +1,6 @@
 //! One table of a document, read key by key.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -25,6 +25,8 @@ pub struct Section<'a> {
     defaults: Option<&'a DeTable<'a>>,
     faults: &'a Faults,
     known: RefCell<Vec<&'static str>>,
+    /// Whether a choice is unknown to which other keys may belong.
+    undecided: Cell<bool>,
     required: &'static [&'static str],
 }
 
@@ -46,6 +48,7 @@ impl<'a> Section<'a> {
             defaults,
             faults,
             known: RefCell::default(),
+            undecided: Cell::default(),
             required: &[],
         }
     }
@@ -89,6 +92,7 @@ impl<'a> Section<'a> {
             defaults,
             faults: self.faults,
             known: RefCell::default(),
+            undecided: Cell::default(),
             required: &[],
         }
     }
@@ -122,6 +126,7 @@ impl<'a> Section<'a> {
                 defaults: None,
                 faults: self.faults,
                 known: RefCell::default(),
+                undecided: Cell::default(),
                 required: &[],
             })
             .collect()
@@ -189,8 +194,11 @@ impl<'a> Section<'a> {
         self.unknown_keys_with(|_| None);
     }
 
-    /// The same with what is known of an unknown key.
+    /// The same with what is known of an unknown key; nothing where a choice could not be read on which keys may depend.
     pub fn unknown_keys_with(&self, remedy: impl Fn(&str) -> Option<String>) {
+        if self.undecided.get() {
+            return;
+        }
         let known = self.known.borrow();
         for (name, value) in self.table.into_iter().flat_map(|table| table.iter()) {
             let key = name.get_ref().as_ref();

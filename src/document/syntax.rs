@@ -14,6 +14,11 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
             }
         });
     }
+    if let Some(quote) = typographic_quote(text, place.start) {
+        return Some(format!(
+            "{quote} is a quote of word processors: write the straight \" around texts"
+        ));
+    }
     let (key, value) = unquoted(text, place.start)?;
     let comma = value.replacen(',', ".", 1);
     if let Ok(number) = comma.parse::<f64>() {
@@ -24,6 +29,13 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
     let plain = |letter: char| letter.is_alphanumeric() || " .,+-_/%^*²³°·µ±\\".contains(letter);
     let usable = !value.is_empty() && value.chars().all(plain);
     usable.then(|| format!("write texts and quantities with units in quotes: {key}\"{value}\""))
+}
+
+/// A quote in the line that holds a place which TOML does not know.
+fn typographic_quote(text: &str, at: usize) -> Option<char> {
+    let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+    let line = text[start..].lines().next()?;
+    line.chars().find(|letter| "“”„‘’‚«»".contains(*letter))
 }
 
 /// Where to look when the text about a fault does not tell what was meant.

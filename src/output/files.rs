@@ -2,13 +2,13 @@
 
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use rayon::prelude::*;
 
 use super::explorer::Explorer;
-use super::folder::{ResultFolder, refuse_file, refuse_inputs};
+use super::folder::{ResultFolder, free_name, kept, refuse_file, refuse_inputs};
 use super::html::html;
 use super::markdown::markdown_of_files;
 use super::picture::{Drawn, PictureFault, picture, png};
@@ -246,11 +246,12 @@ fn add_document(
 /// Begin of the names of files that do not have their own yet.
 const TEMPORARY: &str = ".gelbench-new-";
 
-/// Writes a file under a temporary name and then gives it its own, so that no half file ever has it.
+/// Writes a file under a temporary name and then gives it its own, so that no half file ever has it. A file of that name that
+/// gelbench has not written is kept under another one, of which the warning tells.
 ///
 /// # Errors
 /// [`Error::Write`] with the path, also where it is a file that the program has read.
-pub fn save(path: &Path, bytes: &[u8]) -> Result<PathBuf, Error> {
+pub fn save(path: &Path, bytes: &[u8]) -> Result<Option<Diagnostic>, Error> {
     refuse_inputs(path, &[])?;
     let fault = |cause: std::io::Error| Error::write(path, cause);
     // A name alone has an empty parent.
@@ -268,8 +269,26 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<PathBuf, Error> {
     let _ = file.as_file().try_lock();
     file.write_all(bytes).map_err(fault)?;
     file.as_file().sync_all().map_err(fault)?;
+    let foreign = is_foreign(path, bytes).then(|| (kept(path), free_name(path)));
+    if let Some((_, other)) = &foreign {
+        std::fs::rename(path, other).map_err(fault)?;
+    }
     file.persist(path).map_err(|cause| fault(cause.error))?;
-    Ok(path.to_owned())
+    Ok(foreign.map(|(told, _)| told))
+}
+
+/// Whether a file is there that gelbench has not written: a text that does not name it, or no picture where one is to be.
+fn is_foreign(path: &Path, new: &[u8]) -> bool {
+    const BEGIN: usize = 2048;
+    const PNG: &[u8] = b"\x89PNG";
+    let Ok(there) = std::fs::read(path) else {
+        return false;
+    };
+    if new.starts_with(PNG) {
+        return !there.starts_with(PNG);
+    }
+    let begin = String::from_utf8_lossy(&there[..there.len().min(BEGIN)]);
+    !there.is_empty() && there != new && !begin.contains("gelbench")
 }
 
 /// Removes temporary files of processes that were killed: those that nobody holds any more after a minute.
@@ -317,7 +336,26 @@ mod tests {
         held.try_lock().unwrap();
         let young = folder.path().join(".gelbench-new-c");
         std::fs::write(&young, "").unwrap();
-        save(&folder.path().join("a.md"), b"1").unwrap();
+        assert!(save(&folder.path().join("a.md"), b"1").unwrap().is_none());
         assert!(!left.exists() && used.exists() && young.exists());
+    }
+
+    #[test]
+    fn a_file_of_somebody_else_is_kept_and_one_of_gelbench_is_replaced() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = folder.path().join("notes.inp");
+        std::fs::write(&path, "mine").unwrap();
+        let told = save(&path, b"** written by gelbench").unwrap().unwrap();
+        assert!(told.message.ends_with("notes.inp.kept"), "{told:?}");
+        assert_eq!(
+            std::fs::read(path.with_extension("inp.kept")).unwrap(),
+            b"mine"
+        );
+        assert!(
+            save(&path, b"** written by gelbench again")
+                .unwrap()
+                .is_none()
+        );
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 }

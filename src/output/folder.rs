@@ -30,8 +30,8 @@ mod manifest;
 mod unfinished;
 
 pub use identity::identity;
-pub use inputs::refuse_inputs;
 use inputs::{places, refuse_input};
+pub use inputs::{refuse_inputs, relative};
 use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
 pub use unfinished::{BrokenOff, Left, Unfinished};
 use unfinished::{PARTS, Stage};
@@ -45,6 +45,8 @@ pub struct ResultFolder {
     inputs: Vec<PathBuf>,
     manifest: Locked,
     before: Manifest,
+    /// The first of the inputs, relative to the folder.
+    source: Option<String>,
     unfinished: Arc<Unfinished>,
     names: Vec<String>,
     /// How many of the names belong to parts of the work that are kept.
@@ -92,8 +94,11 @@ impl ResultFolder {
         if let Some(moving) = before.moving.take_if(|moving| moving.is_sound()) {
             moving.settle(path, &inputs)?;
             moving.forget_stale(&mut before.files);
-            manifest.write(&before.files, None)?;
+            manifest.write(&before)?;
         }
+        let source = inputs
+            .first()
+            .map(|input| relative(input, &whole_path(path)));
         let kept = identity.map(|identity| format!("{PARTIAL}{identity}"));
         sweep(path, kept.as_deref());
         for folder in folders(path, &before) {
@@ -122,6 +127,7 @@ impl ResultFolder {
             inputs,
             manifest,
             before,
+            source,
             unfinished: Arc::new(Unfinished::new(path.to_owned(), partial)),
             names: Vec::new(),
             kept: 0,
@@ -132,6 +138,20 @@ impl ResultFolder {
     /// The folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// A warning where the folder holds what the same command found from another file, which is still there.
+    pub fn replaces(&self) -> Option<Diagnostic> {
+        let source = self.before.sources.get(&self.writer)?;
+        let other = fs::canonicalize(self.path.join(source)).ok()?;
+        (!self.inputs.contains(&other)).then(|| {
+            let message = format!(
+                "{} holds the results of {}: they are replaced",
+                self.path.display(),
+                self.path.join(source).display()
+            );
+            Diagnostic::warning("", message).hint("name another folder for results with --output")
+        })
     }
 
     /// What is not in place yet, for those who must break the run off.
@@ -153,18 +173,27 @@ impl ResultFolder {
 
     /// A warning for each file that is somebody else's and in the way of one that was added since the last time.
     pub fn in_the_way(&mut self) -> Vec<Diagnostic> {
-        let tell = |place: PathBuf| {
-            let message = format!(
-                "{} was there and is not gelbench's: it is kept as {}",
-                place.display(),
-                free_name(&place).display()
-            );
-            Diagnostic::warning("", message).hint("name another folder for results with --output")
-        };
         let new = &self.names[self.looked_at..];
-        let told = foreign(&self.path, new, &self.before).map(tell).collect();
+        let told = foreign(&self.path, new, &self.before).map(|place| kept(&place));
+        let others = self.of_another_command(new);
+        let told = told.chain(others).collect();
         self.looked_at = self.names.len();
         told
+    }
+
+    /// A warning where some files are those that another command has written.
+    fn of_another_command(&self, names: &[String]) -> Option<Diagnostic> {
+        let writer = |name: &String| self.before.files.get(name);
+        let others = names.iter().filter_map(|name| Some((name, writer(name)?)));
+        let others: Vec<_> = others.filter(|(_, by)| **by != self.writer).collect();
+        let (name, by) = others.first()?;
+        let rest = match others.len() {
+            1 => String::new(),
+            count => format!(" and {} more", count - 1),
+        };
+        let place = self.path.join(name);
+        let message = format!("{}{rest} of `gelbench {by}` are replaced", place.display());
+        Some(Diagnostic::warning("", message).hint("name another folder for results with --output"))
     }
 
     /// Notes that a part of the work is done: the files that were added since the part before belong to it, and a later
@@ -222,7 +251,8 @@ impl ResultFolder {
         let new: BTreeMap<String, String> = own.map(|name| (name, self.writer.clone())).collect();
         let in_the_way: BTreeSet<PathBuf> =
             foreign(&self.path, &self.names, &self.before).collect();
-        let mut files = std::mem::take(&mut self.before.files);
+        let mut manifest = std::mem::take(&mut self.before);
+        let files = &mut manifest.files;
         let ours = |(name, writer): (&String, &String)| {
             (*writer == self.writer && !new.contains_key(name)).then(|| name.clone())
         };
@@ -234,6 +264,9 @@ impl ResultFolder {
             return Err(Error::write(self.path.join(lost), cause));
         }
         files.extend(new);
+        if let Some(source) = self.source.take() {
+            manifest.sources.insert(self.writer.clone(), source);
+        }
         let from = partial.file_name().unwrap_or_default().to_string_lossy();
         let moving = Moving {
             from: from.into_owned(),
@@ -245,12 +278,14 @@ impl ResultFolder {
         for place in in_the_way {
             fs::rename(&place, free_name(&place)).map_err(|cause| Error::write(&place, cause))?;
         }
-        self.manifest.write(&files, Some(moving.clone()))?;
+        manifest.moving = Some(moving.clone());
+        self.manifest.write(&manifest)?;
         // From here on the next run could finish it.
         *stage = Stage::InPlace;
         let written = moving.settle(&self.path, &self.inputs)?;
-        moving.forget_stale(&mut files);
-        self.manifest.write(&files, None)?;
+        manifest.moving = None;
+        moving.forget_stale(&mut manifest.files);
+        self.manifest.write(&manifest)?;
         let _ = fs::remove_dir_all(partial);
         Ok(written)
     }
@@ -292,8 +327,18 @@ fn foreign<'a>(
     places.filter(|place| place.is_file())
 }
 
+/// The warning that a file is kept under another name.
+pub fn kept(place: &Path) -> Diagnostic {
+    let message = format!(
+        "{} was there and is not gelbench's: it is kept as {}",
+        place.display(),
+        free_name(place).display()
+    );
+    Diagnostic::warning("", message).hint("name another place for results with --output")
+}
+
 /// A name beside a file's that no file has: `report.md.kept`, `report.md.kept-2` and so on.
-fn free_name(path: &Path) -> PathBuf {
+pub fn free_name(path: &Path) -> PathBuf {
     let name = |number: usize| {
         let mut name = path.as_os_str().to_owned();
         name.push(".kept");
@@ -304,6 +349,11 @@ fn free_name(path: &Path) -> PathBuf {
     };
     let mut names = (1..).map(name);
     names.find(|name| !name.exists()).expect("a free name")
+}
+
+/// The path of a folder without links.
+fn whole_path(folder: &Path) -> PathBuf {
+    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
 /// The folder and those below it that hold files of the run before.

@@ -40,6 +40,7 @@ pub fn correct(
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     let mut results_folder = ResultFolder::resume(folder, "correct", &inputs, &told.identity)?;
     interrupt::guard(&results_folder);
+    warn(results_folder.replaces().as_slice());
     let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();
     let estimates = estimates(field, &mut results_folder, &progress)?;

@@ -58,7 +58,9 @@ impl<'a> Section<'a> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
         self.asks(key, Some(Takes::Choice(names.collect())));
         let name = self.read(key, "text in quotes", text)?;
-        self.named(key, &name, choices)
+        let named = self.named(key, &name, choices);
+        self.undecided.set(self.undecided.get() || named.is_none());
+        named
     }
 
     /// Some of several names, each once; one that is unknown is recorded as a fault.
@@ -151,7 +153,7 @@ impl<'a> Section<'a> {
     /// A quantity with a unit, in the internal unit of `dimension`.
     pub fn quantity(&self, key: &'static str, dimension: Dimension, bound: Bound) -> f64 {
         self.asks(key, Some(Takes::Quantity(dimension, bound)));
-        match self.value_like(key, dimension.example()) {
+        match self.value_like(key, dimension.one_example()) {
             Some(value) => self.quantity_of(key, value, dimension, bound),
             None => f64::NAN,
         }
@@ -273,12 +275,12 @@ impl<'a> Section<'a> {
 
     fn list(&self, key: &'static str, dimension: Dimension, bound: Bound, most: f64) -> Vec<f64> {
         self.asks(key, Some(Takes::Quantities(dimension, bound)));
-        let example = format!("[{}, …]", dimension.example());
+        let example = format!("[{}, …]", dimension.one_example());
         let Some(value) = self.value_like(key, &example) else {
             return Vec::new();
         };
         let DeValue::Array(items) = value.get_ref() else {
-            let hint = format!("write [{}, …]", dimension.example());
+            let hint = format!("write [{}, …]", dimension.one_example());
             self.fault_at(key, value, "must be a list", &hint);
             return vec![f64::NAN];
         };

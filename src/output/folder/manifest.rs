@@ -17,7 +17,7 @@ pub const MANIFEST: &str = ".gelbench-manifest.json";
 pub const PARTIAL: &str = ".gelbench-partial-";
 
 /// What gelbench has written into a folder.
-#[derive(Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Manifest {
     /// The version that wrote it.
     pub gelbench: String,
@@ -25,6 +25,9 @@ pub struct Manifest {
     pub complete: bool,
     /// What wrote each file; files by their names relative to the folder, with `/` between the parts.
     pub files: BTreeMap<String, String>,
+    /// What the results of each command follow from, relative to the folder.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub sources: BTreeMap<String, String>,
     /// What is on its way while the files are not all in place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moving: Option<Moving>,
@@ -121,16 +124,11 @@ impl Locked {
     ///
     /// # Errors
     /// [`Error::Write`] with its path.
-    pub fn write(
-        &mut self,
-        files: &BTreeMap<String, String>,
-        moving: Option<Moving>,
-    ) -> Result<(), Error> {
+    pub fn write(&mut self, manifest: &Manifest) -> Result<(), Error> {
         let manifest = Manifest {
             gelbench: env!("CARGO_PKG_VERSION").to_owned(),
-            complete: moving.is_none(),
-            files: files.clone(),
-            moving,
+            complete: manifest.moving.is_none(),
+            ..manifest.clone()
         };
         let path = self.folder.join(MANIFEST);
         let fault = |cause: std::io::Error| Error::write(&path, cause);

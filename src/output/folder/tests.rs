@@ -184,7 +184,12 @@ fn a_set_that_was_killed_while_it_moved_is_finished_by_the_next_run() {
         stale: vec!["old.md".into()],
     };
     let mut manifest = Locked::open(path).unwrap();
-    manifest.write(&files.into(), Some(moving)).unwrap();
+    let moved = Manifest {
+        files: files.into(),
+        moving: Some(moving),
+        ..Manifest::default()
+    };
+    manifest.write(&moved).unwrap();
     drop(manifest);
     // Whatever becomes of the next run itself.
     drop(ResultFolder::open(path, "compare", &[]).unwrap());
@@ -272,4 +277,30 @@ fn results_that_are_in_place_stay_when_their_run_is_broken_off() {
     results.finish().unwrap();
     assert_eq!(unfinished.break_off().left, Left::Results);
     assert_eq!(names(folder.path()), [MANIFEST, "a.csv"]);
+}
+
+#[test]
+fn results_of_another_study_and_files_of_another_command_are_told_before_they_are_replaced() {
+    let folder = TempDir::new().unwrap();
+    let [path, a, b] = ["out", "a.toml", "b.toml"].map(|name| folder.path().join(name));
+    fs::write(&a, "a").unwrap();
+    fs::write(&b, "b").unwrap();
+    let open = |input: &Path, writer: &str| ResultFolder::open(&path, writer, &[input]).unwrap();
+    let told = |input: &Path, writer: &str| open(input, writer).replaces().map(|told| told.message);
+    assert_eq!(told(&a, "run"), None);
+    run(&path, &[&a], &[("report.md", "1")]).unwrap();
+    assert_eq!(told(&a, "run"), None);
+    assert!(told(&b, "run").unwrap().contains("a.toml"));
+    assert_eq!(told(&b, "sweep"), None);
+    let mut sweep = open(&a, "sweep");
+    sweep.add("report.md", b"2").unwrap();
+    let others = sweep.in_the_way();
+    assert!(
+        others[0].message.contains("of `gelbench run`"),
+        "{others:?}"
+    );
+    drop(sweep);
+    // A study that has got another name is the same one.
+    fs::rename(&a, folder.path().join("c.toml")).unwrap();
+    assert_eq!(told(&b, "run"), None);
 }

@@ -18,6 +18,7 @@ use crate::material::card::read_viscosity;
 use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
+use crate::results::number;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
 use crate::units::Dimension;
@@ -110,6 +111,9 @@ fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T)
     }
 }
 
+/// Densities in t/mm³ that soft materials have.
+const LIKELY_DENSITY: std::ops::RangeInclusive<f64> = 1e-10..=1e-8;
+
 fn read_material(section: &Section, folder: &Path) -> Material {
     let card = sections::read_card(section, folder);
     let own_density = card.as_ref().and_then(|card| card.density);
@@ -117,6 +121,17 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         Some(density) if !section.has("density") => density,
         _ => section.quantity("density", Dimension::Density, Bound::Positive),
     };
+    if !LIKELY_DENSITY.contains(&density) && density.is_finite() {
+        let message = format!(
+            "{} kg/m³ is no density of tissue, gels or rubbers, which is 100 to 10000 kg/m³",
+            number(1e12 * density)
+        );
+        section.warning(
+            "density",
+            &message,
+            "look at the unit: water has \"1000 kg/m^3\" or \"1 g/cm^3\"",
+        );
+    }
     let viscosity = match (section.has("viscosity"), &card) {
         (true, _) => read_viscosity(&section.section("viscosity")),
         (false, Some(card)) => card.viscosity.clone(),

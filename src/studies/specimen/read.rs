@@ -170,6 +170,9 @@ fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
     }
 }
 
+/// Load factors above this one are more likely percentages.
+const LARGE_FACTOR: f64 = 5.0;
+
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
     let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
@@ -186,6 +189,16 @@ fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
         let message = "must be one or more ascending load factors";
         let hint = "such as [0.5, 1.0]; only a card with `[softening]` remembers how it was loaded";
         path.fault("factors", message, hint);
+    }
+    if let Some(large) = factors.iter().find(|factor| **factor > LARGE_FACTOR) {
+        let message = format!(
+            "{large} means {} % of the loads and motions that are stated",
+            100.0 * large
+        );
+        let hint = format!(
+            "write \"{large} %\" if percent are meant; the loads themselves say how large they are"
+        );
+        path.warning("factors", &message, &hint);
     }
     factors
 }

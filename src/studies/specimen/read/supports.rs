@@ -17,6 +17,8 @@ struct Entry<'a, T> {
 pub struct SupportsAndLoads<'a> {
     supports: Vec<Entry<'a, Support>>,
     loads: Vec<Entry<'a, Load>>,
+    /// Whether all entries could be read.
+    whole: bool,
 }
 
 impl<'a> SupportsAndLoads<'a> {
@@ -27,9 +29,12 @@ impl<'a> SupportsAndLoads<'a> {
                         example, once for each group that is held";
             root.fault("support", "is missing: nothing holds the specimen", hint);
         }
+        let (supports, all_supports) = entries(root, "support", read_support);
+        let (loads, all_loads) = entries(root, "load", read_load);
         Self {
-            supports: entries(root, "support", read_support),
-            loads: entries(root, "load", read_load),
+            supports,
+            loads,
+            whole: all_supports && all_loads,
         }
     }
 
@@ -66,6 +71,7 @@ impl<'a> SupportsAndLoads<'a> {
         let supports = self.supports.iter().map(|own| &own.group);
         let mut groups = supports.chain(self.loads.iter().map(|own| &own.group));
         if self.supports.is_empty()
+            || !self.whole
             || !problem.thickness.is_finite()
             || !groups.all(|own| known(own))
         {
@@ -103,26 +109,28 @@ fn named<'a, T>(entries: &'a [Entry<'a, T>], what: &str, message: &str) -> Optio
     found.map(|own| &own.section)
 }
 
-/// The entries of a list in the file; none where it has no such list.
+/// The entries of a list in the file, and whether all could be read; none where it has no such list.
 fn entries<'a, T>(
     root: &Section<'a>,
     key: &'static str,
     read: fn(&Section) -> Option<(String, T)>,
-) -> Vec<Entry<'a, T>> {
+) -> (Vec<Entry<'a, T>>, bool) {
     if !root.has(key) {
-        return Vec::new();
+        return (Vec::new(), true);
     }
-    let sections = root.tables(key).into_iter();
-    sections
-        .filter_map(|section| {
-            let (group, condition) = read(&section)?;
-            Some(Entry {
-                section,
-                group,
-                condition,
-            })
+    let sections = root.tables(key);
+    let written = sections.len();
+    let entries = sections.into_iter().filter_map(|section| {
+        let (group, condition) = read(&section)?;
+        Some(Entry {
+            section,
+            group,
+            condition,
         })
-        .collect()
+    });
+    let entries: Vec<_> = entries.collect();
+    let whole = entries.len() == written;
+    (entries, whole)
 }
 
 fn pairs<T: Copy>(entries: &[Entry<T>]) -> Vec<(String, T)> {
