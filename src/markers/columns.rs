@@ -93,7 +93,7 @@ pub fn required(table: &Table, names: Names) -> Result<(usize, Option<String>), 
         };
         let message = format!("there is no column `{}`: {found}", plainly(names));
         let hint = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own, or say which they are: \
-                    --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
+                    `gelbench correct` takes --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
         table.refuse_columns(message, hint)
     })
 }

@@ -73,6 +73,9 @@ impl Verdict {
         };
         let pattern = percent(self.pattern_probability.unwrap_or(f64::NAN));
         match self.answer {
+            Answer::White if self.durbin_watson.is_none() => {
+                format!("taken as white noise: the points are too few to tell{unequal}")
+            }
             Answer::White => format!("white noise{test}{unequal}"),
             Answer::Correlated => format!(
                 "noise that correlates, neighbours by {:.2}, so that the points tell as much as {:.1} independent ones{test}{unequal}",

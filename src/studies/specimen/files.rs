@@ -1,9 +1,10 @@
 //! Pictures and grids of a specimen.
 
 use super::problem::Specimen;
+use super::results::measured::Quantity;
 use super::results::models::Models;
 use crate::mesh::Mesh;
-use crate::problem::Solution;
+use crate::problem::{GroupState, Solution};
 use crate::results::models::MODELS;
 use crate::results::{
     Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
@@ -56,6 +57,11 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
         let distance = FieldFigure::new(title, "distance [mm]", distances).logarithmic();
         figures.push(figure("error", caption, distance.into()));
     }
+    figures.extend(displacement_over_factors(specimen, models).map(|drawing| {
+        let what = models.reference.measured.describe();
+        let caption = format!("Over the load factor: {what}.");
+        figure("displacement_over_load", caption, drawing)
+    }));
     figures.extend(forces(specimen, models).map(|drawing| {
         let caption = "Forces of the supports over the load factor: of each group along the axis of its larger force.";
         figure("forces", caption.into(), drawing)
@@ -103,18 +109,62 @@ fn stress_figures(specimen: &Specimen, models: &Models, last: usize) -> Vec<Figu
 /// Forces below this share of the largest are those of supports that carry nothing.
 const NO_FORCE: f64 = 1e-6;
 
+/// What the groups do in each state of one of the three models, over the load factor, beginning at rest.
+fn over_factors(
+    specimen: &Specimen,
+    models: &Models,
+    model: usize,
+    value: impl Fn(&[GroupState]) -> f64,
+) -> Vec<[f64; 2]> {
+    let steps = specimen.factors.iter().enumerate();
+    let named = models.named();
+    let values = steps.filter_map(|(step, factor)| {
+        let groups = named[model].solution.groups(step)?;
+        Some([*factor, value(groups)])
+    });
+    // Without a load, every sheet is at rest.
+    [[0.0; 2]].into_iter().chain(values).collect()
+}
+
+/// A chart of the three models over the load factor.
+fn chart_over_factors(
+    specimen: &Specimen,
+    (title, y): (String, &str),
+    points: impl Fn(usize) -> Vec<[f64; 2]>,
+) -> LineChart {
+    const STROKES: [Stroke; 3] = [Stroke::Dashed, Stroke::Points, Stroke::Solid];
+    let line = |model: usize| {
+        let points = points(model);
+        let (style, stroke) = (MODELS[model], STROKES[model]);
+        let (name, colour) = (style.name, style.colour);
+        (points.len() > 1).then(|| match specimen.problem.law.softening() {
+            // Loading and unloading are no function of the load factor.
+            Some(_) => Line::new(name, points, colour, stroke),
+            None => Line::curve(name, points, colour, stroke),
+        })
+    };
+    let lines = [2, 0, 1].into_iter().filter_map(line).collect();
+    let x = Axis::linear("load factor [–]");
+    LineChart::new(title, x, Axis::linear(y), lines)
+}
+
+/// The displacement that is measured over the load factor; `None` where it is a force.
+fn displacement_over_factors(specimen: &Specimen, models: &Models) -> Option<Drawing> {
+    let measured = &models.reference.measured;
+    (measured.quantity == Quantity::Displacement).then(|| {
+        let title = format!("Displacement of {}", measured.group);
+        let y = format!("displacement along {} [mm]", measured.axis_name());
+        let chart = chart_over_factors(specimen, (title, &y), |model| {
+            over_factors(specimen, models, model, |groups| measured.of(groups))
+        });
+        Drawing::Charts(vec![(chart, 340)])
+    })
+}
+
 /// The forces of all groups that carry one, over the load factor; `None` where there is none.
 fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
-    const STROKES: [Stroke; 3] = [Stroke::Dashed, Stroke::Points, Stroke::Solid];
-    let named = &models.named();
     let points = |model: usize, group: usize, axis: usize| {
-        let steps = specimen.factors.iter().enumerate();
-        let force = steps.filter_map(move |(step, factor)| {
-            let groups = named[model].solution.groups(step)?;
-            Some([*factor, groups[group].force[axis]])
-        });
-        // Without a load, every sheet is at rest.
-        [[0.0; 2]].into_iter().chain(force).collect::<Vec<_>>()
+        over_factors(specimen, models, model, |groups| groups[group].force[axis])
     };
     let largest = |group: usize, axis: usize| {
         let all = (0..3).flat_map(|model| points(model, group, axis));
@@ -131,21 +181,10 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let carrying = axes.into_iter().enumerate();
     let carrying = carrying.filter(|(_, (_, force))| *force > NO_FORCE * most);
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
-        let line = |model: usize| {
-            let points = points(model, group, axis);
-            let (style, stroke) = (MODELS[model], STROKES[model]);
-            let (name, colour) = (style.name, style.colour);
-            (points.len() > 1).then(|| match specimen.problem.law.softening() {
-                // Loading and unloading are no function of the load factor.
-                Some(_) => Line::new(name, points, colour, stroke),
-                None => Line::curve(name, points, colour, stroke),
-            })
-        };
         let y = format!("force along {} [N]", ["x", "y"][axis]);
-        let lines = [2, 0, 1].into_iter().filter_map(line).collect();
-        let x = Axis::linear("load factor [–]");
         let title = format!("Force of {}", groups[group]);
-        (LineChart::new(title, x, Axis::linear(&y), lines), 340)
+        let lines = |model: usize| points(model, group, axis);
+        (chart_over_factors(specimen, (title, &y), lines), 340)
     };
     let charts: Vec<_> = carrying.map(chart).collect();
     (!charts.is_empty()).then_some(Drawing::Charts(charts))

@@ -32,7 +32,7 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
         Block::table(&["supported group", "what holds it"], supports),
     ];
     blocks.push(match loads.is_empty() {
-        true => Block::Paragraph("There are no loads: supports alone move the specimen.".into()),
+        true => Block::Paragraph("There are no loads besides what the supports do.".into()),
         false => Block::table(&["loaded group", "what acts on it"], loads),
     });
     blocks

@@ -140,7 +140,10 @@ impl Knowledge {
                 let fault = format!(
                     "the force on `{edge}` was measured, but the edge is not named as held"
                 );
-                return refuse(fault, "say that it is known, rigid or unknown");
+                return refuse(
+                    fault,
+                    "look at its name, or say how it moved: rigid (--rigid), known or unknown (a file for --study)",
+                );
             }
             if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
                 let fault = format!("the force on `{edge}` is {value} ± {deviation} N");
