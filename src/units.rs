@@ -88,6 +88,8 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("tonne", Dimension::Mass, 1.0),
     ("s", Dimension::Time, 1.0),
     ("ms", Dimension::Time, 1e-3),
+    ("us", Dimension::Time, 1e-6),
+    ("µs", Dimension::Time, 1e-6),
     ("min", Dimension::Time, 60.0),
     ("h", Dimension::Time, 3600.0),
     ("Hz", Dimension::Frequency, 1.0),

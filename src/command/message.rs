@@ -196,7 +196,7 @@ pub fn card(card: &Card) -> String {
         card.strain_measure.name(),
         card.offset.name()
     );
-    text += &format!("  range      λ = {low} … {high} ({} test)\n", card.test);
+    text += &format!("  range      λ = {low} … {high}{}\n", card.in_tests());
     let [first, last] = SEARCHED;
     for (name, mode) in Mode::ALL {
         let [low, high] = stable_range(&*card.law, mode);

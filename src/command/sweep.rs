@@ -105,7 +105,7 @@ pub fn run(options: Options) -> Outcome {
     interrupt::guard(folder.results());
     warn(folder.results().replaces().as_slice());
     let progress = Progress::of(folder.count() as u64);
-    progress.tell("runs");
+    progress.tell("studies of all runs, read and checked before the first");
     let ended = |number: usize| {
         progress.tell(&format!("run {number}"));
         progress.advance();

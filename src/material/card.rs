@@ -226,6 +226,14 @@ impl Card {
         source.unknown_keys();
     }
 
+    /// ` (uniaxial test)`; nothing where no test stands behind the card.
+    pub fn in_tests(&self) -> String {
+        match &*self.test {
+            "none" => String::new(),
+            test => format!(" ({test} test)"),
+        }
+    }
+
     /// The value of a parameter in internal units.
     pub fn parameter(&self, key: &str) -> Option<f64> {
         self.parameters

@@ -80,7 +80,7 @@ fn statement(card: &Card) -> Vec<Block> {
         ),
         row(
             "calibrated range",
-            format!("λ = {low} … {high} ({} test)", card.test),
+            format!("λ = {low} … {high}{}", card.in_tests()),
         ),
         row(
             "measures",

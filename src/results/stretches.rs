@@ -60,12 +60,12 @@ impl Stretches {
         (self.share > 0.0).then(|| {
             format!(
                 "principal stretches in the plane reach {:.3} … {:.3}{load}, on {} of the area outside the range of the card `{}`, which \
-                 was calibrated from λ = {low} to {high} ({} test)",
+                 was calibrated from λ = {low} to {high}{}",
                 self.smallest,
                 self.largest,
                 percent(self.share),
                 card.name,
-                card.test
+                card.in_tests()
             )
         })
     }

@@ -5,13 +5,16 @@ use std::path::{Path, PathBuf};
 use super::variable::Setting;
 use crate::budget::Budget;
 use crate::document::{EditedDocument, NewValue, with_files};
-use crate::error::{Diagnostic, Error};
+use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::Card;
 use crate::studies::{PreparedStudy, motion, specimen};
 use crate::validation;
 
 /// The card of a run stands beside the study's own under this name, in memory.
 const CARD: &str = "gelbench-sweep-card.toml";
+
+/// What a study itself says under `material`; all else are parameters of the card.
+const OF_THE_STUDY: [&str; 4] = ["card", "sheet", "density", "viscosity"];
 
 /// A file in memory: its path and its content.
 type File = (PathBuf, Vec<u8>);
@@ -88,6 +91,12 @@ impl BaseStudy {
                 }
                 _ => false,
             };
+            if let (["material", parameter], Some(card)) = (&path[..], &card)
+                && !of_card
+                && !OF_THE_STUDY.contains(parameter)
+            {
+                return Err(card.has_none(key, parameter));
+            }
             if !of_card {
                 study
                     .set(&path, &value)
@@ -144,6 +153,14 @@ impl VariedCard {
             document,
             is_varied: false,
         })
+    }
+
+    /// The fault of a parameter that the card does not have.
+    fn has_none(&self, key: &str, parameter: &str) -> Error {
+        let known: Vec<&str> = self.card.parameters.iter().map(|own| own.key).collect();
+        let message = format!("the card {} has no parameter `{parameter}`", self.card.name);
+        let hint = suggestion(parameter, &known, "its parameters are");
+        Error::Input(vec![Diagnostic::error(key, message).hint(hint)])
     }
 
     /// Sets a parameter, by the name that a fit has for it; says whether the card has one of this name.
