@@ -92,14 +92,26 @@ pub struct Constraints {
 /// What a support holds.
 struct Holder {
     hold: Hold,
+    /// All nodes of its group.
+    nodes: BTreeSet<usize>,
     /// Whether it holds edges, lines or cells, and not nodes alone.
     has_parts: bool,
 }
 
 impl Holder {
-    /// Of the nodes of a group, those at which the support holds the group itself along an axis, and not another part that ends there.
-    fn on(&self, mesh: &Mesh, group: &Group, axis: usize) -> BTreeSet<usize> {
+    /// Of the nodes of a group, those at which the support holds the group itself along an axis, and not another part that ends
+    /// there; `is_supported` says whether the group has a support of its own.
+    fn on(
+        &self,
+        mesh: &Mesh,
+        (group, is_supported): (&Group, bool),
+        axis: usize,
+    ) -> BTreeSet<usize> {
         let own = &self.hold.nodes[axis];
+        if is_supported && self.has_parts != group.has_parts() {
+            // A point that a support of its own holds is no part of the edge around it.
+            return BTreeSet::new();
+        }
         if !self.has_parts || !group.has_parts() {
             let nodes = group.nodes.iter().copied();
             return nodes.filter(|node| own.contains(node)).collect();
@@ -163,10 +175,12 @@ impl Constraints {
         };
         self.holders.push(Holder {
             hold: Hold {
-                rank: 0,
+                // Beside an edge a point holds nothing of what both do.
+                rank: usize::from(!group.has_parts()),
                 nodes: axes.map(nodes),
                 sides: group.edges.clone(),
             },
+            nodes: group.nodes.iter().copied().collect(),
             has_parts: group.has_parts(),
         });
     }
@@ -177,8 +191,10 @@ impl Constraints {
     pub fn parts_on(&self, mesh: &Mesh, group: &Group, axis: usize) -> Vec<Part> {
         let holds: Vec<&Hold> = self.holders.iter().map(|own| &own.hold).collect();
         let parts = reaction_parts(mesh, &holds, axis);
+        let nodes: BTreeSet<usize> = group.nodes.iter().copied().collect();
+        let is_supported = self.holders.iter().any(|holder| holder.nodes == nodes);
         let on_group = |(holder, parts): (&Holder, Vec<Part>)| {
-            let own = holder.on(mesh, group, axis);
+            let own = holder.on(mesh, (group, is_supported), axis);
             let parts = parts.into_iter();
             parts.filter(move |part| own.contains(&part.at))
         };

@@ -15,7 +15,7 @@ pub struct GroupState {
     /// it shares with another group, supports of the other group have no part in it, and what both groups' supports hold is each one's as far
     /// as its tractions beside the corner tell, and the rest shared.
     pub force: [f64; 2],
-    /// Moment of that force about `place` in N·mm, counter-clockwise.
+    /// Moment of that force about `place` in N·mm, counter-clockwise; in a linear theory about the same point of the body at rest.
     pub moment: f64,
     /// Mean deformed place in mm: over the length of its edges at rest, else over its cells, lines or nodes.
     pub place: [f64; 2],
@@ -88,6 +88,12 @@ impl Reactions<'_> {
                 force[axis] += part.factor * self.forces[2 * part.of + axis];
             }
         }
+        let turning = if self.model.energy.is_objective() {
+            1.0
+        } else {
+            0.0
+        };
+        let arm = |node: usize, axis: usize| mesh.nodes[node][axis] + turning * u[2 * node + axis];
         let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
         let shares = shares(mesh, group);
         let mean = |of_node: &dyn Fn(usize, usize) -> f64| {
@@ -98,9 +104,9 @@ impl Reactions<'_> {
                 parts.fold(0.0, |sum, part| sum + part)
             })
         };
-        let middle = mean(&place);
+        let (middle, about) = (mean(&place), mean(&arm));
         let moment = |(node, force): (&usize, &[f64; 2])| {
-            let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
+            let [x, y] = [0, 1].map(|axis| arm(*node, axis) - about[axis]);
             x * force[1] - y * force[0]
         };
         GroupState {
@@ -121,13 +127,18 @@ impl Reactions<'_> {
         names.iter().map(|name| self.at_group(name)).collect()
     }
 
-    /// The balance of all forces of supports and loads, and of their moments, on the deformed body.
+    /// The balance of all forces of supports and loads, and of their moments, on the deformed body; in a linear theory on the
+    /// body at rest.
     pub fn balance(&self) -> Balance {
         /// Of smaller forces rounding may leave more than this share, which would say nothing of their balance: they count as large
         /// as that.
         const JUDGED: f64 = 1e-7;
         let (model, u) = (self.model, &self.state.displacement);
-        let body = Body::new(model.mesh, u);
+        let at_rest = vec![0.0; u.len()];
+        let body = match model.energy.is_objective() {
+            true => Body::new(model.mesh, u),
+            false => Body::new(model.mesh, &at_rest),
+        };
         let supports = body.resultant(&self.forces);
         let loads = model.loads.resultant(self.state.factor, u, &body);
         let rounding = self.rounding();

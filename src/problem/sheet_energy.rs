@@ -265,6 +265,10 @@ impl Remembering for SheetEnergy {
         let parts = points.map(|(volume, most)| volume * softening.dissipated(*most));
         parts.sum()
     }
+
+    fn is_objective(&self) -> bool {
+        self.law.is_objective()
+    }
 }
 
 /// The derivatives of a shape's functions by natural coordinates at the points of its quadrature, with their weights.

@@ -117,6 +117,12 @@ pub trait Remembering: Potential {
 
     /// What the body has dissipated on its way, in mJ.
     fn dissipated(&self, history: &[f64]) -> f64;
+
+    /// Whether rotations leave the energy as it is, so that moments balance on the deformed body; otherwise they do on the body
+    /// at rest.
+    fn is_objective(&self) -> bool {
+        true
+    }
 }
 
 /// [`Potential::evaluate`], element by element.

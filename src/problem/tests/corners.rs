@@ -131,3 +131,46 @@ fn moments_are_about_the_middle_of_the_group_however_its_nodes_lie() {
         }
     }
 }
+
+/// A pin at the end of an edge that slides: the edge carries what both hold, the pin what it alone does.
+#[test]
+fn a_point_beside_an_edge_adds_nothing_to_what_both_hold() {
+    let supports = [
+        ("left", Support::Roller),
+        ("pin", CLAMP),
+        ("right", Support::Displacement([Some(6.0), None])),
+    ];
+    for (name, cells) in CellShape::NAMES {
+        let mut mesh = strip(cells);
+        let corner = mesh.boundary().iter().flatten().copied();
+        let [low, _] = mesh.bounding_box();
+        let corner = corner.filter(|node| mesh.nodes[*node] == low).next();
+        mesh.name_nodes("pin", &corner.into_iter().collect());
+        let problem = problem(&supports, &[]);
+        let energy = problem.finite_elements(&mesh);
+        let model = problem.on(&mesh, &energy).unwrap();
+        let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
+        let reactions = model.reactions(&state);
+        let [left, pin, right] = ["left", "pin", "right"].map(|group| reactions.at_group(group));
+        assert!(right.force[0] > 0.1, "{name}: {right:?}");
+        assert!(
+            (left.force[0] + right.force[0]).abs() < 1e-10,
+            "{name}: {left:?}"
+        );
+        assert!(
+            pin.force[0].abs() + pin.force[1].abs() < 1e-10,
+            "{name}: {pin:?}"
+        );
+        // A set of nodes that no support names has all of its part.
+        mesh.name_nodes(
+            "mark",
+            &mesh.groups()["right"].nodes.iter().copied().collect(),
+        );
+        let model = problem.on(&mesh, &energy).unwrap();
+        let marked = model.reactions(&state).at_group("mark").force;
+        assert!(
+            (marked[0] - right.force[0]).abs() < 1e-10,
+            "{name}: {marked:?}"
+        );
+    }
+}

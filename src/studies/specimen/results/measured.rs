@@ -113,11 +113,19 @@ impl Specimen {
             .pushed()
             .filter(|pushed| self.moves(mesh, pushed))
             .collect();
-        if let Some(own) = moved.iter().find(|pushed| pushed.group == self.group) {
+        let force = self.along_larger(&self.group, last, Quantity::Force);
+        let held = self.held_along(mesh);
+        let nodes = |group: &str| &mesh.groups()[group].nodes;
+        let own = moved
+            .iter()
+            .find(|pushed| nodes(pushed.group) == nodes(&self.group));
+        // A support that does more than the load along another axis is what is measured.
+        let is_beside =
+            |own: &Pushed| held[force.axis] && own.axis.is_some_and(|axis| axis != force.axis);
+        if let Some(own) = own.filter(|own| !is_beside(own)) {
             return self.displaced(own, last);
         }
-        let force = self.along_larger(&self.group, last, Quantity::Force);
-        if !self.is_held(&self.group) {
+        if held == [false; 2] {
             return self.along_larger(&self.group, last, Quantity::Displacement);
         }
         match moved.first() {
@@ -159,8 +167,16 @@ impl Specimen {
         at(usize::from(size(1) > size(0)))
     }
 
-    fn is_held(&self, group: &str) -> bool {
-        self.problem.supports.iter().any(|(name, _)| name == group)
+    /// Whether supports hold the measured group along each axis, by whatever name: more of its nodes than its ends alone.
+    fn held_along(&self, mesh: &Mesh) -> [bool; 2] {
+        let held = self.problem.held_by(mesh).unwrap_or_default();
+        let nodes = &mesh.groups()[&self.group].nodes;
+        [0, 1].map(|axis| {
+            let own = nodes
+                .iter()
+                .filter(|node| held.contains_key(&(2 * *node + axis)));
+            2 * own.count() > nodes.len()
+        })
     }
 
     /// Grips with a given force, then loads.
