@@ -14,6 +14,7 @@ mod frames;
 mod layouts;
 mod matrices;
 mod on_mesh;
+mod outside;
 mod plausible;
 mod read;
 mod rows;

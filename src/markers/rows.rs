@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::chosen::ChosenColumns;
 use super::frames::{Frame, Marker, MarkerSeries};
+use super::outside::within;
 use super::understood::Understood;
 use crate::document::TextEncoding;
 use crate::error::Diagnostic;
@@ -126,7 +127,7 @@ impl Gathering {
             (
                 self.holes,
                 "points without a displacement",
-                "they are left out; their places still count for the outline",
+                "they are left out; the places of those within the specimen still count for the outline",
             ),
             (
                 self.twice,
@@ -142,9 +143,24 @@ impl Gathering {
         for (count, what, hint) in counted.into_iter().filter(|(count, ..)| *count > 0) {
             warnings.push(Diagnostic::warning("", format!("{what}: {count}")).hint(hint));
         }
+        let found = self.frames.values().flat_map(|frame| &frame.markers);
+        let found: BTreeMap<usize, [f64; 2]> =
+            found.map(|marker| (marker.number, marker.place)).collect();
+        let found: Vec<[f64; 2]> = found.into_values().collect();
+        let all: Vec<[f64; 2]> = self.lost.into_values().collect();
+        let without = all.len();
+        let lost = within(&found, all);
+        if lost.len() < without {
+            let message = format!(
+                "points without a displacement in any frame that are taken to lie outside of the specimen: {}",
+                without - lost.len()
+            );
+            let hint = "they leave whole rows or columns of the matrix, or a tenth of it at its rim, empty; --outline gives the true edge";
+            warnings.push(Diagnostic::warning("", message).hint(hint));
+        }
         MarkerSeries {
             frames: with_markers(self.frames, warnings),
-            lost: self.lost.into_values().collect(),
+            lost,
         }
     }
 }

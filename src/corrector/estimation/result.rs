@@ -33,6 +33,7 @@ impl NearestField<'_> {
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
         let begun = self.take_uncertainty(edges, own, &judged)?;
+        let idle = self.idle(edges, &begun.forces);
         let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
@@ -43,7 +44,7 @@ impl NearestField<'_> {
             cells: self.cells(own)?,
             holds_mesh_error: own.is_some(),
             imbalance: self.imbalance(),
-            growth: self.growth(edges),
+            growth: self.growth(edges, &idle),
             verdict: judged.verdict.with_forces(&begun.force_checks),
             contradiction: judged.contradiction,
             whiteness,
@@ -59,7 +60,7 @@ impl NearestField<'_> {
                 None => TRADE.into(),
             },
             interior_forces: self.equations.forces.clone(),
-            edges: edges.iter().map(outcome).collect(),
+            edges: edges.iter().zip(&idle).map(outcome).collect(),
             steps: self.steps,
             reactions: self.reactions(),
             multipliers: self.multipliers,
@@ -249,11 +250,12 @@ impl NearestField<'_> {
     }
 }
 
-fn outcome(edge: &Edge) -> EdgeOutcome {
+fn outcome((edge, idle): (&Edge, &bool)) -> EdgeOutcome {
     EdgeOutcome {
         edge: edge.segment.name.clone(),
         length: edge.segment.length(),
         condition: edge.condition,
         probability: edge.probability,
+        idle: *idle,
     }
 }

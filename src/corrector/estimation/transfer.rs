@@ -111,6 +111,7 @@ fn outcome((segment, condition): &(Segment, EdgeCondition)) -> EdgeOutcome {
         length: segment.length(),
         condition: *condition,
         probability: None,
+        idle: false,
     }
 }
 

@@ -114,6 +114,7 @@ fn of_frame(
         noise(estimate),
         many_outliers(estimate),
         edges(estimate),
+        idle_edges(estimate),
         not_explained(estimate),
     ];
     let doubts = doubts
@@ -175,6 +176,25 @@ fn edges(estimate: &FieldEstimate) -> Option<Doubt> {
     Some((
         message,
         "an edge inside of the specimen is \"unknown\", not rigid or free; else the law or the thickness is wrong",
+    ))
+}
+
+/// Edges that are free, but not where the mesh has them.
+fn idle_edges(estimate: &FieldEstimate) -> Option<Doubt> {
+    let idle = estimate.edges.iter().filter(|edge| edge.idle);
+    let names: Vec<&str> = idle.map(|edge| edge.edge.as_str()).collect();
+    let (verb, which) = match names[..] {
+        [] => return None,
+        [_] => ("carries no force and is", "an edge"),
+        _ => ("carry no force and are", "edges"),
+    };
+    let message = format!(
+        "{} {verb} no free {which} for the data: the specimen probably ends elsewhere, and forces are those of the mesh's width",
+        names.join(", ")
+    );
+    Some((
+        message,
+        "say how far the edges lie outside of the markers with --edge-gap, or give them with --outline or --mesh",
     ))
 }
 

@@ -180,6 +180,9 @@ pub struct EdgeOutcome {
     pub condition: EdgeCondition,
     /// Where the data have chosen between free and loaded: how probable the misfit is if the edge is free.
     pub probability: Option<f64>,
+    /// Whether its force is nothing within an interval that is small beside the largest force, though the data have refused it as a free
+    /// edge: one that lies elsewhere is.
+    pub idle: bool,
 }
 
 /// What is left of a marker.

@@ -1,0 +1,177 @@
+//! Points without a displacement that lie outside of the specimen: exports as whole matrices have a value for every point of the picture,
+//! and none where there is no specimen.
+
+/// Gaps at the rim of a matrix up to this share of it are taken for places where markers were lost.
+const LOST: f64 = 0.1;
+
+/// Points of a matrix that may be missing.
+const FULL: f64 = 0.99;
+
+/// The lost points that lie within the specimen, as far as the points say it: of a whole matrix no row or column at the rim that has
+/// no marker at all, and no gaps at the rim that are more than a tenth of the rest. Points that are no matrix all count.
+pub fn within(found: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    match Matrix::of(found, &lost) {
+        Some(matrix) => {
+            let outside = matrix.outside();
+            let kept = lost.into_iter().filter(|place| {
+                let [x, y] = matrix.index(*place);
+                !outside[y][x]
+            });
+            kept.collect()
+        }
+        None => lost,
+    }
+}
+
+/// Points in rows and columns.
+struct Matrix {
+    lines: [Vec<f64>; 2],
+    /// Whether a marker was found, by row and column.
+    found: Vec<Vec<bool>>,
+}
+
+impl Matrix {
+    /// The matrix of all points; `None` where they are none, or nothing is lost.
+    fn of(found: &[[f64; 2]], lost: &[[f64; 2]]) -> Option<Self> {
+        if lost.is_empty() || found.is_empty() {
+            return None;
+        }
+        let all = || found.iter().chain(lost);
+        let lines = [0, 1].map(|axis| lines(all().map(|place| place[axis]).collect()));
+        let [columns, rows] = lines.each_ref().map(Vec::len);
+        let count = (found.len() + lost.len()) as f64;
+        let whole = (rows * columns) as f64;
+        if columns.min(rows) < 3 || count < FULL * whole || count > whole / FULL {
+            return None;
+        }
+        let mut matrix = Self {
+            lines,
+            found: vec![vec![false; columns]; rows],
+        };
+        for place in found {
+            let [x, y] = matrix.index(*place);
+            matrix.found[y][x] = true;
+        }
+        Some(matrix)
+    }
+
+    /// The column and the row of a point.
+    fn index(&self, place: [f64; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| {
+            let lines = &self.lines[axis];
+            let next = lines.partition_point(|line| *line < place[axis]);
+            let nearer = |at: usize| (lines[at] - place[axis]).abs();
+            match next {
+                0 => 0,
+                end if end == lines.len() || nearer(end - 1) < nearer(end) => end - 1,
+                own => own,
+            }
+        })
+    }
+
+    /// The points outside, by row and column.
+    fn outside(&self) -> Vec<Vec<bool>> {
+        let [columns, rows] = self.lines.each_ref().map(Vec::len);
+        let row = |y: &usize| self.found[*y].iter().any(|found| *found);
+        let column = |x: &usize| self.found.iter().any(|row| row[*x]);
+        let span = |some: &dyn Fn(&usize) -> bool, count: usize| {
+            let first = (0..count).find(some).unwrap_or(0);
+            first..(0..count).rfind(some).map_or(count, |last| last + 1)
+        };
+        let (inner_rows, inner_columns) = (span(&row, rows), span(&column, columns));
+        let is_inner = |x: usize, y: usize| inner_columns.contains(&x) && inner_rows.contains(&y);
+        let rim = self.connected_to_rim(&inner_columns, &inner_rows);
+        let gaps = rim.iter().flatten().filter(|gap| **gap).count() as f64;
+        let large = gaps > LOST * (inner_columns.len() * inner_rows.len()) as f64;
+        let outside = |y: usize| {
+            (0..columns)
+                .map(|x| !is_inner(x, y) || (large && rim[y][x]))
+                .collect()
+        };
+        (0..rows).map(outside).collect()
+    }
+
+    /// The points without a marker that hang together with such at the rim of some rows and columns.
+    fn connected_to_rim(
+        &self,
+        columns: &std::ops::Range<usize>,
+        rows: &std::ops::Range<usize>,
+    ) -> Vec<Vec<bool>> {
+        let mut reached = vec![vec![false; self.lines[0].len()]; self.lines[1].len()];
+        let at_rim = |x: usize, y: usize| {
+            [columns.start, columns.end - 1].contains(&x) || [rows.start, rows.end - 1].contains(&y)
+        };
+        let all = rows
+            .clone()
+            .flat_map(|y| columns.clone().map(move |x| (x, y)));
+        let mut open: Vec<(usize, usize)> = all.filter(|(x, y)| at_rim(*x, *y)).collect();
+        while let Some((x, y)) = open.pop() {
+            if self.found[y][x] || reached[y][x] {
+                continue;
+            }
+            reached[y][x] = true;
+            let beside = [
+                (x.wrapping_sub(1), y),
+                (x + 1, y),
+                (x, y.wrapping_sub(1)),
+                (x, y + 1),
+            ];
+            open.extend(
+                beside
+                    .into_iter()
+                    .filter(|(x, y)| columns.contains(x) && rows.contains(y)),
+            );
+        }
+        reached
+    }
+}
+
+/// The distinct values among some, which differ by more than rounding.
+fn lines(mut values: Vec<f64>) -> Vec<f64> {
+    const ROUNDING: f64 = 1e-6;
+    values.sort_by(f64::total_cmp);
+    let range = values
+        .last()
+        .zip(values.first())
+        .map_or(0.0, |(last, first)| last - first);
+    values.dedup_by(|next, own| *next - *own <= ROUNDING * range);
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The points of a matrix of 12 × 8 that a specimen has, and the others.
+    fn matrix(is_found: impl Fn(usize, usize) -> bool) -> [Vec<[f64; 2]>; 2] {
+        let all: Vec<(usize, usize)> = (0..8).flat_map(|y| (0..12).map(move |x| (x, y))).collect();
+        let place = |(x, y): &(usize, usize)| [0.3 * *x as f64, 0.3 * *y as f64];
+        [true, false].map(|wanted| {
+            let some = all.iter().filter(|(x, y)| is_found(*x, *y) == wanted);
+            some.map(place).collect()
+        })
+    }
+
+    #[test]
+    fn rows_and_columns_without_a_marker_and_large_gaps_at_the_rim_are_outside() {
+        let padded = |x: usize, y: usize| (2..11).contains(&x) && (1..7).contains(&y);
+        let [found, lost] = matrix(padded);
+        assert_eq!(within(&found, lost), Vec::<[f64; 2]>::new());
+        // What is lost within stays, as do a few at the rim of the specimen.
+        let blind = |x: usize, y: usize| padded(x, y) && (x, y) != (5, 3) && (x, y) != (5, 1);
+        let [found, lost] = matrix(blind);
+        let kept = within(&found, lost);
+        assert_eq!(kept.len(), 2, "{kept:?}");
+        // A waist.
+        let waist = |x: usize, y: usize| x < 3 || x > 8 || (2..6).contains(&y);
+        let [found, lost] = matrix(waist);
+        assert!(within(&found, lost).is_empty());
+    }
+
+    #[test]
+    fn points_that_are_no_matrix_stay() {
+        let [found, mut lost] = matrix(|_, y| y > 1);
+        lost.truncate(5);
+        assert_eq!(within(&found, lost.clone()), lost);
+    }
+}
