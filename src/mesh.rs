@@ -1,5 +1,6 @@
 //! Nodes, cells and named groups of a flat specimen, and fields on them.
 
+mod angles;
 mod bisect;
 mod blocks;
 mod buckets;

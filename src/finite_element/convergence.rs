@@ -44,6 +44,34 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
     }
 }
 
+/// The exponent α of the displacement rᵅ beside a re-entrant corner of the angle ω, in rad, between free or held edges of an elastic
+/// sheet:
+///
+/// ```text
+/// sin αω + α sin ω = 0,   ½ ≤ α < 1            ½ at a crack, 0.5445 where ω = 270°
+/// ```
+///
+/// Whatever the elements, no error of a force or displacement falls by a higher order than 2α there on cells of equal size.
+///
+/// # References
+/// M. L. Williams, J. Appl. Mech. 19, 526 (1952)
+pub fn corner_exponent(angle: f64) -> f64 {
+    let [mut low, mut high] = [0.5, 1.0];
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match (middle * angle).sin() + middle * angle.sin() > 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    low
+}
+
+/// An error from the distance |f₂ₕ − fₕ| where no order above `most` is possible, `error` at least.
+pub fn at_most_of_order(error: f64, last: f64, most: f64) -> f64 {
+    error.max(last / (most.exp2() - 1.0))
+}
+
 /// The error of the finest of three meshes and the observed order p, from the distances |f₄ₕ − f₂ₕ| and |f₂ₕ − fₕ|.
 ///
 /// ```text
@@ -63,6 +91,14 @@ pub fn of_distances(before: f64, last: f64) -> (f64, Option<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn corners_have_the_exponents_of_williams() {
+        for (degrees, exponent) in [(360.0_f64, 0.5), (270.0, 0.544_483_7), (225.0, 0.673_583)] {
+            let found = corner_exponent(degrees.to_radians());
+            assert!((found - exponent).abs() < 1e-6, "{degrees}: {found}");
+        }
+    }
 
     #[test]
     fn a_power_law_is_extrapolated_exactly() {

@@ -163,7 +163,7 @@ mod tests {
         let kept = within(&found, lost);
         assert_eq!(kept.len(), 2, "{kept:?}");
         // A waist.
-        let waist = |x: usize, y: usize| x < 3 || x > 8 || (2..6).contains(&y);
+        let waist = |x: usize, y: usize| !(3..=8).contains(&x) || (2..6).contains(&y);
         let [found, lost] = matrix(waist);
         assert!(within(&found, lost).is_empty());
     }

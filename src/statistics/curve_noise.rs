@@ -24,9 +24,10 @@ use super::correlation::{Correlation, Decay};
 use super::curve::{Curve, NoiseAlong};
 use super::{f_tail, student_reach, student_tail};
 
-/// The weight of white noise before the data speak, and of noise with these correlated shares together, over all lengths.
+/// The weight of white noise before the data speak, and of noise with these correlated shares together, over all lengths. Over thousands of
+/// points a thousandth of white noise is told from none.
 const WHITE: f64 = 0.5;
-const CORRELATED: [(f64, f64); 2] = [(0.999, 0.4), (0.6, 0.1)];
+const CORRELATED: [(f64, f64); 4] = [(0.999_99, 0.2), (0.999, 0.15), (0.97, 0.05), (0.6, 0.1)];
 
 /// The shortest length in gaps, the factor to the next one, and the longest over the points of the longest curve.
 const SHORTEST: f64 = 0.4;

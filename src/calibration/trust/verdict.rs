@@ -121,11 +121,12 @@ impl LeftOver<'_> {
         if estimates == 0 || self.design.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let curves = &self.curves;
+        let steady = Steady::of(&self.curves, self.design);
+        let (curves, design) = (&steady.curves, &steady.design);
         let orders = orders(curves);
         let (sizes, noise_ratio) = self.sizes();
         let residuals = CurveResiduals {
-            design: self.design,
+            design,
             residual: self.residual,
             orders: &orders,
             sizes: &sizes,
@@ -133,7 +134,7 @@ impl LeftOver<'_> {
         let noise = residuals.noise()?;
         let tests = orders
             .iter()
-            .filter_map(|curves| DurbinWatson::new(self.design, self.residual, curves));
+            .filter_map(|curves| DurbinWatson::new(design, self.residual, curves));
         let doubt = tests.min_by(|a, b| a.probability.total_cmp(&b.probability));
         let correlated =
             doubt.is_some_and(|test| test.probability * (orders.len() as f64) < DOUBTED);
@@ -201,6 +202,51 @@ impl LeftOver<'_> {
         let left = self.residual.norm_squared();
         left <= FACTOR * stresses || (FAR * both..=FACTOR * both).contains(&left)
     }
+}
+
+/// The curves with the noise of their strains left out: where the strain of a test only jitters about one that grows or falls, the rows have
+/// its values in their order, and with them the derivatives. Else the noise of the strain, which is also in the residuals, would look like a
+/// function of it beside a slow drift.
+struct Steady {
+    curves: Vec<Rows>,
+    design: DMatrix<f64>,
+}
+
+impl Steady {
+    fn of(curves: &[Rows], design: &DMatrix<f64>) -> Self {
+        let mut steady = Self {
+            curves: curves.to_vec(),
+            design: design.clone(),
+        };
+        for curve in &mut steady.curves {
+            let Some(sorted) = in_order(curve) else {
+                continue;
+            };
+            for ((row, strain), (source, value)) in curve.iter_mut().zip(sorted) {
+                *strain = value;
+                steady.design.set_row(*row, &design.row(source));
+            }
+        }
+        steady
+    }
+}
+
+/// The rows of a curve by their strains, in the direction in which they follow one another; `None` where they do not jitter, or turn back
+/// by more.
+fn in_order(curve: &Rows) -> Option<Rows> {
+    /// Of the range of strain.
+    const JITTER: f64 = 0.05;
+    let mut sorted = curve.clone();
+    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (first, last) = (curve.first()?.1, curve.last()?.1);
+    if last < first {
+        sorted.reverse();
+    }
+    let range = (sorted.last()?.1 - sorted.first()?.1).abs();
+    let pairs = || curve.iter().zip(&sorted);
+    let jitters = pairs().any(|(a, b)| a.0 != b.0);
+    let is_steady = pairs().all(|(a, b)| (a.1 - b.1).abs() <= JITTER * range);
+    (jitters && is_steady).then_some(sorted)
 }
 
 /// The rows in the order of the file, and in the order of strain where that is another one or far from even.

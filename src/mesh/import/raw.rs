@@ -124,7 +124,7 @@ impl Raw {
             let plane = *height.get_or_insert(*z);
             if (z - plane).abs() > 1e-9 * (x.abs() + y.abs()).max(1e-300) {
                 return Err(format!(
-                    "is not flat: the node {name} lies at z = {z}, others at {plane}"
+                    "is not flat: the node {name} lies at z = {z}, others at {plane}; a sheet lies in the plane of x and y"
                 )
                 .into());
             }

@@ -142,9 +142,9 @@ fn a_point_beside_an_edge_adds_nothing_to_what_both_hold() {
     ];
     for (name, cells) in CellShape::NAMES {
         let mut mesh = strip(cells);
-        let corner = mesh.boundary().iter().flatten().copied();
+        let mut corner = mesh.boundary().iter().flatten().copied();
         let [low, _] = mesh.bounding_box();
-        let corner = corner.filter(|node| mesh.nodes[*node] == low).next();
+        let corner = corner.find(|node| mesh.nodes[*node] == low);
         mesh.name_nodes("pin", &corner.into_iter().collect());
         let right = mesh.groups()["right"].nodes.iter().copied().collect();
         mesh.name_nodes("mark", &right);

@@ -111,6 +111,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     check_thickness(section, thickness, size, Some(&specimen.card));
     given.check(root, &specimen.problem, &mesh);
     warn_of_rest(root, &specimen.problem);
+    warn_of_parts(section, &specimen, &mesh);
     check_refinement(root, &specimen, &mesh);
     check_climb(root, &specimen);
     Some(specimen)
@@ -167,6 +168,26 @@ fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
         let message = "no support moves and no load acts: the sheet rests";
         let hint = "give a support a displacement, or a group a [[load]]";
         root.warning("support", message, hint);
+    }
+}
+
+/// Warns of a file whose cells are in several parts, as for several materials: all have the study's one.
+fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
+    let parts = mesh
+        .groups()
+        .iter()
+        .filter(|(_, group)| !group.cells.is_empty());
+    let is_used = |name: &String| specimen.groups().contains(&name.as_str());
+    let whole = |cells: usize| cells == mesh.cell_count();
+    let unused = parts.filter(|(name, group)| !is_used(name) && !whole(group.cells.len()));
+    let names: Vec<String> = unused.map(|(name, _)| format!("`{name}`")).collect();
+    if matches!(specimen.outline, Outline::File { .. }) && names.len() > 1 {
+        let message = format!(
+            "the file has its cells in the parts {}: all of them are of the card `{}`",
+            names.join(", "),
+            specimen.card.name
+        );
+        section.warning("file", &message, "a specimen is of one material");
     }
 }
 

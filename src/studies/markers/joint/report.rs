@@ -126,7 +126,7 @@ fn value(estimate: &Estimate, unit: &str, explained: bool) -> String {
 }
 
 /// A combination of parameters, in words.
-fn combination(estimate: &JointEstimate, direction: &Direction) -> String {
+pub fn combination(estimate: &JointEstimate, direction: &Direction) -> String {
     const LITTLE: f64 = 0.05;
     let parameters = estimate.law.parameters().iter().zip(&direction.weights);
     let parts: Vec<String> = parameters

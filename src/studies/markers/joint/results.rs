@@ -31,6 +31,7 @@ pub fn results(
     let scattered = forces_scatter(&found.estimate);
     let doubts = ended
         .chain(scattered)
+        .chain(undetermined(&found.estimate))
         .chain(specimens.iter().filter_map(doubt));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let outcome = Outcome {
@@ -74,6 +75,22 @@ fn forces_scatter(estimate: &JointEstimate) -> Option<String> {
             "the measured forces lie {:.1} times as far from those of the fields as their standard deviations allow (χ² is {misfit:.1} of {freedom:.0} \
              degrees of freedom): deviations, thickness or law are wrong; intervals hold forces that are so much less certain",
             (misfit / freedom).sqrt()
+        )
+    })
+}
+
+/// What the data do not tell of the parameters, and the intervals of the others do not hold.
+fn undetermined(estimate: &JointEstimate) -> Option<String> {
+    let open = estimate
+        .directions
+        .iter()
+        .filter(|own| !own.is_determined());
+    let open: Vec<String> = open.map(|own| report::combination(estimate, own)).collect();
+    (!open.is_empty()).then(|| {
+        format!(
+            "not determined by these frames, and left as the card has it: {}; the other parameters and their intervals take that for known: begin \
+             with a card that is near, add frames of larger strains or other kinds of loading, or leave the parameter out of --fit",
+            open.join("; ")
         )
     })
 }

@@ -1,8 +1,12 @@
 //! The finite elements that a specimen's other models are held to, and their own error.
 
+use std::f64::consts::PI;
+
 use super::measured::Measured;
 use crate::compare::area_weighted_percent;
-use crate::finite_element::convergence::{LOWEST_ORDER, of_distances, richardson};
+use crate::finite_element::convergence::{
+    LOWEST_ORDER, at_most_of_order, corner_exponent, of_distances, richardson,
+};
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
@@ -151,7 +155,20 @@ impl Reference {
         let [Some(coarse), Some(middle), Some(fine)] = all else {
             return None;
         };
-        Some(richardson([coarse, middle, fine]).error_percent)
+        let found = richardson([coarse, middle, fine]);
+        let last = 100.0 * ((fine - middle) / found.extrapolated).abs();
+        Some(self.beside_corners(found.error_percent, last))
+    }
+
+    /// An error by the distance of the two finest meshes, which re-entrant corners of the finest one let fall slowly, however the coarse
+    /// ones came nearer.
+    fn beside_corners(&self, error: f64, last: f64) -> f64 {
+        /// A smaller angle in rad is one between the chords of a curve.
+        const CORNER: f64 = 210.0 * PI / 180.0;
+        match self.finest.mesh.largest_angle() {
+            angle if angle > CORNER => at_most_of_order(error, last, 2.0 * corner_exponent(angle)),
+            _ => error,
+        }
     }
 
     /// The error of what is measured by recovery at a load factor in %.
@@ -197,7 +214,7 @@ impl Reference {
             [only] => Some(distance(only, &fine)),
             [.., first, second] => {
                 let (before, last) = (distance(first, second), distance(second, &fine));
-                let by_meshes = of_distances(before, last).0;
+                let by_meshes = self.beside_corners(of_distances(before, last).0, last);
                 let most = (last / (LOWEST_ORDER.exp2() - 1.0)).max(by_meshes);
                 Some((by_meshes * self.unseen(step)).min(most))
             }
