@@ -43,6 +43,15 @@ fn production(text: &str) -> String {
     code
 }
 
+/// A code without `pub(in path)`: it names who may see an item, and needs nothing of it.
+fn without_visibility(code: &str) -> String {
+    const SEEN: &str = "pub(in ";
+    let mut parts = code.split(SEEN);
+    let first = parts.next().unwrap_or_default();
+    let rest = parts.map(|part| &part[part.find(')').map_or(0, |at| at + 1)..]);
+    std::iter::once(first).chain(rest).collect()
+}
+
 /// The paths of a `use` with the names that they get: `a::{b, c as d}` is `a::b` as `b` and `a::c` as `d`.
 pub fn expand(tree: &str, before: &[String]) -> Vec<(ModulePath, String)> {
     let tree = tree.trim();
@@ -131,7 +140,7 @@ impl Source {
 
     /// All paths in the code, as they stand there.
     fn named(&self) -> BTreeSet<ModulePath> {
-        let mut code = self.code.clone();
+        let mut code = without_visibility(&self.code);
         let mut all = BTreeSet::new();
         for (passes_on, tree) in uses(&self.code) {
             code = code.replacen(&format!("use {tree};"), "", 1);

@@ -11,9 +11,10 @@ pub use knowledge::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
 };
 pub use observations::Observations;
-#[cfg(test)]
-pub use outline::segments;
 pub use outline::{Segment, parts};
 pub use regressed_law::RegressedLaw;
 pub use start::{DEGREE, Polynomial};
 pub use task::{Edge, Task, singular_corners};
+
+#[cfg(test)]
+pub use outline::segments;
