@@ -171,19 +171,19 @@ fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
     }
 }
 
-/// Warns of a file whose cells are in several parts, as for several materials: all have the study's one.
+/// Warns of a file whose cells are divided into parts, as for several materials: all have the study's one.
 fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
-    let parts = mesh
-        .groups()
-        .iter()
-        .filter(|(_, group)| !group.cells.is_empty());
-    let is_used = |name: &String| specimen.groups().contains(&name.as_str());
-    let whole = |cells: usize| cells == mesh.cell_count();
-    let unused = parts.filter(|(name, group)| !is_used(name) && !whole(group.cells.len()));
-    let names: Vec<String> = unused.map(|(name, _)| format!("`{name}`")).collect();
-    if matches!(specimen.outline, Outline::File { .. }) && names.len() > 1 {
+    let parts = mesh.groups().iter().filter(|(_, group)| {
+        let cells = group.cells.len();
+        cells > 0 && cells < mesh.cell_count()
+    });
+    let (names, cells): (Vec<String>, Vec<usize>) = parts
+        .map(|(name, group)| (format!("`{name}`"), group.cells.len()))
+        .unzip();
+    let divided = cells.iter().sum::<usize>() == mesh.cell_count();
+    if matches!(specimen.outline, Outline::File { .. }) && divided {
         let message = format!(
-            "the file has its cells in the parts {}: all of them are of the card `{}`",
+            "the cells of the file are divided into {}: all of them are of the card `{}`",
             names.join(", "),
             specimen.card.name
         );
