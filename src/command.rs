@@ -379,5 +379,12 @@ fn check(path: &Path, budget: Budget) -> Outcome {
     let ready = validation::read(path, budget)?;
     warn(&ready.warnings);
     print(&format!("{}: no faults; {}\n", path.display(), ready.about))?;
+    let taken: Vec<&str> = ready.physical_defaults().collect();
+    if !taken.is_empty() {
+        print(&format!(
+            "taken where the study says nothing: {}\n",
+            taken.join(", ")
+        ))?;
+    }
     Ok(0)
 }

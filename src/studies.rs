@@ -62,8 +62,8 @@ impl<'a> Progress<'a> {
         'a: 'b,
     {
         Attendance {
-            reached,
             journal: self.journal,
+            ..Attendance::told(reached)
         }
     }
 }
@@ -226,6 +226,13 @@ struct Read<T> {
 }
 
 impl PreparedStudy {
+    /// What the study does not say of specimen, material and load, with what was taken instead, as `plate.length = "150 mm"`.
+    pub fn physical_defaults(&self) -> impl Iterator<Item = &str> {
+        const PHYSICAL: [&str; 3] = ["material.", "plate.", "load."];
+        let is_physical = |said: &&str| PHYSICAL.iter().any(|table| said.starts_with(table));
+        self.defaults.iter().map(String::as_str).filter(is_physical)
+    }
+
     /// Computes the study.
     ///
     /// # Errors

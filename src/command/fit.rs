@@ -31,7 +31,7 @@ pub struct FitArguments {
     /// The law
     #[arg(long, group = "laws")]
     law: Option<String>,
-    /// Fit all laws, rank them, and write the best one that is stable over the data
+    /// Fit all laws, rank them, and write the first one that is stable over the data and whose parameters they all tell
     #[arg(long, group = "laws")]
     all: bool,
     /// Fit a Prony series too, to tests with a column of times: relaxation, creep, cycles, several rates; with as many terms as AICc
@@ -190,8 +190,12 @@ fn found(
             progress.tell("all laws");
             let (fits, reasons) = calibration::rank(tests, settings);
             print(&fit_message::ranking(&fits, &reasons))?;
-            calibration::best(fits)
-                .ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
+            let nearest = fits.first().map(|fit| (fit.law.name, fit.quality.aicc));
+            let best = calibration::best(fits);
+            if let (Some(best), Some(nearest)) = (&best, nearest) {
+                print(&fit_message::chosen(best, nearest))?;
+            }
+            best.ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
         }
     }
 }

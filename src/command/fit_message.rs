@@ -220,6 +220,22 @@ fn criterion(aicc: f64) -> String {
     }
 }
 
+/// Why a law is written that is not the nearest one, of that name and AICc; nothing where it is.
+pub fn chosen(best: &Fit, (nearest, aicc): (&str, f64)) -> String {
+    if best.law.name == nearest {
+        return String::new();
+    }
+    let reason = match best.quality.is_stable() && best.quality.is_identifiable() {
+        true => "the first that is stable over the data and whose parameters they all tell",
+        false => "the first that is stable over the data",
+    };
+    format!(
+        "{} is written, {reason}; its AICc is {:.1} above that of {nearest}\n\n",
+        best.law.name,
+        best.quality.aicc - aicc
+    )
+}
+
 /// The laws by AICc.
 pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
     let mut text = String::from(

@@ -27,6 +27,8 @@ pub trait Journal {
 pub struct Attendance<'a> {
     /// Is told each load factor that is reached.
     pub reached: &'a dyn Fn(f64),
+    /// Is told each load factor on the way to one, where it takes several steps.
+    pub on_the_way: &'a dyn Fn(f64),
     /// Where equilibria are kept, if anywhere.
     pub journal: Option<&'a dyn Journal>,
 }
@@ -36,6 +38,7 @@ impl<'a> Attendance<'a> {
     pub fn told(reached: &'a dyn Fn(f64)) -> Self {
         Self {
             reached,
+            on_the_way: &|_| (),
             journal: None,
         }
     }

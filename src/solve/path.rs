@@ -87,7 +87,7 @@ pub fn follow(
         .iter()
         .for_each(|state| (attendance.reached)(state.factor));
     for &factor in &factors[states.len()..] {
-        match path.reach(states.last(), factor) {
+        match path.reach(states.last(), factor, attendance.on_the_way) {
             Ok(state) => {
                 if let Some(journal) = attendance.journal {
                     journal.keep(Milestone {
@@ -181,12 +181,13 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// Solves one load factor from the state before it, through intermediate ones where it must; a fault comes
+    /// Solves one load factor from the state before it, through intermediate ones where it must, which are told; a fault comes
     /// with the last of these.
     fn reach(
         &mut self,
         from: Option<&State>,
         factor: f64,
+        on_the_way: &dyn Fn(f64),
     ) -> Result<State, (SolveFault, Option<Box<State>>)> {
         let begin = from.map_or(0.0, |state| state.factor);
         let at_rest = SHORTEST_FROM_REST * factor.abs().max(begin.abs());
@@ -243,6 +244,7 @@ impl<'a> Path<'a> {
             if aim == factor {
                 return Ok(state);
             }
+            on_the_way(aim);
             last = Some(Box::new(state));
         }
     }

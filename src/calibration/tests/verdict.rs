@@ -3,6 +3,7 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
 
 use crate::calibration::*;
 use crate::document::Statements;
@@ -123,4 +124,33 @@ fn noise_that_correlates_along_the_strain_is_found_in_any_order_of_rows() {
         verdict.answer == Answer::Correlated && verdict.effective_points < 30.0
     });
     assert!(found.count() >= 4);
+}
+
+/// The noise of a strain along a steady pull, in the order of time: its stress is the law's at another strain than the one that stands there.
+#[test]
+fn noise_of_the_strain_along_a_pull_is_white() {
+    let white = (0..10).filter(|seed| {
+        let jitter = noise(170, 0.0, *seed);
+        let mut tests = curve(&[0.0; 170], 17);
+        for (observation, jitter) in tests[0].observations.iter_mut().zip(jitter) {
+            observation.strains[0] += jitter;
+        }
+        let quality = fitted("yeoh", &tests).quality;
+        quality.verdict.unwrap().answer == Answer::White && quality.has_intervals()
+    });
+    let count = white.count();
+    assert!(count >= 9, "{count} of 10");
+}
+
+/// Intervals of thousands of rows whose noise drifts over a tenth of the curve.
+#[test]
+fn intervals_of_many_rows_with_drifting_noise_hold_the_truth() {
+    let held = (0..16).into_par_iter().filter(|seed| {
+        let (count, length) = (3000, 300.0_f64);
+        let tests = curve(&noise(count, (-length.recip()).exp(), *seed), 17);
+        let quality = fitted("yeoh", &tests).quality;
+        quality.estimates[0].interval[0] <= YEOH[0] && quality.estimates[0].interval[1] >= YEOH[0]
+    });
+    let count = held.count();
+    assert!(count >= 13, "{count} of 16");
 }

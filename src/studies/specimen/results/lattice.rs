@@ -9,7 +9,7 @@ use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::{Model, Solution};
 use crate::solve::vector::difference;
-use crate::solve::{Assembly, Loading, NewtonSettings, PathEnd, Stage, State};
+use crate::solve::{Assembly, Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{LARGE, Specimen};
 
@@ -71,7 +71,17 @@ pub fn solve(
     progress: Progress,
 ) -> Solution {
     let told = |factor: f64| progress.tell(&format!("{}, load factor {factor} solved", model.name));
-    let states = model.attended(&specimen.factors, NEWTON, progress.along(&told));
+    let on_the_way = |factor: f64| {
+        progress.tell(&format!(
+            "{}, load factor {factor:.4}, one of many short steps",
+            model.name
+        ));
+    };
+    let attendance = Attendance {
+        on_the_way: &on_the_way,
+        ..progress.along(&told)
+    };
+    let states = model.attended(&specimen.factors, NEWTON, attendance);
     let states = states.unwrap_or_else(|end| {
         ends.push(End::of_path(specimen, model, file, &end));
         end.states
