@@ -68,14 +68,29 @@ pub fn warn(warnings: &[Diagnostic]) {
 pub fn complain(error: &Error) {
     let coloured = io::stderr().is_terminal();
     let text = match error {
-        Error::Input(faults) => faults
-            .iter()
-            .map(|fault| message::diagnostic(fault, coloured))
-            .collect(),
+        Error::Input(faults) => told(faults, &|fault| message::diagnostic(fault, coloured)),
         Error::Solve { fault, .. } => format!("error: {error}\n  try: {}\n", fault.advice()),
         Error::Write { .. } => format!("error: {error}\n"),
     };
     let _ = write!(io::stderr(), "{text}");
+}
+
+/// The words of some faults; of many with one cause the first ones stand for all.
+fn told(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String {
+    const OF_ONE_CAUSE: usize = 3;
+    let (mut text, mut more) = (String::new(), 0);
+    for (index, fault) in faults.iter().enumerate() {
+        let alike =
+            |other: &&Diagnostic| (&other.key, &other.message) == (&fault.key, &fault.message);
+        match faults[..index].iter().filter(alike).count() < OF_ONE_CAUSE {
+            true => text += &words(fault),
+            false => more += 1,
+        }
+    }
+    if more > 0 {
+        text += &format!("  and {more} more of the same\n");
+    }
+    text
 }
 
 /// Says which model ended early, and what to try.
@@ -83,4 +98,18 @@ pub fn complain_of_end(end: &End) {
     let advice = end.advice.map(|advice| format!("  try: {advice}\n"));
     let text = format!("error: {}\n{}", end.message, advice.unwrap_or_default());
     let _ = write!(io::stderr(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_faults_with_one_cause_three_are_told() {
+        let fault = |message: &str| Diagnostic::error("", message);
+        let mut faults: Vec<Diagnostic> = (0..40).map(|_| fault("a")).collect();
+        faults.push(fault("b"));
+        let text = told(&faults, &|fault| format!("{}\n", fault.message));
+        assert_eq!(text, "a\na\na\nb\n  and 37 more of the same\n");
+    }
 }

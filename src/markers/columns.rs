@@ -31,6 +31,19 @@ pub fn plain(table: &Table, names: Names) -> Option<usize> {
     names.iter().find_map(|name| table.column(name))
 }
 
+/// A warning where the heads of x and y, or of ux and uy, name two units.
+pub fn mixed_units<'a>(heads: impl Iterator<Item = Option<&'a str>>) -> Option<Diagnostic> {
+    let heads: Vec<Option<&str>> = heads.collect();
+    let mixed = heads.chunks_exact(2).find_map(|pair| match *pair {
+        [Some(along), Some(across)] if along != across => Some([along, across]),
+        _ => None,
+    });
+    mixed.map(|[along, across]| {
+        let message = format!("of two columns that belong together one is in {along} and one in {across}: each is taken in its own unit");
+        Diagnostic::warning("", message).hint("look at the head of the table")
+    })
+}
+
 /// The first column of one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
 pub fn find(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
     names.iter().find_map(|name| {

@@ -146,6 +146,7 @@ impl<'a> Reader<'a> {
             given: reading.unit,
             warnings: columns::correction(table, common.as_deref(), reading.unit)
                 .into_iter()
+                .chain(columns::mixed_units(names()))
                 .collect(),
         };
         let hint = "a field of this column is a number, or empty where nothing was found";

@@ -16,6 +16,10 @@ use crate::results::models::MODELS;
 use crate::results::{Array, Components, Grid, GridCell, GridSeries, Results};
 use crate::statistics::extremes;
 
+mod curves;
+
+use curves::curves;
+
 /// The most bytes of all fields, before they become letters.
 const MOST_BYTES: usize = 3_000_000;
 
@@ -307,41 +311,6 @@ fn parts(cell: GridCell) -> &'static [[usize; 3]] {
             [3, 7, 8],
         ],
     }
-}
-
-/// Numbers of the models along the path, forces first.
-fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
-    let steps = &results.outcome.steps;
-    let mut names: Vec<&String> = Vec::new();
-    for (key, value) in steps
-        .iter()
-        .flat_map(|step| step.models.values())
-        .filter_map(Value::as_object)
-        .flatten()
-    {
-        if value.is_number() && !names.contains(&key) {
-            names.push(key);
-        }
-    }
-    // Sorting keeps the order of equals.
-    names.sort_by_key(|name| !(name.contains("force_N") || name.contains("measured")));
-    let models: Vec<&String> = steps
-        .first()
-        .map_or(Vec::new(), |step| step.models.keys().collect());
-    let curve = |name: &&String| {
-        let of_model = |model: &&String| {
-            let at = |time: &f64| {
-                let step = steps.iter().find(|step| step.at == *time)?;
-                step.models.get(*model)?.get(*name)?.as_f64()
-            };
-            let points: Vec<Option<f64>> = shown.iter().map(at).collect();
-            let known = points.iter().flatten().count();
-            (known > 1).then(|| (model_label(model), json!(points)))
-        };
-        let of_models: Map<String, Value> = models.iter().filter_map(of_model).collect();
-        (!of_models.is_empty()).then(|| json!({ "label": label(name), "models": of_models }))
-    };
-    names.iter().filter_map(curve).collect()
 }
 
 #[cfg(test)]
