@@ -369,11 +369,11 @@ pub fn convert(arguments: ConvertArguments) -> Outcome {
         unit,
     }
     .table(&data)?;
-    let text = format!("# source: gelbench materials convert\n{text}");
     match arguments.output {
         None => print(&text)?,
         Some(file) => {
             output::refuse_inputs(&file, &[&arguments.data])?;
+            let text = format!("# source: gelbench materials convert\n{text}");
             warn(output::save(&file, text.as_bytes())?.as_slice());
             print(&format!("{} written\n", file.display()))?;
         }

@@ -91,13 +91,22 @@ impl Matrix {
         (0..rows).map(outside).collect()
     }
 
-    /// The points without a marker that hang together with such at the rim of some rows and columns.
+    /// The points without a marker around which there is none either, within some rows and columns, as far as they hang together with the
+    /// rim, and those beside them: single ones are lost.
     fn connected_to_rim(
         &self,
         columns: &std::ops::Range<usize>,
         rows: &std::ops::Range<usize>,
     ) -> Vec<Vec<bool>> {
-        let mut reached = vec![vec![false; self.lines[0].len()]; self.lines[1].len()];
+        let around = |x: usize, y: usize| {
+            let near = |at: usize, range: &std::ops::Range<usize>| {
+                at.saturating_sub(1).max(range.start)..(at + 2).min(range.end)
+            };
+            let columns = near(x, columns);
+            near(y, rows).flat_map(move |y| columns.clone().map(move |x| (x, y)))
+        };
+        let is_empty = |x: usize, y: usize| around(x, y).all(|(x, y)| !self.found[y][x]);
+        let mut empty = vec![vec![false; self.lines[0].len()]; self.lines[1].len()];
         let at_rim = |x: usize, y: usize| {
             [columns.start, columns.end - 1].contains(&x) || [rows.start, rows.end - 1].contains(&y)
         };
@@ -105,22 +114,14 @@ impl Matrix {
             .clone()
             .flat_map(|y| columns.clone().map(move |x| (x, y)));
         let mut open: Vec<(usize, usize)> = all.filter(|(x, y)| at_rim(*x, *y)).collect();
+        let mut reached = empty.clone();
         while let Some((x, y)) = open.pop() {
-            if self.found[y][x] || reached[y][x] {
+            if empty[y][x] || !is_empty(x, y) {
                 continue;
             }
-            reached[y][x] = true;
-            let beside = [
-                (x.wrapping_sub(1), y),
-                (x + 1, y),
-                (x, y.wrapping_sub(1)),
-                (x, y + 1),
-            ];
-            open.extend(
-                beside
-                    .into_iter()
-                    .filter(|(x, y)| columns.contains(x) && rows.contains(y)),
-            );
+            empty[y][x] = true;
+            around(x, y).for_each(|(x, y)| reached[y][x] = true);
+            open.extend(around(x, y));
         }
         reached
     }
@@ -166,6 +167,13 @@ mod tests {
         let waist = |x: usize, y: usize| !(3..=8).contains(&x) || (2..6).contains(&y);
         let [found, lost] = matrix(waist);
         assert!(within(&found, lost).is_empty());
+    }
+
+    #[test]
+    fn markers_that_are_lost_here_and_there_count() {
+        let scattered = |x: usize, y: usize| (7 * x + 5 * y).is_multiple_of(3);
+        let [found, lost] = matrix(scattered);
+        assert_eq!(within(&found, lost.clone()), lost);
     }
 
     #[test]

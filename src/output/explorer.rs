@@ -17,8 +17,10 @@ use crate::results::{Array, Components, Grid, GridCell, GridSeries, Results};
 use crate::statistics::extremes;
 
 mod curves;
+mod labels;
 
 use curves::curves;
+use labels::{label, model_label};
 
 /// The most bytes of all fields, before they become letters.
 const MOST_BYTES: usize = 3_000_000;
@@ -157,37 +159,6 @@ fn fields(grid: &Grid) -> Value {
     own.into_iter().chain(arrays).collect()
 }
 
-/// `von_mises_stress_at_nodes_MPa` as people write it.
-fn label(name: &str) -> String {
-    const UNITS: [(&str, &str); 8] = [
-        ("_mm_per_s", "mm/s"),
-        ("_mm2_per_N", "mm²/N"),
-        ("_percent", "%"),
-        ("_MPa", "MPa"),
-        ("_mm", "mm"),
-        ("_mJ", "mJ"),
-        ("_N", "N"),
-        ("_s", "s"),
-    ];
-    let name = name.replace("_at_nodes", "");
-    let found = UNITS
-        .iter()
-        .find_map(|(end, unit)| Some((name.strip_suffix(end)?, format!(" [{unit}]"))));
-    let (words, unit) = found.unwrap_or((&name, String::new()));
-    let words = words
-        .replace('_', " ")
-        .replace("mises", "Mises")
-        .replace("cauchy", "Cauchy")
-        .replace("green lagrange", "Green-Lagrange");
-    format!("{words}{unit}")
-}
-
-/// A model as reports call it.
-fn model_label(name: &str) -> String {
-    let known = MODELS.into_iter().find(|style| style.key == name);
-    known.map_or_else(|| name.replace('_', " "), |style| style.name.to_owned())
-}
-
 fn model(series: &GridSeries, shown: &[f64]) -> Value {
     let grid = &series.grids[0].grid;
     let points = grid.points.iter().flatten();
@@ -316,21 +287,6 @@ fn parts(cell: GridCell) -> &'static [[usize; 3]] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_of_arrays_are_words_with_units() {
-        assert_eq!(
-            label("von_mises_stress_at_nodes_MPa"),
-            "von Mises stress [MPa]"
-        );
-        assert_eq!(label("grip_force_N"), "grip force [N]");
-        assert_eq!(label("wrinkling"), "wrinkling");
-        assert_eq!(
-            label("difference_to_finite_elements_mm"),
-            "difference to finite elements [mm]"
-        );
-        assert_eq!(model_label("finite_element"), "finite elements");
-    }
 
     #[test]
     fn numbers_are_packed_within_a_65534th_of_their_range() {

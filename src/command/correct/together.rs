@@ -11,12 +11,12 @@ use crate::command::interrupt;
 use crate::command::progress::Progress;
 use crate::command::terminal::{Outcome, print_report, warn};
 use crate::corrector::estimation::JointSettings;
-use crate::error::Error;
+use crate::error::{Diagnostic, Error};
 use crate::material::Card;
 use crate::material::softened_law::check_memory;
 use crate::output::{self, ResultFolder};
 use crate::studies::markers::joint::{
-    CorrectedSpecimen, JointStudy, NamedSpecimen, given_the_law, results,
+    CorrectedSpecimen, JointStudy, NamedSpecimen, given_the_law, results, undetermined,
 };
 use crate::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
 use crate::studies::name;
@@ -57,6 +57,12 @@ pub fn run(options: Options) -> Outcome {
         });
     }
     warn(&[given_the_law()]);
+    let undetermined = undetermined(&found.estimate);
+    warn(
+        undetermined
+            .map(|told| Diagnostic::warning("", told))
+            .as_slice(),
+    );
     interrupt::guard(&results_folder);
     let seconds = start.elapsed().as_secs_f64();
     let results = results(&study, &found, &corrected, seconds);

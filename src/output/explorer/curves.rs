@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use super::{label, model_label};
+use super::labels::{label, model_label};
 use crate::results::Results;
 
 /// The numbers of a model at one step, by name: those that stand there, and the forces on edges.

@@ -18,7 +18,7 @@ mod card;
 mod report;
 mod results;
 
-pub use results::{KIND, results};
+pub use results::{KIND, results, undetermined};
 
 /// A specimen and its name.
 pub type NamedSpecimen = (String, MarkerStudy);

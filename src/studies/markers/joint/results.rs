@@ -25,13 +25,13 @@ pub fn results(
         let told = specimen.study.warnings.iter();
         told.map(|warning| format!("{}: {warning}", specimen.name))
     });
+    let warnings = warnings.chain(undetermined(&found.estimate));
     let ended = found.estimate.ended.iter().map(|ended| {
         format!("the search for the parameters ended before its goal: {ended}; frames, forces and thickness contradict each other")
     });
     let scattered = forces_scatter(&found.estimate);
     let doubts = ended
         .chain(scattered)
-        .chain(undetermined(&found.estimate))
         .chain(specimens.iter().filter_map(doubt));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let outcome = Outcome {
@@ -80,7 +80,7 @@ fn forces_scatter(estimate: &JointEstimate) -> Option<String> {
 }
 
 /// What the data do not tell of the parameters, and the intervals of the others do not hold.
-fn undetermined(estimate: &JointEstimate) -> Option<String> {
+pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
     let open = estimate
         .directions
         .iter()
