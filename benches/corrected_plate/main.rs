@@ -173,7 +173,11 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
         ("corrected_plate.csv", columns::csv(&columns)),
         ("corrected_plate.png", picture),
     ] {
-        println!("{}", output::save(&folder.join(name), &bytes)?.display());
+        let path = folder.join(name);
+        // That of the run before.
+        let _ = std::fs::remove_file(&path);
+        output::save(&path, &bytes)?;
+        println!("{}", path.display());
     }
     Ok(missed)
 }

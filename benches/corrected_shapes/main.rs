@@ -171,7 +171,10 @@ fn bench(extent: &Extent, two: &ThreadPool) -> Result<usize, Error> {
         ("corrected_shapes.png", picture),
     ] {
         let path = Path::new(FOLDER).join(name);
-        println!("{}", output::save(&path, &bytes)?.display());
+        // That of the run before.
+        let _ = std::fs::remove_file(&path);
+        output::save(&path, &bytes)?;
+        println!("{}", path.display());
     }
     Ok(missed)
 }
