@@ -68,11 +68,15 @@ fn columns_are_read_with_units_frames_and_holes() {
     near(&first.markers, &[with]);
     near(&second.markers, &[marker(0, [10.0, 2.0], [1.0, 0.5])]);
     let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
-    assert!(
-        told[0].contains("points without a displacement: 2"),
-        "{told:?}"
-    );
-    assert!(told[1].contains("frames are missing: 2"), "{told:?}");
+    let expected = [
+        "one is in cm and one in mm",
+        "points without a displacement: 2",
+        "frames are missing: 2",
+    ];
+    for (told, expected) in told.iter().zip(expected) {
+        assert!(told.contains(expected), "{told}");
+    }
+    assert_eq!(told.len(), expected.len(), "{told:?}");
 }
 
 /// The first lines of a file among DICe's regression tests, shortened, and one point that was lost.
