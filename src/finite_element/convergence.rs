@@ -44,7 +44,7 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
     }
 }
 
-/// The exponent α of the displacement rᵅ beside a re-entrant corner of the angle ω, in rad, between free or held edges of an elastic
+/// The exponent α of the displacement rᵅ beside a re-entrant corner of the angle ω, in rad, between free edges of an elastic
 /// sheet:
 ///
 /// ```text

@@ -1,6 +1,6 @@
 //! Zeros of strain or stress that were found at the beginning of a record, found again with the law.
 //!
-//! The parabola that follows a beginning back to rest, [`super::zero`], sees a few rows; the law sees all of them. Taken as known, the
+//! The parabola that follows a beginning back to rest, [`crate::calibration::data`], sees a few rows; the law sees all of them. Taken as known, the
 //! zero that the parabola finds makes the law's parameters wrong by many of their standard errors. So the zero is one more
 //! value of the fit, r(p, δ) = σᵢ − σ(p; λᵢ + δ) or σᵢ + δ − σ(p; λᵢ), and its uncertainty is part of the intervals. Where what
 //! is left then is no noise, the law would take its own misfit for a zero: the zero stays.

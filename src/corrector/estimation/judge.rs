@@ -1,7 +1,7 @@
 //! The verdict on an estimate: is what is left white, does it correlate as noise does, or is it no noise?
 //!
 //! Noise that correlates is found by restricted likelihood, once with the equations as they are, for the intervals, and once with
-//! every freedom of [`super::freedoms`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
+//! every freedom of [`freedoms`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
 //! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
 
 use super::equations::Equations;

@@ -4,7 +4,7 @@
 //! ∂u/∂c = K⁻¹ f,   fᵢ = ∫ Nᵢ φ dA (a force),   −∫ φ P ∇Nᵢ dV (a stiffness that varies),   −∫ P* ∇Nᵢ dV (another law's P*)
 //! ```
 //!
-//! and as what the picture could lack: its scale ([`super::picture_scale`]).
+//! and as what the picture could lack: its scale ([`crate::corrector::estimation::uncertainty`]).
 
 use nalgebra::DMatrix;
 

@@ -7,7 +7,7 @@
 //! G = ∇u_{h/2} + ∇(S δp)                       in the middle of a cell                       [–]
 //! ```
 //!
-//! with A, W, v, G, M of [`super::regression`], S = ∂u/∂p, d_F the same difference of the measured forces. The difference of two
+//! with A, W, v, G, M of [`crate::corrector::estimation::regression`], S = ∂u/∂p, d_F the same difference of the measured forces. The difference of two
 //! meshes is at least half of the coarser one's error where the order is one, as beside a singular corner, and more of it
 //! elsewhere: ± 1.96 e holds the error.
 

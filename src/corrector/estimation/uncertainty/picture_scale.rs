@@ -7,7 +7,7 @@
 //! Cov(p) = C + σₑ² (∂p/∂e)(∂p/∂e)ᵀ
 //! ```
 //!
-//! with A, W, v, M of [`super::regression`]. Much of it looks like an even stretch, so that data which are explained do not tell it.
+//! with A, W, v, M of [`crate::corrector::estimation::regression`]. Much of it looks like an even stretch, so that data which are explained do not tell it.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@
 //! dⱼ = (M − (1 − ε) λⱼ BⱼᵀBⱼ)⁻¹ (1 − ε) λⱼ Bⱼᵀρⱼ,   Cov(p) ← Cov(p) + Σ dⱼ dⱼᵀ
 //! ```
 //!
-//! with M, λ, B, ρ of [`super::regression`]: dⱼ is what the parameters would change by if prior j had the share ε of its weight. M⁻¹
+//! with M, λ, B, ρ of [`crate::corrector::estimation::regression`]: dⱼ is what the parameters would change by if prior j had the share ε of its weight. M⁻¹
 //! holds the bias of smoothing on the average over an edge alone: where an edge bends in one place and is straight elsewhere, its
 //! intervals are too narrow in that place and too wide elsewhere. Less smoothing shows such places.
 //!

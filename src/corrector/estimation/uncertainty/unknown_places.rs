@@ -8,7 +8,7 @@
 //! Cov(p, d) = [C + DΣDᵀ, DΣ; ΣDᵀ, Σ],   ∂u/∂(p, d) = [S, s]
 //! ```
 //!
-//! with A, W, v, G, M of [`super::regression`]. The field stays that through the edges of the mesh: the distances are parameters that are
+//! with A, W, v, G, M of [`crate::corrector::estimation::regression`]. The field stays that through the edges of the mesh: the distances are parameters that are
 //! considered, not found (Schmidt), so that data which hardly tell of them do not move it.
 //!
 //! # References
