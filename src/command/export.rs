@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::large::Large;
-use super::terminal::{Outcome, print, warn};
+use super::terminal::{Outcome, print, save, warn};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::Code;
 use crate::output;
@@ -77,7 +77,7 @@ pub fn run(options: &Options) -> Outcome {
     let usual = || Path::new("output").join(&stem).join(name);
     let target = options.output.clone().unwrap_or_else(usual);
     output::refuse_inputs(&target, &[path])?;
-    warn(output::save(&target, written.text.as_bytes())?.as_slice());
+    save(&target, written.text.as_bytes())?;
     for remark in written.remarks {
         warn(&[Diagnostic::warning("", remark)]);
     }

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 
 use super::fitted::{InTime, fitted, terms};
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, warn};
+use super::terminal::{Outcome, Printed, print, print_report, save, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
@@ -374,7 +374,7 @@ pub fn convert(arguments: ConvertArguments) -> Outcome {
         Some(file) => {
             output::refuse_inputs(&file, &[&arguments.data])?;
             let text = format!("# source: gelbench materials convert\n{text}");
-            warn(output::save(&file, text.as_bytes())?.as_slice());
+            save(&file, text.as_bytes())?;
             print(&format!("{} written\n", file.display()))?;
         }
     }

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, warn};
+use super::terminal::{Outcome, Printed, print, print_report, save, warn};
 use crate::budget::Need;
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
@@ -120,7 +120,7 @@ pub fn run(options: Options) -> Outcome {
             seed: options.seed,
             ..Sample::default()
         };
-        warn(output::save(&file, sample.csv().as_bytes())?.as_slice());
+        save(&file, sample.csv().as_bytes())?;
         print(&format!("{} written\n", file.display()))?;
         return Ok(0);
     }

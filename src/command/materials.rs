@@ -6,7 +6,7 @@ use clap::Subcommand;
 
 use super::fit::{ConvertArguments, FitArguments, convert, fit, load, refit, together};
 use super::message;
-use super::terminal::{Outcome, print, warn};
+use super::terminal::{Outcome, print, save};
 use crate::error::Error;
 use crate::material::registry::{CARDS, LAWS};
 use crate::output;
@@ -140,6 +140,5 @@ fn compare(names: &[String], file: &Path) -> Outcome {
 /// Draws what was asked for and nothing else: a picture that cannot be drawn is a fault here.
 fn save_picture(file: &Path, drawing: &Drawing) -> Result<(), Error> {
     let picture = output::png(drawing).map_err(|fault| Error::write(file, fault))?;
-    warn(output::save(file, &picture)?.as_slice());
-    Ok(())
+    save(file, &picture)
 }

@@ -5,9 +5,8 @@ use std::path::Path;
 use clap::Command;
 use clap_complete::Shell;
 
-use super::terminal::{Outcome, print, warn};
+use super::terminal::{Outcome, print, save};
 use crate::error::Error;
-use crate::output;
 
 /// Prints the completions of a shell.
 pub fn completions(shell: Shell, command: &mut Command) -> Outcome {
@@ -33,7 +32,7 @@ fn pages(command: &Command, folder: &Path) -> Result<usize, Error> {
     manual
         .render(&mut page)
         .map_err(|cause| Error::write(&target, cause))?;
-    warn(output::save(&target, &page)?.as_slice());
+    save(&target, &page)?;
     let parts = command.get_subcommands();
     let mut parts = parts.filter(|part| part.get_name() != "help");
     parts.try_fold(1, |written, part| Ok(written + pages(part, folder)?))

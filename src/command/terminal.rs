@@ -1,6 +1,8 @@
 //! Printing: results to standard output, what deserves attention and progress to standard error.
 
+use std::collections::HashMap;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
@@ -8,6 +10,7 @@ use serde_json::Value;
 
 use super::message;
 use crate::error::{Diagnostic, Error};
+use crate::output;
 use crate::results::End;
 
 /// What a command comes to: its exit code, or the fault that decides on it.
@@ -64,6 +67,15 @@ pub fn warn(warnings: &[Diagnostic]) {
     }
 }
 
+/// Writes a file, and tells what was kept that stood in its place.
+///
+/// # Errors
+/// As [`output::save`].
+pub fn save(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    warn(output::save(path, bytes)?.as_slice());
+    Ok(())
+}
+
 /// Prints a fault with what may help.
 pub fn complain(error: &Error) {
     let coloured = io::stderr().is_terminal();
@@ -79,10 +91,11 @@ pub fn complain(error: &Error) {
 fn told(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String {
     const OF_ONE_CAUSE: usize = 3;
     let (mut text, mut more) = (String::new(), 0);
-    for (index, fault) in faults.iter().enumerate() {
-        let alike =
-            |other: &&Diagnostic| (&other.key, &other.message) == (&fault.key, &fault.message);
-        match faults[..index].iter().filter(alike).count() < OF_ONE_CAUSE {
+    let mut told: HashMap<(&str, &str), usize> = HashMap::new();
+    for fault in faults {
+        let alike = told.entry((&fault.key, &fault.message)).or_default();
+        *alike += 1;
+        match *alike <= OF_ONE_CAUSE {
             true => text += &words(fault),
             false => more += 1,
         }

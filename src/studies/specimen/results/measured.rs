@@ -1,5 +1,7 @@
 //! What is compared at the measured group: the force of its supports, or a displacement where that force is given.
 
+use std::collections::BTreeMap;
+
 use crate::mesh::Mesh;
 use crate::problem::{Drive, GroupState, Load, Solution, Support};
 use crate::studies::specimen::problem::Specimen;
@@ -98,6 +100,9 @@ impl Measured {
     }
 }
 
+/// The unknowns that are held, each with the number of the support that holds it.
+type Held = BTreeMap<usize, usize>;
+
 /// What the loads push: a group, and the axis where they have a direction.
 struct Pushed<'a> {
     group: &'a str,
@@ -109,27 +114,27 @@ impl Specimen {
     /// component. A force that equilibrium alone gives says nothing of a model; then it is the displacement of what the
     /// loads push.
     pub fn measured(&self, mesh: &Mesh, last: &[GroupState]) -> Measured {
-        let moved: Vec<_> = self
-            .pushed()
-            .filter(|pushed| self.moves(mesh, pushed))
-            .collect();
+        let held = self.problem.held_by(mesh).unwrap_or_default();
+        let moved = self.pushed().filter(|pushed| moves(mesh, &held, pushed));
+        let moved: Vec<_> = moved.collect();
         let force = self.along_larger(&self.group, last, Quantity::Force);
-        let held = self.held_along(mesh);
+        let held_along = self.held_along(mesh, &held);
         let nodes = |group: &str| &mesh.groups()[group].nodes;
         let own = moved
             .iter()
             .find(|pushed| nodes(pushed.group) == nodes(&self.group));
         // A support that does more than the load along another axis is what is measured.
-        let is_beside =
-            |own: &Pushed| held[force.axis] && own.axis.is_some_and(|axis| axis != force.axis);
+        let is_beside = |own: &Pushed| {
+            held_along[force.axis] && own.axis.is_some_and(|axis| axis != force.axis)
+        };
         if let Some(own) = own.filter(|own| !is_beside(own)) {
             return self.displaced(own, last);
         }
-        if held == [false; 2] {
+        if held_along == [false; 2] {
             return self.along_larger(&self.group, last, Quantity::Displacement);
         }
         match moved.first() {
-            Some(first) if self.holds_alone(mesh, force.axis) => {
+            Some(first) if self.holds_alone(mesh, &held, force.axis) => {
                 let mut along = moved
                     .iter()
                     .filter(|pushed| pushed.axis == Some(force.axis));
@@ -168,8 +173,7 @@ impl Specimen {
     }
 
     /// Whether supports hold the measured group along each axis, by whatever name: more of its nodes than its ends alone.
-    fn held_along(&self, mesh: &Mesh) -> [bool; 2] {
-        let held = self.problem.held_by(mesh).unwrap_or_default();
+    fn held_along(&self, mesh: &Mesh, held: &Held) -> [bool; 2] {
         let nodes = &mesh.groups()[&self.group].nodes;
         [0, 1].map(|axis| {
             let own = nodes
@@ -204,24 +208,22 @@ impl Specimen {
         grips.chain(loads)
     }
 
-    /// Whether supports leave some of a group free to move as it is pushed.
-    fn moves(&self, mesh: &Mesh, pushed: &Pushed) -> bool {
-        let held = self.problem.held_by(mesh).unwrap_or_default();
-        let nodes = &mesh.groups()[pushed.group].nodes;
-        let free = |axis: usize| {
-            nodes
-                .iter()
-                .any(|node| !held.contains_key(&(2 * node + axis)))
-        };
-        pushed.axis.map_or(free(0) || free(1), free)
-    }
-
     /// Whether no other nodes than those of the measured group are held along an axis.
-    fn holds_alone(&self, mesh: &Mesh, axis: usize) -> bool {
+    fn holds_alone(&self, mesh: &Mesh, held: &Held, axis: usize) -> bool {
         let own = &mesh.groups()[&self.group].nodes;
-        let held = self.problem.held_by(mesh).unwrap_or_default();
         held.keys()
             .filter(|unknown| *unknown % 2 == axis)
             .all(|unknown| own.contains(&(unknown / 2)))
     }
+}
+
+/// Whether supports leave some of a group free to move as it is pushed.
+fn moves(mesh: &Mesh, held: &Held, pushed: &Pushed) -> bool {
+    let nodes = &mesh.groups()[pushed.group].nodes;
+    let free = |axis: usize| {
+        nodes
+            .iter()
+            .any(|node| !held.contains_key(&(2 * node + axis)))
+    };
+    pushed.axis.map_or(free(0) || free(1), free)
 }
