@@ -7,6 +7,7 @@
 //! | 2 | the study, a card or the command line is wrong |
 //! | 3 | a model has no solution that could be found; what the others have is written |
 //! | 4 | a file could not be written |
+//! | 5 | measured data are not explained by the law and the conditions |
 //! | 70 | a fault of the program itself |
 //! | 130 | interrupted |
 
@@ -30,6 +31,7 @@ use reference::FileKind;
 use serde_json::{Value, json};
 use terminal::{Outcome, Printed, complain, complain_of_end, print, print_report, warn};
 
+mod choice;
 mod compare;
 mod containment;
 mod correct;

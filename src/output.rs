@@ -17,7 +17,9 @@ pub mod vtk;
 #[cfg(feature = "pictures")]
 pub use files::{TakesFiles, save, write, write_document, write_frame, write_grids, write_picture};
 #[cfg(feature = "pictures")]
-pub use folder::{BrokenOff, Left, ResultFolder, Unfinished, identity, refuse_inputs, relative};
+pub use folder::{
+    ANOTHER_FOLDER, BrokenOff, Left, ResultFolder, Unfinished, identity, refuse_inputs, relative,
+};
 pub use markdown::markdown;
 #[cfg(feature = "pictures")]
 pub use picture::{Drawn, PictureFault, picture, png};

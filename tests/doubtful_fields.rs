@@ -320,6 +320,34 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
 }
 
 #[test]
+fn a_gap_is_a_hole_whether_its_points_have_rows_or_not() {
+    let in_gap = |[x, y]: [f64; 2]| (x - 75.0).abs() < 12.5 && (y - 25.0).abs() < 12.5;
+    let without_rows = second_frame(|place| !in_gap(place));
+    let emptied = |row: &str| match row.split(',').collect::<Vec<_>>()[..] {
+        [x, y, ..] if in_gap([x, y].map(|at| at.parse().unwrap_or(f64::NAN))) => {
+            format!("{x},{y},NaN,NaN\n")
+        }
+        _ => format!("{row}\n"),
+    };
+    let with_rows: String = second_frame(|_| true).lines().map(emptied).collect();
+    let (printed, left_out) = corrected(&without_rows, &[], NOT_EXPLAINED);
+    assert!(printed.contains("taken for holes: 1"), "{printed}");
+    let (printed, empty) = corrected(&with_rows, &[], NOT_EXPLAINED);
+    // A marker beside the 25 was lost.
+    assert!(
+        printed.contains("taken for holes: 1, with 26 points in them"),
+        "{printed}"
+    );
+    let forces = |report: &Value| report["steps"][0]["corrected"]["forces"].clone();
+    assert_eq!(forces(&left_out), forces(&empty));
+    // The plate has none.
+    let closed = ["--holes", "closed", "--edge-gap", "0 mm"];
+    let (_, closed) = corrected(&with_rows, &closed, 0);
+    let [_, low, high] = right_force(&closed);
+    assert!(low < FORCE && FORCE < high, "{low} … {high}");
+}
+
+#[test]
 fn cells_become_smaller_until_their_own_error_is_a_small_part_of_the_intervals() {
     let text = second_frame(|_| true);
     let coarse = ["--cell-size", "25 mm", "--edge-gap", "0 mm"];

@@ -76,7 +76,11 @@ fn what_cannot_be_exported_is_refused_before_anything_is_written() {
     for (study, arguments, told) in [
         (&*gripped, vec!["--to", "febio"], "export to Abaqus"),
         (SMALL, vec!["--to", "calculix"], "fit such a card"),
-        (PLATE, vec!["--to", "calculx"], "did you mean `calculix`"),
+        (
+            PLATE,
+            vec!["--to", "calculx"],
+            "a similar value exists: 'calculix'",
+        ),
         (
             PLATE,
             vec!["--to", "febio", "--bulk-ratio", "1"],

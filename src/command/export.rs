@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::choice::one_of;
 use super::large::Large;
 use super::terminal::{Outcome, print, save, warn};
-use crate::error::{Diagnostic, Error, suggestion};
+use crate::error::{Diagnostic, Error};
 use crate::material::Code;
 use crate::output;
 use crate::output::export::{Export, InputFile};
@@ -32,8 +33,8 @@ pub enum Level {
 pub struct Options {
     /// The study file: a plate, or one of the kind specimen
     pub study: PathBuf,
-    /// The code: abaqus, calculix or febio
-    #[arg(long = "to", value_name = "CODE", value_parser = code)]
+    /// The code
+    #[arg(long = "to", value_name = "CODE", value_parser = one_of(&Code::NAMES))]
     pub code: Code,
     /// Write this file instead of one in output/
     #[arg(long, value_name = "FILE")]
@@ -134,13 +135,4 @@ fn plate(path: &Path, text: String, options: &Options) -> Result<InputFile, Erro
         bulk_ratio: options.bulk_ratio,
     };
     export.input_file(options.code)
-}
-
-/// A code by its name.
-fn code(name: &str) -> Result<Code, String> {
-    let known = Code::NAMES.iter().find(|(known, _)| *known == name);
-    let names = Code::NAMES.map(|(known, _)| known);
-    known
-        .map(|(_, code)| *code)
-        .ok_or_else(|| suggestion(name, &names, "codes:"))
 }

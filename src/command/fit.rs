@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args};
 
+use super::choice::one_of;
 use super::fitted::{InTime, fitted, terms};
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, save, warn};
@@ -14,7 +16,7 @@ use crate::calibration::{
     Weighting,
 };
 use crate::document::Statements;
-use crate::error::{Diagnostic, Error, suggestion};
+use crate::error::{Diagnostic, Error};
 use crate::material::Card;
 use crate::material::card::FitRecord;
 use crate::material::parameters::StressMeasure;
@@ -29,8 +31,8 @@ pub struct FitArguments {
     #[arg(required = true)]
     data: Vec<PathBuf>,
     /// The law
-    #[arg(long, group = "laws")]
-    law: Option<String>,
+    #[arg(long, group = "laws", value_parser = a_law())]
+    law: Option<&'static Law>,
     /// Fit all laws, rank them, and write the first one that is stable over the data and whose parameters they all tell
     #[arg(long, group = "laws")]
     all: bool,
@@ -46,8 +48,8 @@ pub struct FitArguments {
     card: Option<String>,
     /// absolute: differences of stress count alike; relative: relative differences do, where a stress below 1 % of its test's
     /// largest counts as that 1 %
-    #[arg(long, default_value = "absolute")]
-    weighting: String,
+    #[arg(long, default_value = "absolute", value_parser = one_of(&Weighting::NAMES))]
+    weighting: Weighting,
     /// Keep a parameter within limits, in MPa, rad or as a ratio
     #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
     bounds: Vec<String>,
@@ -70,12 +72,12 @@ pub struct FitArguments {
 pub struct ConvertArguments {
     /// The file of test data
     data: PathBuf,
-    /// Stress measure to write: nominal or cauchy
-    #[arg(long, value_name = "MEASURE")]
-    to_stress: Option<String>,
-    /// Strain measure to write: stretch, nominal or logarithmic
-    #[arg(long, value_name = "MEASURE")]
-    to_strain: Option<String>,
+    /// Stress measure to write
+    #[arg(long, value_name = "MEASURE", value_parser = one_of(&StressMeasure::NAMES))]
+    to_stress: Option<StressMeasure>,
+    /// Strain measure to write
+    #[arg(long, value_name = "MEASURE", default_value = "stretch", value_parser = one_of(&StrainColumn::NAMES))]
+    to_strain: StrainColumn,
     /// Unit of stress to write
     #[arg(long, value_name = "UNIT", default_value = "MPa")]
     to_unit: String,
@@ -121,7 +123,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     let tests = together(files.map(|path| TestData::read(path, &reading)))?;
     tests.iter().for_each(|test| warn(&test.warnings));
     let settings = FitSettings {
-        weighting: chosen("--weighting", &arguments.weighting, &Weighting::NAMES)?,
+        weighting: arguments.weighting,
         bounds: bounds(&arguments.bounds)?,
         starts: arguments.starts.into(),
     };
@@ -129,8 +131,8 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         true => InTime::Softening,
         false => terms.map_or(InTime::Nothing, InTime::Relaxation),
     };
-    let named = [&arguments.law, &arguments.card].map(Option::as_deref);
-    let fit = found(named, &tests, &settings, wanted)?;
+    let base = arguments.card.as_deref().map(load).transpose()?;
+    let fit = found((arguments.law, base), &tests, &settings, wanted)?;
     let tests = fit.fitted_tests(&tests);
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let more = match (&fit.relaxed, &fit.softened) {
@@ -170,21 +172,20 @@ pub fn fit(arguments: FitArguments) -> Outcome {
 
 /// The fit of a law, on top of a card, or of the best law where neither is named.
 fn found(
-    [of_law, card]: [Option<&str>; 2],
+    (law, base): (Option<&'static Law>, Option<Card>),
     tests: &[TestData],
     settings: &FitSettings,
     wanted: InTime,
 ) -> Result<Fit, Error> {
     let progress = Progress::of(0);
-    let base = card.map(load).transpose()?;
-    match (of_law, &base) {
+    match (law, &base) {
         (_, Some(card)) => {
             progress.tell(&card.name);
             calibration::fit_softening(Base::Card(card), tests, settings)
         }
-        (Some(name), _) => {
-            progress.tell(name);
-            fitted(law(name)?, tests, settings, wanted)
+        (Some(law), _) => {
+            progress.tell(law.name);
+            fitted(law, tests, settings, wanted)
         }
         _ => {
             progress.tell("all laws");
@@ -265,12 +266,10 @@ fn guard(card: &Path, others: &[PathBuf]) -> Result<(), Error> {
         .map_or(Ok(()), |path| refuse(path))
 }
 
-fn law(name: &str) -> Result<&'static Law, Error> {
-    Law::named(name).ok_or_else(|| {
-        let known: Vec<_> = LAWS.iter().map(|law| law.name).collect();
-        let message = format!("there is no law `{name}`");
-        Error::input(message, suggestion(name, &known, "laws:"))
-    })
+fn a_law() -> impl TypedValueParser<Value = &'static Law> {
+    let names = LAWS.iter().map(|law| law.name);
+    PossibleValuesParser::new(names)
+        .map(|name| Law::named(&name).expect("clap has found the name among the laws"))
 }
 
 fn chosen<T: Copy>(option: &str, name: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
@@ -326,7 +325,8 @@ pub fn refit(name: &str) -> Outcome {
                 true => InTime::Softening,
                 false => terms.map_or(InTime::Nothing, InTime::Relaxation),
             };
-            fitted(law(&card.law_name)?, &tests, &settings, wanted)?
+            let law = Law::named(&card.law_name).expect("a card that was loaded has a known law");
+            fitted(law, &tests, &settings, wanted)?
         }
     };
     let (text, same) = fit_message::refit(&card, &fit, &fit.fitted_tests(&tests));
@@ -352,21 +352,10 @@ fn data(file: &str, folder: Option<&Path>, record: &FitRecord) -> Result<TestDat
 /// Writes test data in other measures and units.
 pub fn convert(arguments: ConvertArguments) -> Outcome {
     let data = TestData::read(&arguments.data, &arguments.reading.reading())?;
-    let stress = arguments
-        .to_stress
-        .map_or(Ok(data.stress_measure), |name| {
-            chosen("--to-stress", &name, &StressMeasure::NAMES)
-        })?;
-    let strain = arguments
-        .to_strain
-        .map_or(Ok(StrainColumn::Stretch), |name| {
-            chosen("--to-strain", &name, &StrainColumn::NAMES)
-        })?;
-    let unit = arguments.to_unit;
     let text = Conversion {
-        stress,
-        strain,
-        unit,
+        stress: arguments.to_stress.unwrap_or(data.stress_measure),
+        strain: arguments.to_strain,
+        unit: arguments.to_unit,
     }
     .table(&data)?;
     match arguments.output {

@@ -69,21 +69,25 @@ pub fn checks(cases: &[Results]) -> String {
     text + &format!("{} of {} checks passed\n", passed[1], passed[0] + passed[1])
 }
 
-/// ` = 0.2 % (at most 0.5)`; nothing behind a fault, which has no value and no limit.
+/// ` = 0.2 % (at most 0.5 %)`; nothing behind a fault, which has no value and no limit.
 fn computed(check: &Check) -> String {
     if check.is_fault() {
         return String::new();
     }
+    let unit = match check.unit {
+        "–" => String::new(),
+        unit => format!(" {unit}"),
+    };
     let wanted = match check.wanted {
         Wanted::Equal(value, tolerance) => format!("{} ± {} %", limit(value), limit(tolerance)),
-        Wanted::AtMost(most) => format!("at most {}", limit(most)),
-        Wanted::AtLeast(least) => format!("at least {}", limit(least)),
+        Wanted::AtMost(most) => format!("at most {}{unit}", limit(most)),
+        Wanted::AtLeast(least) => format!("at least {}{unit}", limit(least)),
     };
     let value = match check.computed.is_nan() {
         true => "–".to_owned(),
         false => number(check.computed),
     };
-    format!(" = {value} {} ({wanted})", check.unit)
+    format!(" = {value}{unit} ({wanted})")
 }
 
 /// One line of the list of cards.

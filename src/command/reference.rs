@@ -106,7 +106,11 @@ pub fn write(name: PathBuf, kind: FileKind) -> Outcome {
         return Err(Error::write(path, cause));
     }
     output::save(&path, kind.template().as_bytes())?;
-    let shown = path.display();
+    // As a shell takes it.
+    let shown = match path.display().to_string() {
+        plain if !plain.contains(char::is_whitespace) => plain,
+        spaced => format!("\"{spaced}\""),
+    };
     let next = match kind {
         FileKind::Markers => format!(
             "use it with: gelbench correct FIELD --material CARD --thickness LENGTH --study {shown}"

@@ -103,7 +103,7 @@ pub fn run(options: Options) -> Outcome {
     let program = std::env::current_exe().ok();
     let mut folder = SweepFolder::open(&sweep, share, &whole, &inputs, program.as_deref())?;
     interrupt::guard(folder.results());
-    warn(folder.results().replaces().as_slice());
+    warn(folder.replaces().as_slice());
     let progress = Progress::of(folder.count() as u64);
     progress.tell("studies of all runs, read and checked before the first");
     let ended = |number: usize| {

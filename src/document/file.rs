@@ -1,11 +1,12 @@
 //! Files that are read whole: regular ones, within a size.
 
 use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
 
 use super::given::given;
 use super::inputs;
+use crate::error::nearest;
 
 /// Bytes of a study, of a card or of conditions at most.
 pub const MOST_OF_A_STUDY: u64 = 16 << 20;
@@ -16,7 +17,13 @@ pub const MOST_OF_DATA: u64 = 2 << 30;
 /// Why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
-    /// A pipe, a folder, a device: how much it holds nobody knows.
+    /// Nothing is there, but perhaps a file of a similar name.
+    #[error("there is no such file{}", meant(.0))]
+    Missing(Option<PathBuf>),
+    /// A folder.
+    #[error("it is a folder; name a file in it")]
+    Folder,
+    /// A pipe, a device: how much it holds nobody knows.
     #[error("it is no file; save what it gives as a file first")]
     NoFile,
     /// It holds more than belongs into such a file.
@@ -40,7 +47,13 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
         return limited(bytes);
     }
     // Before it is opened, for opening waits until somebody writes into a pipe.
-    let about = std::fs::metadata(path)?;
+    let about = std::fs::metadata(path).map_err(|fault| match fault.kind() {
+        ErrorKind::NotFound => FileFault::Missing(similar(path)),
+        _ => fault.into(),
+    })?;
+    if about.is_dir() {
+        return Err(FileFault::Folder);
+    }
     if !about.is_file() {
         return Err(FileFault::NoFile);
     }
@@ -48,6 +61,36 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
     let mut bytes = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     limited(bytes)
+}
+
+fn meant(similar: &Option<PathBuf>) -> String {
+    let named = similar
+        .as_ref()
+        .map(|path| format!("; did you mean {}?", path.display()));
+    named.unwrap_or_default()
+}
+
+/// The file in the same folder whose name is nearest: the same with an ending, or one with a letter amiss.
+fn similar(path: &Path) -> Option<PathBuf> {
+    let wanted = path.file_name()?.to_str()?;
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+    let names = entries.filter_map(|entry| {
+        let entry = entry.ok().filter(|entry| entry.path().is_file())?;
+        entry.file_name().into_string().ok()
+    });
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    let with_ending = names.iter().find(|name| {
+        Path::new(name)
+            .file_stem()
+            .is_some_and(|stem| stem == wanted)
+    });
+    let near = || nearest(wanted, names.iter().map(String::as_str));
+    let name = with_ending.map(String::as_str).or_else(near)?;
+    Some(path.with_file_name(name))
 }
 
 #[cfg(test)]
@@ -63,8 +106,15 @@ mod tests {
         assert!(matches!(read_bytes(&path, 5), Err(FileFault::TooLarge(_))));
         assert!(matches!(
             read_bytes(folder.path(), 9),
-            Err(FileFault::NoFile)
+            Err(FileFault::Folder)
         ));
+        let meant = |name: &str| match read_bytes(&folder.path().join(name), 9) {
+            Err(FileFault::Missing(meant)) => meant,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(meant("a"), Some(path.clone()));
+        assert_eq!(meant("b.txt"), Some(path.clone()));
+        assert_eq!(meant("other"), None);
         #[cfg(unix)]
         assert!(matches!(
             read_bytes(Path::new("/dev/zero"), 9),

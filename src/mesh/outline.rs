@@ -53,6 +53,8 @@ pub struct OutlineOfPoints {
     pub outline: Outline,
     /// The spacing of the points in mm.
     pub spacing: f64,
+    /// Whether the points lie irregularly, as where many of a grid are lost.
+    pub is_scattered: bool,
     /// Why the lines may not be the specimen's, in words.
     pub doubts: Vec<String>,
 }
@@ -85,7 +87,8 @@ impl Outline {
         let (mut outline, mut steps) = Self::behind(&lines, spacing)?;
         let mut doubts = Vec::new();
         let regular = regularity(&points, outline.area());
-        if regular < SCATTERED {
+        let is_scattered = regular < SCATTERED;
+        if is_scattered {
             doubts.push(format!(
                 "the markers lie irregularly, as where many are lost (distance to the nearest one over the side of each one's \
                  square: {regular:.2}, on a grid 1)"
@@ -113,6 +116,7 @@ impl Outline {
         Ok(OutlineOfPoints {
             outline,
             spacing,
+            is_scattered,
             doubts,
         })
     }
@@ -206,6 +210,12 @@ impl Outline {
         };
         outline.check()?;
         Ok(outline)
+    }
+
+    /// Whether a point lies in one of the holes.
+    pub fn has_in_a_hole(&self, point: [f64; 2]) -> bool {
+        let mut holes = self.holes.iter();
+        holes.any(|hole| Polygon(hole).contains(point))
     }
 
     fn lines(&self) -> impl Iterator<Item = &Vec<[f64; 2]>> {

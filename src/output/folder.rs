@@ -36,6 +36,9 @@ use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
 pub use unfinished::{BrokenOff, Left, Unfinished};
 use unfinished::{PARTS, Stage};
 
+/// What to do where results would be replaced.
+pub const ANOTHER_FOLDER: &str = "name another folder for results with --output";
+
 /// A folder that is being written into.
 #[derive(Debug)]
 pub struct ResultFolder {
@@ -150,7 +153,7 @@ impl ResultFolder {
                 self.path.display(),
                 self.path.join(source).display()
             );
-            Diagnostic::warning("", message).hint("name another folder for results with --output")
+            Diagnostic::warning("", message).hint(ANOTHER_FOLDER)
         })
     }
 
@@ -193,7 +196,7 @@ impl ResultFolder {
         };
         let place = self.path.join(name);
         let message = format!("{}{rest} of `gelbench {by}` are replaced", place.display());
-        Some(Diagnostic::warning("", message).hint("name another folder for results with --output"))
+        Some(Diagnostic::warning("", message).hint(ANOTHER_FOLDER))
     }
 
     /// Notes that a part of the work is done: the files that were added since the part before belong to it, and a later

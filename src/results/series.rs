@@ -44,7 +44,10 @@ pub fn csv(times: &[f64], series: &[Series]) -> String {
     for (instant, time) in times.iter().enumerate() {
         text += &time.to_string();
         for one in series {
-            let _ = write!(text, ",{}", one.values[instant]);
+            let _ = match one.values[instant] {
+                small if small != 0.0 && small.abs() < 1e-5 => write!(text, ",{small:e}"),
+                value => write!(text, ",{value}"),
+            };
         }
         text.push('\n');
     }

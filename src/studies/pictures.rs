@@ -47,10 +47,16 @@ impl Pictures {
         (key, dimension): (&'static str, Dimension),
         path: &[f64],
     ) -> Self {
-        let fields = section.choices("fields", &SheetField::NAMES);
+        let fields = section
+            .choices("fields", &SheetField::NAMES)
+            .unwrap_or_default();
+        let formats = section.choices("formats", &PictureFormat::NAMES);
+        if formats.as_ref().is_some_and(Vec::is_empty) {
+            section.fault("formats", "needs at least one format", "such as [\"png\"]");
+        }
         let shown = read_shown(section, (key, dimension), path);
         let style = PictureStyle {
-            formats: section.choices("formats", &PictureFormat::NAMES),
+            formats: formats.unwrap_or_default(),
             width: section
                 .choice("width", &PictureWidth::NAMES)
                 .unwrap_or(PictureWidth::Screen),
@@ -58,9 +64,6 @@ impl Pictures {
                 .choice("palette", &Palette::NAMES)
                 .unwrap_or(Palette::Default),
         };
-        if style.formats.is_empty() {
-            section.fault("formats", "needs at least one format", "such as [\"png\"]");
-        }
         section.unknown_keys();
         Self {
             fields,

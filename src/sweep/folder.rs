@@ -6,15 +6,21 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::panicking;
 
+use serde_json::Value;
+
 use super::plan::Run;
+use super::variable::key_and_unit;
 use super::{Row, Sweep, blocks, figures, json, read, write};
 use crate::document::inputs::noted;
 use crate::error::{Diagnostic, Error};
-use crate::output::{ResultFolder, Unfinished, identity, write_document};
+use crate::output::{ANOTHER_FOLDER, ResultFolder, Unfinished, identity, write_document};
 use crate::studies::name;
 
 /// The file with a line for each run.
 const TABLE: &str = "sweep.csv";
+
+/// The same for machines.
+const REPORT: &str = "sweep.json";
 
 /// One part of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,6 +105,25 @@ impl<'a> SweepFolder<'a> {
         &self.results
     }
 
+    /// A warning where the folder holds other results of sweeps, those of another study or of other keys.
+    pub fn replaces(&self) -> Option<Diagnostic> {
+        let other_study = self.results.replaces();
+        other_study.or_else(|| {
+            let place = self.results.path().join(REPORT);
+            let before: Value = serde_json::from_slice(&fs::read(&place).ok()?).ok()?;
+            let heads = before["keys"].as_array()?.iter().filter_map(Value::as_str);
+            let keys: Vec<&str> = heads.map(|head| key_and_unit(head).0).collect();
+            (keys != self.sweep.keys()).then(|| {
+                let message = format!(
+                    "{} holds a sweep over {}: it is replaced",
+                    self.results.path().display(),
+                    keys.join(", ")
+                );
+                Diagnostic::warning("", message).hint(ANOTHER_FOLDER)
+            })
+        })
+    }
+
     /// How many runs there are, computed or not.
     pub fn count(&self) -> usize {
         self.runs.len()
@@ -162,7 +187,7 @@ impl<'a> SweepFolder<'a> {
         let (keys, folder) = (self.sweep.keys(), &mut self.results);
         folder.add(TABLE, &write(&keys, rows))?;
         let report = format!("{:#}\n", json(&keys, rows));
-        folder.add("sweep.json", report.as_bytes())?;
+        folder.add(REPORT, report.as_bytes())?;
         let title = format!("Many runs of {}", name(&self.sweep.study.path));
         let figures = figures(&keys, rows, self.sweep.study.steps_run_along());
         let blocks = blocks(&title, &keys, rows, &figures);

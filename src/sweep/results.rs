@@ -195,6 +195,7 @@ pub fn cautions(rows: &[Row]) -> Vec<String> {
     let said = kinds.into_iter().map(|(_, row, warning, count)| {
         let others = match count {
             1 => String::new(),
+            2 => " and another".to_owned(),
             count => format!(" and {} others", count - 1),
         };
         format!("Run {}{others}: {warning}", row.number)

@@ -358,7 +358,7 @@ fn what_deserves_attention_in_single_runs_is_told_of_all_together() {
     let told = cautions(&rows);
     let beyond: Vec<&String> = told.iter().filter(|one| one.contains("range")).collect();
     assert!(
-        matches!(beyond[..], [one] if one.starts_with("Run 1 and 1 others: ")),
+        matches!(beyond[..], [one] if one.starts_with("Run 1 and another: ")),
         "{told:?}"
     );
     let keys = sweep.keys();

@@ -1,5 +1,7 @@
 //! What is varied, and by which values.
 
+use std::collections::HashSet;
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::Diagnostic;
@@ -167,9 +169,13 @@ impl Values {
                 *one = Setting::Number(value, unit.clone());
             }
         }
-        match listed.iter().all(|one| one.unit() == unit) {
-            true => Ok(Self::Listed(listed)),
-            false => Err("the values have several units".to_owned()),
+        if listed.iter().any(|one| one.unit() != unit) {
+            return Err("the values have several units".to_owned());
+        }
+        let mut seen = HashSet::new();
+        match listed.iter().find(|one| !seen.insert(one.words())) {
+            Some(again) => Err(format!("the value {} stands twice", again.words())),
+            None => Ok(Self::Listed(listed)),
         }
     }
 }
@@ -213,7 +219,10 @@ fn grid([low, high]: [f64; 2], unit: &str, count: &str) -> Result<Values, String
     let last = (count - 1) as f64;
     let value = |index: usize| {
         let share = index as f64 / last;
-        Setting::Number(low * (1.0 - share) + high * share, unit.to_owned())
+        let exact = low * (1.0 - share) + high * share;
+        // Without the noise of the last binary digits: 0.39 for 0.38999999999999996.
+        let value = format!("{exact:.14e}").parse().unwrap_or(exact);
+        Setting::Number(value, unit.to_owned())
     };
     Ok(Values::Listed((0..count).map(value).collect()))
 }

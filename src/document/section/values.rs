@@ -63,8 +63,8 @@ impl<'a> Section<'a> {
         named
     }
 
-    /// Some of several names, each once; one that is unknown is recorded as a fault.
-    pub fn choices<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Vec<T> {
+    /// Some of several names, each once; `None` when one is unknown, which is recorded as a fault.
+    pub fn choices<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<Vec<T>> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
         self.asks(key, Some(Takes::Choices(names.collect())));
         let mut names = self.texts_like(key);
@@ -74,10 +74,10 @@ impl<'a> Section<'a> {
             seen.push(name.clone());
             is_new
         });
-        let found = names
-            .iter()
-            .filter_map(|name| self.named(key, name, choices));
-        found.collect()
+        let found = names.iter().map(|name| self.named(key, name, choices));
+        // All of them are looked at, for every fault is told.
+        let found: Vec<Option<T>> = found.collect();
+        found.into_iter().collect()
     }
 
     /// What a name stands for; `None` where it is unknown, which is recorded as a fault.

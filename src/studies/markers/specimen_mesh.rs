@@ -6,7 +6,7 @@ use super::edge_place::EdgePlace;
 use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
-use crate::markers::{MarkerFiles, read_lines};
+use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
 use crate::statistics::extremes;
 
@@ -128,7 +128,8 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     const HINT: &str = "give the specimen's edge with --outline, or its mesh with --mesh";
     let refuse =
         |reason: OutlineFault| Error::input(format!("a mesh cannot be made: {reason}"), HINT);
-    let found = Outline::of_points(&field.series.places()).map_err(refuse)?;
+    let (places, in_gaps) = places(&field.series, request.holes);
+    let found = Outline::of_points(&places).map_err(refuse)?;
     let mut outline = found.outline;
     let mut warnings = Vec::new();
     let mut warn = |message: String, hint: &str| {
@@ -137,10 +138,18 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     match (outline.holes.len(), request.holes) {
         (0, _) => {}
         (_, false) => outline.holes.clear(),
-        (count, true) => warn(
-            format!("gaps among the markers taken for holes: {count}"),
-            "--holes closed if markers were only lost there; --outline gives their true edges",
-        ),
+        (count, true) => {
+            let filled = match in_gaps {
+                0 => String::new(),
+                lost => {
+                    format!(", with {lost} points in them that have no displacement in any frame")
+                }
+            };
+            warn(
+                format!("gaps among the markers taken for holes: {count}{filled}"),
+                "--holes closed if markers were only lost there; --outline gives their true edges",
+            );
+        }
     }
     let spacing = found.spacing;
     let edge = EdgePlace::of(request, &field.understood, spacing);
@@ -163,6 +172,22 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
         doubts: found.doubts.into_iter().map(doubt).collect(),
         unknown_gap: edge.unknown(),
     })
+}
+
+/// The places that tell of the outline: those of lost markers too, but for those in gaps that are holes without them, if gaps are
+/// holes; and how many these are. Where so many are lost that the others are scattered, gaps are no holes.
+fn places(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
+    let mut places = series.places();
+    if !gaps_are_holes || series.lost.is_empty() {
+        return (places, 0);
+    }
+    let all = places.len();
+    let found = Outline::of_points(&places[..all - series.lost.len()]);
+    if let Some(found) = found.ok().filter(|found| !found.is_scattered) {
+        places.retain(|place| !found.outline.has_in_a_hole(*place));
+    }
+    let in_gaps = all - places.len();
+    (places, in_gaps)
 }
 
 /// A mesh inside an outline, and the size of its cells in mm. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
