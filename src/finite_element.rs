@@ -10,10 +10,12 @@ use crate::problem::{ClampedPlate, Model};
 use crate::solve::{LinearSolver, NewtonSettings, State};
 
 use error_estimate::{ErrorEstimate, SheetSolution, side_by_side};
+pub use quarter::Quarter;
 use recovery::Recovery;
 
 pub mod convergence;
 pub mod error_estimate;
+mod quarter;
 pub mod recovery;
 
 /// Degree of the elements.
@@ -120,7 +122,9 @@ impl FiniteElements {
         states: &[State],
         recovery: &Recovery,
     ) -> Vec<Result<ErrorEstimate, SolveFault>> {
-        let influences = self.model(plate).influences(states, Side::Right.name(), 0);
+        let by_quarter = Quarter::of(plate, self).and_then(|own| own.influences(states));
+        let of_whole = || self.model(plate).influences(states, Side::Right.name(), 0);
+        let influences = by_quarter.unwrap_or_else(of_whole);
         let solved = states.iter().map(|state| SheetSolution {
             law: &*plate.law,
             thickness: plate.thickness,

@@ -18,6 +18,7 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::mesh::Mesh;
 
@@ -70,7 +71,7 @@ impl Recovery {
     /// Fits around every corner of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let patches = Patches::new(mesh);
-        let corners = 0..mesh.nodes.len();
+        let corners = (0..mesh.nodes.len()).into_par_iter();
         let fit = |corner: usize| {
             let is_corner = !patches.cells_at[corner].is_empty();
             is_corner.then(|| patches.fit(corner))
@@ -128,18 +129,14 @@ impl RecoveredGradient {
 
 impl Polynomial {
     fn gradient(&self, place: [f64; 2]) -> [f64; 4] {
-        let [x, y] = [0, 1].map(|axis| (place[axis] - self.origin[axis]) / self.scale[axis]);
+        let [x, y] = [0, 1].map(|axis| {
+            let x = (place[axis] - self.origin[axis]) / self.scale[axis];
+            powers_and_slopes(x, self.scale[axis])
+        });
         let mut gradient = [0.0; 4];
         for ([i, j], c) in monomials(self.degree).zip(&self.coefficients) {
-            let slope = |x: f64, n: i32| {
-                if n == 0 {
-                    0.0
-                } else {
-                    f64::from(n) * x.powi(n - 1)
-                }
-            };
-            let dx = slope(x, i) * y.powi(j) / self.scale[0];
-            let dy = x.powi(i) * slope(y, j) / self.scale[1];
+            let ([x, along], [y, across]) = (x[i], y[j]);
+            let (dx, dy) = (along * y, x * across);
             for (component, c) in c.iter().enumerate() {
                 gradient[2 * component] += c * dx;
                 gradient[2 * component + 1] += c * dy;
@@ -149,9 +146,21 @@ impl Polynomial {
     }
 }
 
+/// The highest degree of a fit, one above that of the elements.
+const HIGHEST: usize = 3;
+
+/// xⁿ and n xⁿ⁻¹/s for n = 0, 1, 2 …
+fn powers_and_slopes(x: f64, s: f64) -> [[f64; 2]; HIGHEST + 1] {
+    let mut all = [[1.0, 0.0]; HIGHEST + 1];
+    for n in 1..=HIGHEST {
+        let [before, _] = all[n - 1];
+        all[n] = [before * x, n as f64 * before / s];
+    }
+    all
+}
+
 /// Exponents of xⁱ yʲ with i + j ≤ degree.
-fn monomials(degree: usize) -> impl Iterator<Item = [i32; 2]> {
-    let degree = degree as i32;
+fn monomials(degree: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..=degree).flat_map(move |sum| (0..=sum).map(move |j| [sum - j, j]))
 }
 
@@ -246,8 +255,9 @@ impl<'a> Patches<'a> {
         for (row, node) in nodes.iter().enumerate() {
             let [x, y] = [0, 1].map(|axis| away(*node, axis) / scale[axis]);
             weights[row] = if near.contains(node) { 1.0 } else { FAR };
+            let [x, y] = [x, y].map(|x| powers_and_slopes(x, 1.0));
             for (column, [i, j]) in monomials(degree).enumerate() {
-                matrix[(row, column)] = weights[row] * x.powi(i) * y.powi(j);
+                matrix[(row, column)] = weights[row] * x[i][0] * y[j][0];
             }
         }
         Some(Fit {

@@ -1,4 +1,5 @@
-//! What the tangent at a state tells: the fields that small motions and forces of a group bring about, and stability.
+//! What the tangent at a state tells: the fields that small motions and forces of a group bring about, stability, and the equilibrium
+//! next to it.
 
 use rayon::prelude::*;
 
@@ -6,10 +7,12 @@ use super::constraints::Constraints;
 use super::groups::shares;
 use super::model::Model;
 use crate::error::SolveFault;
-use crate::solve::{Loading, Stage, State, Tangent, compliance, influence};
+use crate::solve::{
+    Loading, Newton, NewtonSettings, Stage, State, Tangent, compliance, equilibrium, influence,
+};
 
-/// Unknowns up to which every thread has a factor of its own.
-const SIDE_BY_SIDE: usize = 200_000;
+/// Unknowns of all tangents that are factorised at once.
+const SIDE_BY_SIDE: usize = 400_000;
 
 impl Model<'_> {
     /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
@@ -42,15 +45,45 @@ impl Model<'_> {
         name: &str,
         axis: usize,
     ) -> Vec<Result<Vec<f64>, SolveFault>> {
-        let unknowns = 2 * self.mesh.nodes.len();
-        let at_once = match self.linear_solver().is_multigrid(unknowns) || unknowns > SIDE_BY_SIDE {
-            true => 1,
-            false => rayon::current_num_threads(),
-        };
-        let groups = states.par_chunks(states.len().div_ceil(at_once).max(1));
+        let groups = states.par_chunks(self.in_turn(states.len()));
         groups
             .flat_map_iter(|group| self.influences_in_turn(group, name, axis))
             .collect()
+    }
+
+    /// How many of some tangents each thread takes after each other.
+    fn in_turn(&self, count: usize) -> usize {
+        let unknowns = 2 * self.mesh.nodes.len();
+        let at_once = match self.linear_solver().is_multigrid(unknowns) {
+            true => 1,
+            false => (SIDE_BY_SIDE / unknowns.max(1)).clamp(1, rayon::current_num_threads()),
+        };
+        count.div_ceil(at_once).max(1)
+    }
+
+    /// The stable equilibria of a body without memory next to fields in mm at load factors, each by itself; side by side as above.
+    ///
+    /// # Errors
+    /// As [`Newton::solve`] of one that is not found.
+    pub fn equilibria_near(
+        &self,
+        fields: &[(f64, Vec<f64>)],
+        settings: NewtonSettings,
+    ) -> Result<Vec<State>, SolveFault> {
+        let groups = fields.par_chunks(self.in_turn(fields.len()));
+        let found = groups.map(|group| {
+            let (potential, held) = (self.potential(group[0].0, &[]), self.held());
+            let mut newton = Newton::with_solver(&*potential, &held, self.linear_solver())?;
+            newton.shifts = false;
+            let near = |(factor, field): &(f64, Vec<f64>)| {
+                let (potential, stage) = (self.potential(*factor, &[]), Stage::first(*factor));
+                let begin = (&mut newton, field.clone());
+                equilibrium(self, &*potential, stage, begin, settings)
+            };
+            group.iter().map(near).collect::<Result<Vec<State>, _>>()
+        });
+        let found: Result<Vec<Vec<State>>, SolveFault> = found.collect();
+        Ok(found?.into_iter().flatten().collect())
     }
 
     /// Looks whether an equilibrium at a stage is stable.

@@ -1,5 +1,7 @@
 //! The flow of a study: problem, models, corrector, comparison.
 
+use std::cell::Cell;
+
 use rayon::prelude::*;
 use web_time::Instant;
 
@@ -12,6 +14,7 @@ use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::finite_element::recovery::Recovery;
+use crate::finite_element::{FiniteElements, Quarter};
 use crate::mass_spring::MassSpring;
 use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
@@ -177,12 +180,9 @@ impl<'a> Run<'a> {
         let mut coarser: Option<(Mesh, Vec<State>)> = None;
         self.study.finite_elements().map(|elements| {
             let name = names.next().expect("three meshes");
-            let mut model = elements.model(&self.study.problem);
-            if let Some((mesh, states)) = &coarser {
-                model = model.near(mesh, states);
-            }
-            let solution = self.solve(name, &model, self.study.reference.newton);
-            drop(model);
+            let before = coarser.as_ref();
+            let before = before.map(|(mesh, states)| (mesh, &states[..]));
+            let solution = self.solve_elements(name, &elements, before);
             coarser = Some((solution.mesh.clone(), solution.states.clone()));
             ReferenceMesh {
                 model: elements,
@@ -191,18 +191,54 @@ impl<'a> Run<'a> {
         })
     }
 
+    /// Solves finite elements at the study's stretches, as far as there are solutions: by a quarter of them where that serves.
+    fn solve_elements(
+        &mut self,
+        name: &'static str,
+        elements: &FiniteElements,
+        coarser: Option<(&Mesh, &[State])>,
+    ) -> Solution {
+        let (plate, settings) = (&self.study.problem, self.study.reference.newton);
+        let mut model = elements.model(plate);
+        if let Some((mesh, states)) = coarser {
+            model = model.near(mesh, states);
+        }
+        let states = self.timed(name, |run| {
+            // What the quarter has told of is not told again.
+            let (progress, farthest) = (run.progress, Cell::new(0.0));
+            let told = |stretch: f64| {
+                if stretch.abs() > farthest.get() {
+                    farthest.set(stretch.abs());
+                    tell(progress, name, stretch);
+                }
+            };
+            let quarter = Quarter::of(plate, elements);
+            let by_quarter = quarter.and_then(|quarter| {
+                let attendance = progress.along(&told);
+                quarter.states(&model, &plate.stretches, coarser, settings, attendance)
+            });
+            by_quarter.unwrap_or_else(|| run.path(&model, settings, &told))
+        });
+        Solution::new(&model, &GRIPS, states)
+    }
+
     /// Solves a model at the study's stretches, as far as there are solutions.
     fn solve(&mut self, name: &'static str, model: &Model, settings: NewtonSettings) -> Solution {
         let states = self.timed(name, |run| {
-            let told = |stretch: f64| tell(run.progress, name, stretch);
-            let attendance = run.progress.along(&told);
-            let states = model.attended(&run.study.problem.stretches, settings, attendance);
-            states.unwrap_or_else(|end| {
-                run.ends.push(model.error(&end));
-                end.states
-            })
+            let progress = run.progress;
+            run.path(model, settings, &|stretch| tell(progress, name, stretch))
         });
         Solution::new(model, &GRIPS, states)
+    }
+
+    /// The states of a model as far as there are some; the end is kept.
+    fn path(&mut self, model: &Model, settings: NewtonSettings, told: &dyn Fn(f64)) -> Vec<State> {
+        let attendance = self.progress.along(told);
+        let states = model.attended(&self.study.problem.stretches, settings, attendance);
+        states.unwrap_or_else(|end| {
+            self.ends.push(model.error(&end));
+            end.states
+        })
     }
 
     /// The corrected field at every stretch, on a mesh to whose nodes the springs' is interpolated. Where the springs have no field the
