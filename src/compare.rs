@@ -217,14 +217,22 @@ pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: 
 /// belongs to its corners in equal parts.
 /// Two fields that are rounding compared with the mesh do not differ.
 pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
+    weighted_percent(mesh, &mesh.corner_areas(), field, reference)
+}
+
+/// The same on all nodes, to which the area of a cell belongs in equal parts.
+pub fn percent_at_all_nodes(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
+    weighted_percent(mesh, &mesh.areas_of_all_nodes(), field, reference)
+}
+
+fn weighted_percent(mesh: &Mesh, areas: &[f64], field: &[f64], reference: &[f64]) -> f64 {
     const ROUNDING: f64 = 1e-15;
-    let areas = mesh.corner_areas();
     let [low, high] = mesh.bounding_box();
     let size = (high[0] - low[0]).max(high[1] - low[1]) * areas.iter().sum::<f64>().sqrt();
-    let rests = |field: &[f64]| field.weighted_norm(&areas) <= ROUNDING * size;
+    let rests = |field: &[f64]| field.weighted_norm(areas) <= ROUNDING * size;
     match rests(field) && rests(reference) {
         true => 0.0,
-        false => percent(&areas, field, reference),
+        false => percent(areas, field, reference),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The maps of cells, and fields between the nodes.
 
+use super::cell_shape::CellShape;
 use super::cell_shape::GAUSS_3;
 use super::cells::Mesh;
 use super::geometry::determinant;
@@ -62,6 +63,16 @@ impl Mesh {
 
     /// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
     pub fn corner_areas(&self) -> Vec<f64> {
+        self.areas_shared_by(CellShape::corners)
+    }
+
+    /// The area in mm² that belongs to each node: that of a cell to all its nodes in equal parts.
+    pub fn areas_of_all_nodes(&self) -> Vec<f64> {
+        self.areas_shared_by(CellShape::nodes)
+    }
+
+    /// The areas of the cells in equal parts at their first nodes, so many of each.
+    fn areas_shared_by(&self, first: impl Fn(CellShape) -> usize) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
         for cell in 0..self.cell_count() {
             let shape = self.shape(cell);
@@ -69,8 +80,9 @@ impl Mesh {
             let area: f64 = rule
                 .map(|(point, weight)| weight * self.gradients(cell, point).1)
                 .sum();
-            for corner in &self.cell(cell)[..shape.corners()] {
-                areas[*corner] += area / shape.corners() as f64;
+            let nodes = &self.cell(cell)[..first(shape)];
+            for node in nodes {
+                areas[*node] += area / nodes.len() as f64;
             }
         }
         areas

@@ -29,6 +29,12 @@ pub struct BoundaryProblem {
     pub loads: Vec<(String, Load)>,
 }
 
+/// Whether a group of a mesh is nodes without edges, lines or cells.
+fn is_of_points(mesh: &Mesh, name: &str) -> bool {
+    let group = mesh.groups().get(name);
+    group.is_some_and(|group| !group.has_parts())
+}
+
 impl BoundaryProblem {
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
@@ -70,15 +76,18 @@ impl BoundaryProblem {
 
     /// The groups of single nodes on which forces act: on finer meshes displacements there have no limit.
     pub fn forces_on_points(&self, mesh: &Mesh) -> Vec<&str> {
-        let is_of_points = |name: &str| {
-            let group = mesh.groups().get(name);
-            group.is_some_and(|group| !group.has_parts())
-        };
-        let forces = self
-            .loads
-            .iter()
-            .filter(|(name, load)| matches!(load, Load::Force(_)) && is_of_points(name));
+        let forces = self.loads.iter();
+        let forces = forces
+            .filter(|(name, load)| matches!(load, Load::Force(_)) && is_of_points(mesh, name));
         forces.map(|(name, _)| &**name).collect()
+    }
+
+    /// The groups of single nodes that supports move: on finer meshes the forces that this takes fall to nothing, and the field with
+    /// them.
+    pub fn moved_points(&self, mesh: &Mesh) -> Vec<&str> {
+        let moved = self.supports.iter();
+        let moved = moved.filter(|(name, support)| !support.rests() && is_of_points(mesh, name));
+        moved.map(|(name, _)| &**name).collect()
     }
 
     /// The groups whose loads act along held unknowns alone: they change the supports' forces, and nothing else.

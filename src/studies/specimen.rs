@@ -116,8 +116,7 @@ pub fn fields(
         return Err(end.error());
     }
     let last = specimen.factors.len() - 1;
-    let lattice = &models.on_lattice.springs.mesh;
-    let own_percent = models.reference.displacement_percent(last, lattice);
+    let own_percent = models.reference.field_percent(last);
     let field = |model, solution: &Solution| ModelField {
         model,
         mesh: solution.mesh.clone(),

@@ -309,6 +309,11 @@ fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
         root.section("finite_element")
             .fault("adaptive", message, hint);
     }
+    if specimen.refinement.is_some() && !specimen.problem.moved_points(mesh).is_empty() {
+        let message = "to move single nodes takes no force in the limit of finer meshes, and local refinement goes on around them";
+        let hint = "move a group with edges, lines or an area, or leave out `adaptive`";
+        root.fault("support", message, hint);
+    }
     if specimen.refinement.is_some() && !specimen.problem.forces_on_points(mesh).is_empty() {
         let message = "a force on single nodes has no limit on finer meshes, and local refinement goes on around them";
         let hint = "put it on a group with edges, lines or an area, or leave out `adaptive`";

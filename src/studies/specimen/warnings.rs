@@ -43,6 +43,7 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(left_out.map(|told| format!("Warning: {told}.")));
     all.extend(idle_loads(specimen, mesh));
     all.extend(loads_on_points(specimen, mesh));
+    all.extend(moved_points(specimen, mesh));
     all.extend(several(models));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
@@ -63,15 +64,26 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
 
 /// The warning about forces on single points, under which displacements have no limit.
 fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
-    let on_points = specimen.problem.forces_on_points(mesh).into_iter();
-    let named: Vec<String> = on_points.map(|name| format!("`{name}`")).collect();
-    (!named.is_empty()).then(|| {
-        format!(
-            "Warning: the force on {} acts on single points, under which displacement and stress grow with every finer mesh, without \
-             limit: neither they nor their own errors there say anything. Put it on edges, on a line or on an area.",
-            named.join(", ")
-        )
-    })
+    let named = quoted(&specimen.problem.forces_on_points(mesh))?;
+    Some(format!(
+        "Warning: the force on {named} acts on single points, under which displacement and stress grow with every finer mesh, without \
+         limit: neither they nor their own errors there say anything. Put it on edges, on a line or on an area."
+    ))
+}
+
+/// The warning about single points that supports move, which takes no force in a sheet.
+fn moved_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
+    let named = quoted(&specimen.problem.moved_points(mesh))?;
+    Some(format!(
+        "Warning: the support on {named} moves single points, for which the force falls with every finer mesh, to nothing, and the field with \
+         it: neither they nor their own errors say anything. Move edges, a line or an area."
+    ))
+}
+
+/// Names of groups in words; `None` where there are none.
+fn quoted(names: &[&str]) -> Option<String> {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    (!quoted.is_empty()).then(|| quoted.join(", "))
 }
 
 /// The warning about states that may be one of several.

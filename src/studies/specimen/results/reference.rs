@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::measured::Measured;
-use crate::compare::area_weighted_percent;
+use crate::compare::percent_at_all_nodes;
 use crate::finite_element::convergence::{
     LOWEST_ORDER, at_most_of_order, corner_exponent, of_distances, richardson,
 };
@@ -29,6 +29,10 @@ pub struct Reference {
     pub(super) all_halved: Option<Solution>,
     /// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
     pub(super) outline: Option<Vec<OutlineChange>>,
+    /// The displacement's own error at each load factor without that of the outline, in relative L2 in %: at the nodes of the lattice, and at all of
+    /// the finest mesh.
+    pub(super) displacement: Vec<Option<f64>>,
+    pub(super) of_all_nodes: Vec<Option<f64>>,
 }
 
 /// What the curves that a file's edges stand for change at a load factor.
@@ -88,8 +92,20 @@ impl Reference {
         }
     }
 
-    /// How the finite elements become better.
-    pub fn remedy(&self) -> &'static str {
+    /// How the finite elements of a specimen become better.
+    pub fn remedy(&self, specimen: &Specimen) -> &'static str {
+        let (problem, mesh) = (&specimen.problem, &self.finest.mesh);
+        if !problem.forces_on_points(mesh).is_empty() || !problem.moved_points(mesh).is_empty() {
+            return "no mesh tells what single points carry: load or move edges, a line or an area";
+        }
+        if self.is_outline() {
+            return "take a mesh whose edges follow the curves: cells of the second degree, or finer ones there";
+        }
+        let is_shorter = |halved: &Solution| halved.reached() < self.reached();
+        if self.all_halved.as_ref().is_some_and(is_shorter) {
+            return "the mesh with all cells halved, by which it is judged, has no solution at some load factor: take a larger \
+                    `finite_element.error`, or load factors that are closer together";
+        }
         let quadratic = self.finest.mesh.shape(0).degree() == 2;
         match (self.rounds.is_empty(), quadratic) {
             (true, false) => "take finite elements of the second degree, such as \"Q2\"",
@@ -126,6 +142,18 @@ impl Reference {
         let change = self.outline.as_ref()?.get(step)?.measured;
         let measured = self.measured.at(&self.finest, step)?;
         Some(100.0 * (change / measured).abs())
+    }
+
+    /// Whether most of the own error is that of a file's outline, which more cells leave as it is.
+    fn is_outline(&self) -> bool {
+        let mut changes = self.outline.iter().flatten().enumerate();
+        let most = |change: f64, own: Option<f64>| own.is_some_and(|own| change > 0.5 * own);
+        let is_most = |(step, change): (usize, &OutlineChange)| {
+            let of_measured = self.outline_percent(step).unwrap_or(0.0);
+            most(change.displacement_percent, self.displacement_percent(step))
+                || most(of_measured, self.measured_percent(step))
+        };
+        changes.any(is_most)
     }
 
     /// What is said about a file's outline.
@@ -187,38 +215,81 @@ impl Reference {
         Some(estimate.energy.percent())
     }
 
-    /// The error of the displacement at the nodes of a lattice in relative L2 in %, with that of a file's outline; `None` where it is not
-    /// known.
-    pub fn displacement_percent(&self, step: usize, lattice: &Mesh) -> Option<f64> {
-        let own = match self.rounds.is_empty() {
-            true => self.displacement_by_coarser(step, lattice)?,
-            false => self.displacement_by_halving(step, lattice)?,
-        };
+    /// The error of the displacement at the nodes of the lattice at a load factor in relative L2 in %, with that of a file's outline, by which
+    /// deviations there are judged; `None` where it is not known.
+    pub fn displacement_percent(&self, step: usize) -> Option<f64> {
+        self.with_outline(step, *self.displacement.get(step)?)
+    }
+
+    /// The same of the field as a whole. At the nodes of the lattice, which several meshes have, quadratic elements are more exact than
+    /// elsewhere, and at all of the finest mesh those of a coarser one tell too high an order where a corner's error is left: the larger of
+    /// both.
+    pub fn field_percent(&self, step: usize) -> Option<f64> {
+        let on_lattice = (*self.displacement.get(step)?)?;
+        let of_all = (*self.of_all_nodes.get(step)?)?;
+        let is_larger = on_lattice.is_nan() || on_lattice > of_all;
+        self.with_outline(step, Some(if is_larger { on_lattice } else { of_all }))
+    }
+
+    /// An error of the displacement with that of a file's outline.
+    fn with_outline(&self, step: usize, own: Option<f64>) -> Option<f64> {
         match &self.outline {
-            Some(changes) => Some(own + changes.get(step)?.displacement_percent),
-            None => Some(own),
+            Some(changes) => Some(own? + changes.get(step)?.displacement_percent),
+            None => own,
         }
     }
 
-    /// By meshes that are half as fine, and a quarter, in relative L2 in %, see [`of_distances`], times [`Self::unseen`], with an order of
-    /// ½ at least.
-    fn displacement_by_coarser(&self, step: usize, lattice: &Mesh) -> Option<f64> {
-        let fine = on_lattice(&self.finest, step, lattice)?;
-        let coarser = self.coarser.iter();
-        let coarser: Vec<_> = coarser
-            .filter_map(|own| on_lattice(own, step, lattice))
+    /// The error of the displacement at each load factor at the nodes of a mesh, without that of a file's outline.
+    pub(super) fn errors_at(&self, at: &Mesh) -> Vec<Option<f64>> {
+        let others = match &self.all_halved {
+            Some(halved) if !self.rounds.is_empty() => vec![halved],
+            _ if !self.rounds.is_empty() => Vec::new(),
+            _ => self.coarser.iter().collect(),
+        };
+        let all = others.into_iter().chain([&self.finest]);
+        let on_nodes: Vec<_> = all
+            .map(|solution| (solution, solution.mesh.interpolation_on(at)))
             .collect();
-        let distance = |u: &[f64], v: &[f64]| area_weighted_percent(lattice, u, v);
-        match &coarser[..] {
-            [] => None,
-            [only] => Some(distance(only, &fine)),
-            [.., first, second] => {
-                let (before, last) = (distance(first, second), distance(second, &fine));
-                let by_meshes = self.beside_corners(of_distances(before, last).0, last);
-                let most = (last / (LOWEST_ORDER.exp2() - 1.0)).max(by_meshes);
-                Some((by_meshes * self.unseen(step)).min(most))
+        let error = |step: usize| {
+            let fields = on_nodes.iter().filter_map(|(solution, interpolation)| {
+                Some(interpolation.apply(solution.displacement(step)?))
+            });
+            let fields: Vec<Vec<f64>> = fields.collect();
+            let distance = |u: &[f64], v: &[f64]| percent_at_all_nodes(at, u, v);
+            match &fields[..] {
+                _ if self.finest.displacement(step).is_none() => None,
+                [halved, own] if !self.rounds.is_empty() => {
+                    Some(self.by_halving(distance(own, halved)))
+                }
+                [only, fine] => Some(distance(only, fine)),
+                [first, second, fine] => {
+                    Some(self.by_coarser(step, distance(first, second), distance(second, fine)))
+                }
+                _ => None,
             }
-        }
+        };
+        (0..self.finest.reached()).map(error).collect()
+    }
+
+    /// By the distances in % of meshes a quarter, half and as fine, see [`of_distances`], times [`Self::unseen`], with an order of ½ at
+    /// least.
+    fn by_coarser(&self, step: usize, before: f64, last: f64) -> f64 {
+        let by_meshes = self.beside_corners(of_distances(before, last).0, last);
+        let most = (last / (LOWEST_ORDER.exp2() - 1.0)).max(by_meshes);
+        (by_meshes * self.unseen(step)).min(most)
+    }
+
+    /// By the distance in % of the mesh with all cells halved, which leaves between 2⁻ᵖ⁻¹ of the error, where the solution is smooth, and
+    /// a half, where a corner's is left:
+    ///
+    /// ```text
+    /// e = ‖u½ − u‖/(1 − 2⁻ᵖ)          p: degree of the elements
+    /// ```
+    ///
+    /// Two meshes of local refinement tell little of it: most of their cells are the same.
+    fn by_halving(&self, distance: f64) -> f64 {
+        let left = 0.5_f64.powi(self.finest.mesh.shape(0).degree() as i32);
+        distance / (1.0 - left)
     }
 
     /// How many times larger recovery tells the error of what is measured than three meshes do, 1 at least: coarse cells tell too high an order
@@ -233,21 +304,6 @@ impl Reference {
         } else {
             1.0
         }
-    }
-
-    /// By the mesh with all cells halved, in relative L2 in %, which leaves between 2⁻ᵖ⁻¹ of the error, where the solution is smooth, and
-    /// a half, where a corner's is left:
-    ///
-    /// ```text
-    /// e = ‖u½ − u‖/(1 − 2⁻ᵖ)          p: degree of the elements
-    /// ```
-    ///
-    /// Two meshes of local refinement tell little of it: most of their cells are the same.
-    fn displacement_by_halving(&self, step: usize, lattice: &Mesh) -> Option<f64> {
-        let own = on_lattice(&self.finest, step, lattice)?;
-        let halved = on_lattice(self.all_halved.as_ref()?, step, lattice)?;
-        let left = 0.5_f64.powi(self.finest.mesh.shape(0).degree() as i32);
-        Some(area_weighted_percent(lattice, &own, &halved) / (1.0 - left))
     }
 
     /// Whether local refinement has come as far as the study wants.
@@ -301,8 +357,8 @@ impl Reference {
     }
 }
 
-/// The displacement of a solution at the nodes of a lattice; `None` where it has not reached a load factor.
-pub(super) fn on_lattice(solution: &Solution, step: usize, lattice: &Mesh) -> Option<Vec<f64>> {
+/// The displacement of a solution at the nodes of a mesh; `None` where it has not reached a load factor.
+pub(super) fn on_nodes_of(mesh: &Mesh, solution: &Solution, step: usize) -> Option<Vec<f64>> {
     let displacement = solution.displacement(step)?;
-    Some(solution.mesh.displacement_on(displacement, lattice))
+    Some(solution.mesh.displacement_on(displacement, mesh))
 }

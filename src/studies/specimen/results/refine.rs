@@ -4,7 +4,7 @@
 use super::end::{End, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
-use super::reference::{OutlineChange, Reference, Round, on_lattice};
+use super::reference::{OutlineChange, Reference, Round, on_nodes_of};
 use crate::compare::area_weighted_percent;
 use crate::error::Error;
 use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, side_by_side};
@@ -54,7 +54,9 @@ impl Reference {
         let measured = measured(specimen, &finest, ends);
         let once_halved = meshes.get(1).or(Some(&finest));
         let once_halved = once_halved.filter(|_| rounds.is_empty());
-        Ok(Self {
+        let mut reference = Self {
+            displacement: Vec::new(),
+            of_all_nodes: Vec::new(),
             estimates: estimates(specimen, &finest, &measured)?,
             outline: outline_changes(specimen, &measured, once_halved, progress)?,
             all_halved,
@@ -62,7 +64,10 @@ impl Reference {
             finest,
             measured,
             rounds,
-        })
+        };
+        reference.displacement = reference.errors_at(&specimen.outline.lattice());
+        reference.of_all_nodes = reference.errors_at(&reference.finest.mesh);
+        Ok(reference)
     }
 
     /// Whether one more halving of the cells is possible and not too much work.
@@ -269,7 +274,7 @@ fn outline_changes(
     };
     let lattice = specimen.outline.lattice();
     let change = |step| {
-        let [curved, straight] = [&rounded, middle].map(|own| on_lattice(own, step, &lattice));
+        let [curved, straight] = [&rounded, middle].map(|own| on_nodes_of(&lattice, own, step));
         Some(OutlineChange {
             measured: whole * (what.at(&rounded, step)? - what.at(middle, step)?),
             displacement_percent: whole.abs()

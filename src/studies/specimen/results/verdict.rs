@@ -54,8 +54,9 @@ fn worst(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
 pub fn checks(specimen: &Specimen, models: &Models, deviations: &[Deviation]) -> Vec<Check> {
     let mut checks = Vec::new();
     if !deviations.is_empty() {
-        checks.extend(deviation_checks(specimen, models, deviations));
-        checks.extend(correction_check(specimen, models, deviations));
+        let remedy = models.reference.remedy(specimen);
+        checks.extend(deviation_checks(specimen, models, deviations, remedy));
+        checks.extend(correction_check(specimen, deviations, remedy));
     }
     checks.extend(models.reference.goal_check(specimen));
     checks
@@ -66,7 +67,12 @@ const SOURCE: &str = "the study's tolerance";
 /// Why what is measured needs no comparison.
 const NOTHING: &str = "nothing to compare: both are zero next to the forces on single nodes, or to the largest displacement";
 
-fn deviation_checks(specimen: &Specimen, models: &Models, deviations: &[Deviation]) -> [Check; 2] {
+fn deviation_checks(
+    specimen: &Specimen,
+    models: &Models,
+    deviations: &[Deviation],
+    remedy: &str,
+) -> [Check; 2] {
     let limits = specimen.tolerances;
     let what = models.reference.measured.name();
     let named = [
@@ -81,7 +87,7 @@ fn deviation_checks(specimen: &Specimen, models: &Models, deviations: &[Deviatio
         let nothing = which == 1 && deviations.iter().all(|own| own.measures_none);
         let judgement = match nothing {
             true => Judgement::Exact(NOTHING),
-            false => judge(deviation, own, limit, models.reference.remedy()),
+            false => judge(deviation, own, limit, remedy),
         };
         let quantity = format!("corrected {name} from the finite elements");
         Check::new(quantity, "%", Wanted::AtMost(limit), SOURCE, deviation).judged(judgement, own)
@@ -89,11 +95,7 @@ fn deviation_checks(specimen: &Specimen, models: &Models, deviations: &[Deviatio
 }
 
 /// How much of the springs' deviation the correction takes away, where the springs have a field.
-fn correction_check(
-    specimen: &Specimen,
-    models: &Models,
-    deviations: &[Deviation],
-) -> Option<Check> {
+fn correction_check(specimen: &Specimen, deviations: &[Deviation], remedy: &str) -> Option<Check> {
     let wanted = specimen.tolerances.correction_percent;
     let mut found: Option<(f64, f64, Judgement)> = None;
     for deviation in deviations {
@@ -103,7 +105,6 @@ fn correction_check(
             continue;
         };
         let pair = [springs, deviation.corrected[0]];
-        let remedy = models.reference.remedy();
         let judgement = judge_correction(pair, deviation.own[0], 100.0 - wanted, remedy);
         // A ratio of two roundings is no correction, and none is needed.
         let value = match judgement {
