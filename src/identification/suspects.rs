@@ -6,14 +6,16 @@
 //! ```
 //!
 //! A zero of the force of a fiftieth of its range bends K(·) by far more than its interval and leaves a misfit of 1.05: the test of one degree of freedom sees it.
+//! So it sees what smooth functions go past: a step of K(·) at rest, and dry friction.
 
 use nalgebra::DVector;
 
+use super::basis::{Basis, Form};
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
 use super::types::FittedMotion;
 
-/// t above which a suspect is told: by chance in less than one recording of a thousand, five being tried.
+/// t above which a suspect is told: by chance in less than one recording of a thousand, seven being tried.
 const LIMIT: f64 = 4.0;
 
 /// The share of what is left beyond the noise that a suspect has to take: where forms are wrong, or the noise is not white, suspects take a little of it.
@@ -35,16 +37,27 @@ pub enum Suspect {
     Lag,
     /// A mass that is larger than stated, in tonne.
     Mass,
+    /// A K(·) that steps at rest, in N/mm.
+    StepOfK,
+    /// A force of constant size against the motion, in N.
+    Friction,
 }
 
 impl Suspect {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 7] = [
         Self::ForceZero,
         Self::ExtensionZero,
         Self::Drift,
         Self::Lag,
         Self::Mass,
+        Self::StepOfK,
+        Self::Friction,
     ];
+
+    /// Whether it is the body's, and not the recording's.
+    fn is_of_body(self) -> bool {
+        matches!(self, Self::StepOfK | Self::Friction)
+    }
 
     /// In words, with its amount.
     fn words(self, amount: f64, error: f64) -> String {
@@ -65,6 +78,8 @@ impl Suspect {
                 around(1e3, "ms")
             ),
             Self::Mass => format!("a mass that is larger by {}", around(1e6, "g")),
+            Self::StepOfK => format!("a K(·) that steps by {} at rest", around(1.0, "N/mm")),
+            Self::Friction => format!("a dry friction of {}", around(1.0, "N")),
         }
     }
 }
@@ -93,12 +108,17 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
         let (a, b) = (i.saturating_sub(1), (i + 1).min(times.len() - 1));
         (force[b] - force[a]) / (times[b] - times[a])
     };
-    let of = |i: usize| match suspect {
-        Suspect::ForceZero => [0.0, 1.0],
-        Suspect::ExtensionZero => [1.0, 0.0],
-        Suspect::Drift => [0.0, (times[i] - times[0]) / duration - 0.5],
-        Suspect::Lag => [0.0, -rate(i)],
-        Suspect::Mass => [0.0, motion.acceleration[i]],
+    let of = |i: usize| {
+        let (x, v) = (motion.extension[i], motion.rate[i]);
+        match suspect {
+            Suspect::ForceZero => [0.0, 1.0],
+            Suspect::ExtensionZero => [1.0, 0.0],
+            Suspect::Drift => [0.0, (times[i] - times[0]) / duration - 0.5],
+            Suspect::Lag => [0.0, -rate(i)],
+            Suspect::Mass => [0.0, motion.acceleration[i]],
+            Suspect::StepOfK => [0.0, 0.5 * x.abs()],
+            Suspect::Friction => [0.0, v.signum()],
+        }
     };
     let over = |[x, f]: [f64; 2]| [x / joint.noise[0], f / joint.noise[1]];
     (0..times.len()).map(|i| over(of(i))).collect()
@@ -111,9 +131,13 @@ pub fn suspects(
     (found, [misfit, freedom]): (&PenalisedFit, [f64; 2]),
 ) -> Vec<Suspected> {
     let beyond = (misfit - 1.0).max(0.0) * freedom;
-    let tried = Suspect::ALL
-        .into_iter()
-        .filter(|suspect| *suspect != Suspect::Mass || joint.recording.mass > 0.0);
+    // A form that is wrong looks like a body of another kind.
+    let is_free = |function: &Basis| matches!(function.form, Form::Spline(_));
+    let are_free = joint.functions.iter().all(is_free);
+    let tried = Suspect::ALL.into_iter().filter(|suspect| match suspect {
+        Suspect::Mass => joint.recording.mass > 0.0,
+        own => are_free || !own.is_of_body(),
+    });
     let tried: Vec<Suspect> = tried.collect();
     let columns: Vec<Column> = tried
         .iter()
@@ -154,10 +178,12 @@ pub fn warning(suspects: &[Suspected]) -> Option<String> {
         .iter()
         .map(|own| own.suspect.words(own.amount, own.error));
     let words: Vec<String> = words.collect();
-    (!words.is_empty()).then(|| {
-        format!(
-            "the recording asks for {}: put it right before, as no interval holds it",
-            words.join(", or else for ")
-        )
-    })
+    let remedy = match suspects.first()?.suspect.is_of_body() {
+        true => "smooth functions go past it, and no interval or band holds it",
+        false => "put it right before, as no interval holds it",
+    };
+    Some(format!(
+        "the recording asks for {}: {remedy}",
+        words.join(", or else for ")
+    ))
 }

@@ -1,5 +1,6 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
 use crate::document::{Statements, Table};
@@ -269,6 +270,53 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
             "{words}: {amount} ± {error}, {size}"
         );
     }
+}
+
+/// A machine that swings about rest, with noise of a fiftieth of both signals.
+fn swinging(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Recording {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut noise = |size: f64| -> f64 {
+        let draw: f64 = StandardNormal.sample(&mut random);
+        0.02 * size * draw
+    };
+    let mut recording = Recording::default();
+    for i in 0..1200 {
+        let t = 0.005 * f64::from(i);
+        let (slow, fast) = (2.0 * t, 5.1 * t);
+        let x = 6.0 * slow.sin() + 4.0 * fast.sin();
+        let v = 12.0 * slow.cos() + 20.4 * fast.cos();
+        recording.times.push(t);
+        recording.extension.push(x + noise(6.0));
+        let force = stiffness(x) * x + damping(v) * v;
+        recording.force.push(force + noise(1.5));
+    }
+    recording
+}
+
+/// A step at rest and dry friction, which smooth functions go past.
+#[test]
+fn what_smooth_functions_go_past_is_named() {
+    type Law<'a> = &'a dyn Fn(f64) -> f64;
+    let (constant_k, constant_d): (Law, Law) = (&|_| 0.2, &|_| 0.004);
+    let cases: [(&str, Law, Law); 2] = [
+        (
+            "a K(·) that steps by ",
+            &|x| if x < 0.0 { 0.15 } else { 0.3 },
+            constant_d,
+        ),
+        ("a dry friction of ", constant_k, &|v: f64| {
+            0.004 + 0.1 / v.abs().max(1e-9)
+        }),
+    ];
+    for (words, stiffness, damping) in cases {
+        let recording = swinging(stiffness, damping);
+        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let told = asked_for(&found).unwrap_or_default();
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let sound = swinging(constant_k, constant_d);
+    let found = identify(&sound, IdentificationSettings::default(), &|_| ()).unwrap();
+    assert_eq!(asked_for(&found), None);
 }
 
 /// What a recording asks for by the warnings.
