@@ -16,7 +16,7 @@
 use super::data::{Observation, Test, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::regression::refined_zero::Found;
-use super::regression::{Misfit, Search, refined_zero, settled};
+use super::regression::{Misfit, Rival, Search, refined_zero, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;
 use super::trust::{Assessment, Quality, noise_warnings, warnings};
@@ -200,7 +200,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         law,
         tests,
         settings,
-        (begun, &parameters, minimum.other),
+        (begun, &parameters, minimum.rival),
     ))
 }
 
@@ -209,7 +209,7 @@ fn finished(
     law: &'static Law,
     tests: &[TestData],
     settings: &FitSettings,
-    (begun, parameters, other): (Found, &[Parameter], Option<Vec<f64>>),
+    (begun, parameters, rival): (Found, &[Parameter], Option<Rival>),
 ) -> Fit {
     let stiffness = begun.misfit.stiffness();
     let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();
@@ -249,7 +249,7 @@ fn finished(
         least: &least,
     };
     let mut quality = assessment.quality();
-    quality.warnings = warnings(&quality, &built.parameters, other.as_deref());
+    quality.warnings = warnings(&quality, &built.parameters, rival.as_ref());
     let of_noise = noise_warnings(&quality, &*fitted, assessment.tests, settings.weighting);
     quality.warnings.extend(of_noise);
     Fit {

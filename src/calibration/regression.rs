@@ -8,6 +8,6 @@ mod search;
 pub use misfit::{Misfit, Rows, Zero};
 pub use refined_zero::MovedZero;
 pub use reweighed::{Reweighed, settled};
-pub use search::Search;
 #[cfg(test)]
 pub use search::differs;
+pub use search::{Rival, Search};

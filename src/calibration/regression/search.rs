@@ -27,11 +27,22 @@ pub struct Search<'a> {
     pub bounds: &'a [[f64; 2]],
 }
 
-/// The best parameters, and others that describe the data nearly as well.
+/// The best parameters, and those of the next best minimum elsewhere.
 pub struct Minimum {
     pub values: Vec<f64>,
-    pub other: Option<Vec<f64>>,
+    pub rival: Option<Rival>,
 }
+
+/// A minimum beside the best one.
+#[derive(Clone, Debug)]
+pub struct Rival {
+    pub values: Vec<f64>,
+    /// Its sum of squares over that of the best one, less 1.
+    pub worse: f64,
+}
+
+/// A minimum whose sum of squares is so many times that of the best one is no rival, however few the data are.
+const FAR: f64 = 5.0;
 
 impl Search<'_> {
     /// The parameters of the smallest sum of squares from so many starts; `None` where none describe the data at all.
@@ -57,15 +68,26 @@ impl Search<'_> {
         let sum = |values: &Vec<f64>| sum_of_squares(self.misfit, values);
         let values = self.ordered(refined.min_by(|a, b| sum(a).total_cmp(&sum(b)))?);
         // Another minimum counts as one when it is still elsewhere after the same care.
-        let most = 1.05 * sum_of_squares(&thinned, &values);
+        let least = sum_of_squares(&thinned, &values);
         let elsewhere = |found: &Vec<f64>| differs(found, &values);
-        let other = minima
+        let rival = minima
             .iter()
-            .find(|(sum, found)| *sum <= most && elsewhere(&self.ordered(found.clone())))
+            .find(|(sum, found)| *sum <= FAR * least && elsewhere(&self.ordered(found.clone())))
             .and_then(|(_, found)| minimise(&thinned, found, self.bounds, Precision::Full))
             .map(|found| self.ordered(found))
             .filter(elsewhere);
-        Some(Minimum { values, other })
+        let rival = rival.map(|own| {
+            let [best, rival] = [sum(&values), sum(&own)];
+            Rival {
+                worse: if rival > best {
+                    rival / best - 1.0
+                } else {
+                    0.0
+                },
+                values: own,
+            }
+        });
+        Some(Minimum { values, rival })
     }
 
     /// Starts within the bounds, the best first.

@@ -2,20 +2,33 @@
 
 use super::quality::{Quality, StableRange, knows_sign};
 use crate::calibration::data::TestData;
+use crate::calibration::regression::Rival;
 use crate::material::curve::Mode;
 use crate::material::parameters::Parameter;
+use crate::statistics::f_tail;
 
-/// The warnings of a fit; `other` are the parameters of another minimum that is nearly as good.
-pub fn warnings(quality: &Quality, parameters: &[Parameter], other: Option<&[f64]>) -> Vec<String> {
+/// A minimum that is worse by less is told whatever the data.
+const NEARLY: f64 = 0.05;
+
+/// The warnings of a fit that has another minimum.
+pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Rival>) -> Vec<String> {
     let away = (quality.nmad_percent > 20.0).then(|| {
         let percent = quality.nmad_percent;
         format!("the law does not follow the data: they are {percent:.0} % apart in the mean")
     });
-    let other = other.map(|other| {
-        let pairs = parameters.iter().zip(other);
+    let rival = rival.filter(|rival| rival.worse <= NEARLY || is_possible(rival, quality));
+    let other = rival.map(|rival| {
+        let pairs = parameters.iter().zip(&rival.values);
         let values = pairs.map(|(parameter, value)| format!("{} = {value:.4}", parameter.key));
         let values = values.collect::<Vec<_>>().join(", ");
-        format!("the fit is not unique: {values} is at most 5 % worse")
+        match rival.worse <= NEARLY {
+            true => format!("the fit is not unique: {values} is at most 5 % worse"),
+            false => format!(
+                "the fit is not unique: {values} is {:.0} % worse in squares, which the noise of so few independent points does not exclude; intervals \
+                 are those about the one that was taken",
+                100.0 * rival.worse
+            ),
+        }
     });
     away.into_iter()
         .chain(uncertain(quality, parameters))
@@ -24,6 +37,14 @@ pub fn warnings(quality: &Quality, parameters: &[Parameter], other: Option<&[f64
         .chain(quality.stable.iter().filter_map(unstable))
         .chain(predicted(quality))
         .collect()
+}
+
+/// Whether noise makes a minimum so much worse, though its parameters are the true ones, in more than a twentieth of tests:
+/// F = (S′/S − 1) (nₑ − k)/k.
+fn is_possible(rival: &Rival, quality: &Quality) -> bool {
+    let parameters = rival.values.len() as f64;
+    let left = quality.effective_points() - parameters;
+    quality.has_intervals() && f_tail([parameters, left], rival.worse * left / parameters) > 0.05
 }
 
 /// Zeros that were found in the records and are taken as known.
