@@ -73,6 +73,8 @@ pub(super) fn is_number(field: &str) -> bool {
 
 /// Whether a field says that there is no number.
 pub(super) fn is_hole(field: &str) -> bool {
+    // As spreadsheets, R and pandas write it.
+    const WORDS: [&str; 8] = ["nan", "na", "n/a", "#n/a", "#nv", "#div/0!", "null", "none"];
     let unsigned = field.trim_start_matches(['+', '-']);
-    field.is_empty() || unsigned.eq_ignore_ascii_case("nan")
+    unsigned.is_empty() || WORDS.iter().any(|word| unsigned.eq_ignore_ascii_case(word))
 }

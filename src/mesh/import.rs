@@ -78,6 +78,7 @@ fn sound(
     name: &str,
     reading: MeshReading,
 ) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> {
+    raw.collapse_quadrilaterals();
     if let Some(tolerance) = reading.merge_nodes {
         raw.merge_nodes(tolerance / reading.unit);
     }

@@ -53,6 +53,28 @@ impl Raw {
         nodes.copied().collect()
     }
 
+    /// Makes triangles of quadrilaterals that have one corner twice, as some codes write them; where sides have nodes in their middle, that of
+    /// the side without a length is the corner too.
+    pub fn collapse_quadrilaterals(&mut self) {
+        for (shape, nodes) in &mut self.cells {
+            let corners = 4.min(nodes.len());
+            let doubled = (0..corners).filter(|at| nodes[*at] == nodes[(at + 1) % corners]);
+            let sides: Vec<usize> = doubled.collect();
+            let [side] = sides[..] else {
+                continue;
+            };
+            match shape {
+                CellShape::Quad4 => *shape = CellShape::Triangle3,
+                CellShape::Quad8 if nodes[4 + side] == nodes[side] => {
+                    nodes.remove(4 + side);
+                    *shape = CellShape::Triangle6;
+                }
+                _ => continue,
+            }
+            nodes.remove(side);
+        }
+    }
+
     /// Makes nodes that are not farther from each other than a tolerance, in the file's unit, one.
     pub fn merge_nodes(&mut self, tolerance: f64) {
         let mut squares: HashMap<[i64; 2], Vec<u64>> = HashMap::new();

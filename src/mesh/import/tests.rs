@@ -55,6 +55,62 @@ fn both_versions_of_gmsh_are_read_with_their_groups() {
 }
 
 #[test]
+fn quadrilaterals_with_a_corner_twice_are_triangles() {
+    // The upper triangle as a quadrilateral, whichever corner stands twice.
+    for nodes in ["1 3 5 5", "1 3 3 5", "1 1 3 5", "1 3 5 1"] {
+        let text = VERSION_2.replace("3 2 2 9 1 1 3 5", &format!("3 3 2 9 1 {nodes}"));
+        let mesh = read("a.msh", &text).unwrap();
+        assert_eq!(mesh.shape(1), CellShape::Triangle3, "{nodes}");
+        assert!((mesh.cell_area(1) - 50.0).abs() < 1e-12, "{nodes}");
+    }
+    // Eight nodes: the middle of the side without a length is the corner.
+    let places = [
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [0.0, 2.0],
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [0.0, 1.0],
+    ];
+    for side in 0..4 {
+        let corners = [0, 1, 2];
+        let middles = [3, 4, 5];
+        let (mut around, mut between) = (Vec::new(), Vec::new());
+        for at in 0..3 {
+            around.push(corners[at]);
+            // The doubled corner is the one at which the side without a length begins.
+            if at == side % 3 {
+                around.push(corners[at]);
+                between.push(corners[at]);
+            }
+            between.push(middles[at]);
+        }
+        if side == 3 {
+            // Over the end: the first corner stands at the end once more.
+            around = vec![0, 1, 2, 0];
+            between = vec![3, 4, 5, 0];
+        }
+        let nodes: Vec<u64> = around
+            .iter()
+            .chain(&between)
+            .map(|node| *node as u64)
+            .collect();
+        let mut raw = Raw {
+            cells: vec![(CellShape::Quad8, nodes)],
+            places: (0..6)
+                .map(|node: usize| (node as u64, [places[node][0], places[node][1], 0.0]))
+                .collect(),
+            ..Raw::default()
+        };
+        raw.collapse_quadrilaterals();
+        let mesh = raw.mesh(1.0).unwrap();
+        assert_eq!(mesh.shape(0), CellShape::Triangle6, "{side}");
+        assert!((mesh.cell_area(0) - 2.0).abs() < 1e-12, "{side}");
+        assert!(mesh.faults(Exemptions::default()).is_empty(), "{side}");
+    }
+}
+
+#[test]
 fn what_cannot_be_read_is_refused_by_name() {
     for (text, reason) in [
         (VERSION_2.replace("2.2 0 8", "2.2 1 8"), "binary"),
