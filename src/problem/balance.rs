@@ -66,7 +66,15 @@ impl Balance {
         let ratio = |rest: f64, largest: f64| if rest == 0.0 { 0.0 } else { rest / largest };
         let force = self.force[0].hypot(self.force[1]);
         let moment = self.moment.abs();
-        ratio(force, self.largest_force).max(ratio(moment, self.largest_moment))
+        let [force, moment] = [
+            ratio(force, self.largest_force),
+            ratio(moment, self.largest_moment),
+        ];
+        if force.is_nan() || force > moment {
+            force
+        } else {
+            moment
+        }
     }
 }
 

@@ -142,7 +142,9 @@ impl Reactions<'_> {
         let supports = body.resultant(&self.forces);
         let loads = model.loads.resultant(self.state.factor, u, &body);
         let rounding = self.rounding();
-        if supports.size.max(loads.size) <= 10.0 * rounding {
+        // NaN of an inverted state is not small.
+        let is_small = |size: f64| size <= 10.0 * rounding;
+        if is_small(supports.size) && is_small(loads.size) {
             let none = Resultant::default();
             return body.balance(none, none, rounding);
         }

@@ -26,8 +26,8 @@ pub struct Scale {
     departure: f64,
     /// Discretisation error.
     pub discretisation: f64,
-    /// Imbalance that may be left in √mJ/mm.
-    imbalance: f64,
+    /// Imbalance that may be left in √mJ/mm; `None` where there is no multigrid, or where it is not known.
+    imbalance: Option<f64>,
     /// What an imbalance leaves of the field in mm/√mJ.
     compliance: f64,
 }
@@ -42,18 +42,20 @@ impl Scale {
         let departure = departure(&levels.meshes[finest], &state.displacement);
         let energy = levels.strain_energy(finest, &state.displacement);
         let compliance = SOFTER * departure / (2.0 * energy).sqrt();
+        let imbalance = tolerance * discretisation_error / compliance / departure;
         Self {
             departure,
             discretisation: discretisation_error / departure,
-            imbalance: tolerance * discretisation_error / compliance / departure,
+            imbalance: Some(imbalance).filter(|own| !own.is_nan()),
             compliance,
         }
     }
 
     /// With what an approach tells, of whose first imbalance some share may be left.
     pub fn told(self, own: &Approach, share: f64) -> Self {
+        let of_approach = share * own.first / self.departure;
         Self {
-            imbalance: self.imbalance.min(share * own.first / self.departure),
+            imbalance: self.imbalance.map(|own| own.min(of_approach)),
             ..self
         }
     }
@@ -61,7 +63,7 @@ impl Scale {
     /// Where there is no multigrid.
     pub fn without_multigrid(self) -> Self {
         Self {
-            imbalance: f64::NAN,
+            imbalance: None,
             ..self
         }
     }
@@ -71,7 +73,7 @@ impl Scale {
         Self {
             departure: self.departure.max(other.departure),
             discretisation: self.discretisation,
-            imbalance: self.imbalance.min(other.imbalance),
+            imbalance: self.imbalance.zip(other.imbalance).map(|(a, b)| a.min(b)),
             compliance: self.compliance.max(other.compliance),
         }
     }
@@ -252,10 +254,7 @@ impl Systems {
         aim: &Aim,
         size: f64,
     ) -> Option<(State, Approach)> {
-        let nearness = Nearness::Imbalance(self.scale.imbalance * size);
-        if self.scale.imbalance.is_nan() {
-            return None;
-        }
+        let nearness = Nearness::Imbalance(self.scale.imbalance? * size);
         for anew in [Anew::None, Anew::Finest, Anew::All] {
             if anew < self.anew {
                 continue;
