@@ -209,12 +209,27 @@ pub enum SolveFault {
         /// The shortest step in s that was tried.
         step: f64,
     },
+    /// A field that was to be found near measured displacements.
+    #[error("{0}")]
+    OfMeasured(Box<Self>),
     /// A number is not finite, so nothing computed from it means anything.
     #[error("{0} is not a finite number")]
     NotFinite(String),
 }
 
 impl SolveFault {
+    /// The fault of a field that was to be found near measured displacements: where there is none, it is that of the data rather than of the
+    /// cells.
+    #[must_use]
+    pub fn of_measured(self) -> Self {
+        match self {
+            Self::Inverted { .. } | Self::NotPositiveDefinite | Self::Stalled { .. } => {
+                Self::OfMeasured(Box::new(self))
+            }
+            other => other,
+        }
+    }
+
     /// What a user can try.
     pub fn advice(&self) -> &'static str {
         match self {
@@ -244,6 +259,10 @@ impl SolveFault {
             }
             Self::TooManySteps { .. } => {
                 "take a shorter duration, longer steps, softer springs or less damping, or say --allow-large"
+            }
+            Self::OfMeasured(_) => {
+                "look whether the markers tell of the whole mesh (else say what is known of its edges, or give a mesh that ends where they do), whether they \
+                 are on the right body, and whether places are those of the frame (--places frame)"
             }
             Self::NotFinite(_) => "look at the material's parameters and the load",
         }

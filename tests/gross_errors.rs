@@ -69,3 +69,119 @@ fn gross_errors_that_keep_an_estimate_from_being_found_have_no_say() {
     assert_eq!(found["weights"], "tukey");
     assert!((found["noise_mm"].as_f64().unwrap() / NOISE - 1.0).abs() < 0.1);
 }
+
+/// The first frame with every third marker anywhere, and what more there is of it.
+fn with_a_third_anywhere() -> String {
+    let mut text = String::new();
+    for (number, line) in markers().lines().enumerate() {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if line.starts_with("1,") && number % 3 == 0 && !fields[3].is_empty() {
+            let turn = 2.4 * number as f64;
+            let far = 4.0 + (number % 7) as f64;
+            for (field, by) in fields[3..].iter_mut().zip([turn.cos(), turn.sin()]) {
+                let moved = field.parse::<f64>().unwrap() + far * by;
+                *field = format!("{moved:.4}");
+            }
+        }
+        if !line.starts_with("2,") {
+            text += &(fields.join(",") + "\n");
+        }
+    }
+    text
+}
+
+#[test]
+fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
+    let edges = [
+        "--rigid",
+        "left,right",
+        "--free",
+        "top,bottom",
+        "--edge-gap",
+        "0 mm",
+    ];
+    let (text, found) = corrected(&with_a_third_anywhere(), &edges);
+    assert_eq!(found["weights"], "tukey", "{text}");
+    let noise = found["noise_mm"].as_f64().unwrap();
+    // The median of all, of which two thirds have noise alone, lies at the three quarters of these: 1.41 times as far.
+    assert!((1.0..1.7).contains(&(noise / NOISE)), "{noise}");
+    assert!(
+        text.contains("markers are outliers, which is no noise"),
+        "{text}"
+    );
+    // Without weights their size is taken for noise, and told.
+    let (text, found) = corrected(
+        &with_a_third_anywhere(),
+        &[&edges[..], &["--robust", "no"]].concat(),
+    );
+    assert!(found["noise_mm"].as_f64().unwrap() > 5.0 * NOISE);
+    assert!(text.contains("of the specimen's smaller extent"), "{text}");
+}
+
+#[test]
+fn a_frame_that_cannot_be_corrected_leaves_the_others_theirs() {
+    let good: Vec<String> = markers().lines().map(str::to_owned).collect();
+    let first: Vec<&String> = good.iter().filter(|line| line.starts_with("1,")).collect();
+    let head: Vec<&String> = good
+        .iter()
+        .take_while(|line| !line.starts_with("1,"))
+        .collect();
+    let again = |number: usize, change: &dyn Fn([f64; 4]) -> [f64; 4]| -> Vec<String> {
+        let lines = first.iter().filter_map(|line| {
+            let numbers: Vec<f64> = line
+                .split(',')
+                .skip(1)
+                .map(|x| x.parse().unwrap_or(f64::NAN))
+                .collect();
+            let [x, y, u, v] = change([numbers[0], numbers[1], numbers[2], numbers[3]]);
+            (u.is_finite() && v.is_finite()).then(|| format!("{number},{x},{y},{u},{v}"))
+        });
+        lines.collect()
+    };
+    let rest = again(3, &|[x, y, ..]| [x, y, 0.0, 0.0]);
+    let few: Vec<String> = again(4, &|all| all).into_iter().take(2).collect();
+    let folded = again(5, &|[x, y, ..]| [x, y, -1.5 * x, 0.3 * y]);
+    let all = head
+        .into_iter()
+        .chain(first.iter().copied())
+        .chain(&rest)
+        .chain(&few)
+        .chain(&folded);
+    let all: Vec<&str> = all.map(String::as_str).collect();
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), all.join("\n")).unwrap();
+    let study = "[[force]]\nedge = \"right\"\nframe = 3\naxis = \"x\"\nforce = \"0 N\"\n";
+    fs::write(folder.path().join("known.toml"), study).unwrap();
+    let arguments = [
+        "correct",
+        "plate.csv",
+        "--material",
+        "pva-10",
+        "--thickness",
+        "2 mm",
+        "--edge-gap",
+        "0 mm",
+        "--rigid",
+        "left,right",
+        "--free",
+        "top,bottom",
+        "--study",
+        "known.toml",
+    ];
+    let done = gelbench(folder.path(), &arguments).code(1);
+    let told = words(&done.get_output().stderr);
+    assert!(told.contains("in the frame 3 no marker moves"), "{told}");
+    assert!(
+        told.contains("frame 4: 2 of 2 markers lie on the mesh, and three are the fewest"),
+        "{told}"
+    );
+    assert!(told.matches("the frame is left out").count() == 2, "{told}");
+    let report = report_of_correction(folder.path());
+    let frames: Vec<&Value> = report["steps"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|step| &step["at"])
+        .collect();
+    assert_eq!(frames, [1.0]);
+}

@@ -52,6 +52,7 @@ fn described<'py>(class: &Bound<'py, PyAny>, fault: &Diagnostic) -> PyResult<Bou
 /// Where a solver failed, in words.
 fn place(fault: &SolveFault) -> Option<&str> {
     match fault {
+        SolveFault::OfMeasured(fault) => place(fault),
         SolveFault::Inverted { element } | SolveFault::MaterialUnstable { element, .. } => {
             Some(element)
         }

@@ -4,13 +4,11 @@ use std::path::PathBuf;
 
 use gelbench::document::TextEncoding;
 use gelbench::error::Error;
-use gelbench::markers::{ChosenColumns, ReadSettings};
+use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
 use gelbench::mesh::{CellShape, Exemptions, MeshReading};
 use gelbench::results::GridSeries;
 use gelbench::studies::markers::written::{self, FrameFiles, SERIES};
-use gelbench::studies::markers::{
-    ComparedFrames, Conditions, MarkerStudy, MeshSource, Request, worst_answer,
-};
+use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, worst_answer};
 use gelbench::units::{self, Dimension};
 use pyo3::prelude::*;
 use std::time::Instant;
@@ -160,16 +158,12 @@ pub fn correct(
             files: files.clone(),
         };
         let start = Instant::now();
-        let study = match options.refine {
+        let mut study = match options.refine {
             true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what))?,
             false => MarkerStudy::prepare_with(card, request)?,
         };
-        let mut compared = ComparedFrames::default();
-        for frame in &study.series.frames {
-            watch.tell(&format!("frame {}", frame.number));
-            compared.push(frame, study.estimate_frame(frame)?);
-        }
-        let estimates = compared.into_estimates();
+        let told = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
+        let estimates = study.estimate(&told)?;
         let seconds = start.elapsed().as_secs_f64();
         let results = written::results(&study, &estimates, (name, known), seconds);
         let mut of_frames = OfFrames {

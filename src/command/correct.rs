@@ -33,7 +33,7 @@ pub fn run(options: Options) -> Outcome {
     let pictures = options.pictures.chosen();
     let refine = options.refine;
     let request = request(options)?;
-    let field = match refine {
+    let mut field = match refine {
         true => {
             let progress = Progress::of(0);
             let card = Card::load(&request.material, Path::new("."))?;
@@ -48,7 +48,7 @@ pub fn run(options: Options) -> Outcome {
         identity: identity::of(&said),
         pictures,
     };
-    let (estimates, results) = correct(&field, (told, &inputs), &folder)?;
+    let (estimates, results) = correct(&mut field, (told, &inputs), &folder)?;
     print_report(|| results.json())?;
     Ok(exit_code(worst_answer(&estimates), results.passed()))
 }

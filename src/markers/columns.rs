@@ -236,7 +236,7 @@ pub fn check_all(
 /// Numbers of frames.
 pub const FRAME: Names = &["frame", "frame_number", "image"];
 /// Times.
-pub const TIME: Names = &["time", "t"];
+pub const TIME: Names = &["time", "t", "zeit"];
 
 /// The unit of a column of times in s, which is 1 s where the head says none.
 ///

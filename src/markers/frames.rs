@@ -9,6 +9,8 @@ pub struct MarkerSeries {
     pub frames: Vec<Frame>,
     /// Places at rest in mm of markers that were found in no frame.
     pub lost: Vec<[f64; 2]>,
+    /// The numbers of frames in which no marker moves, as in the picture at rest: they are left out.
+    pub at_rest: Vec<usize>,
 }
 
 /// The markers at one instant.
@@ -39,10 +41,15 @@ impl MarkerSeries {
     /// The places of all markers of all frames, each once, in the order of their first frame; those that were found in none
     /// come last.
     pub fn places(&self) -> Vec<[f64; 2]> {
+        let found = self.places_of_found().into_iter();
+        found.chain(self.lost.iter().copied()).collect()
+    }
+
+    /// The same without those that were found in none.
+    pub fn places_of_found(&self) -> Vec<[f64; 2]> {
         let mut seen = HashSet::new();
         let markers = self.frames.iter().flat_map(|frame| &frame.markers);
         let found = markers.filter(|marker| seen.insert(marker.number));
-        let places = found.map(|marker| marker.place);
-        places.chain(self.lost.iter().copied()).collect()
+        found.map(|marker| marker.place).collect()
     }
 }

@@ -116,6 +116,7 @@ pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Err
     let kept = MarkerSeries {
         frames: series.frames.iter().map(frame).collect(),
         lost: series.lost.clone(),
+        at_rest: series.at_rest.clone(),
     };
     let count = |series: &MarkerSeries| -> usize {
         let frames = series.frames.iter();

@@ -158,39 +158,61 @@ impl Gathering {
             let hint = "they leave whole rows or columns of the matrix, or a tenth of it at its rim, empty; --outline gives the true edge";
             warnings.push(Diagnostic::warning("", message).hint(hint));
         }
+        let (frames, at_rest) = with_markers(self.frames, warnings);
         MarkerSeries {
-            frames: with_markers(self.frames, warnings),
+            frames,
             lost,
+            at_rest,
         }
     }
 }
 
-/// The frames that have markers, with a word about those that have none or are missing.
-fn with_markers(frames: BTreeMap<usize, Frame>, warnings: &mut Vec<Diagnostic>) -> Vec<Frame> {
+/// Displacements below this share of the largest one of all frames are rounding.
+const AT_REST: f64 = 1e-12;
+
+/// The frames that have markers which move, and the numbers of those in which none does, with a word about these, and about those that have none
+/// or are missing.
+fn with_markers(
+    frames: BTreeMap<usize, Frame>,
+    warnings: &mut Vec<Diagnostic>,
+) -> (Vec<Frame>, Vec<usize>) {
     let mut warn = |message: String, hint: &str| {
         warnings.push(Diagnostic::warning("", message).hint(hint));
     };
-    let mut kept = Vec::new();
+    let largest = |frame: &Frame| {
+        let lengths = frame.markers.iter().map(|marker| marker.displacement);
+        lengths.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)))
+    };
+    let most = frames.values().map(largest).fold(0.0, f64::max);
+    let (mut kept, mut at_rest) = (Vec::new(), Vec::new());
     for (number, frame) in frames {
         if frame.markers.is_empty() {
             let message = format!("the frame {number} has no displacement at all");
             warn(message, "it is left out");
+        } else if most > 0.0 && largest(&frame) <= AT_REST * most {
+            let message =
+                format!("in the frame {number} no marker moves: it is the picture at rest");
+            warn(message, "it is left out, with the forces in it");
+            at_rest.push(number);
         } else {
             kept.push(Frame { number, ..frame });
         }
     }
-    if let Some(gaps) = missing_frames(&kept) {
+    let known = kept.iter().map(|frame| frame.number);
+    let mut known: Vec<usize> = known.chain(at_rest.iter().copied()).collect();
+    known.sort_unstable();
+    if let Some(gaps) = missing_frames(&known) {
         let message = format!("frames are missing: {gaps}");
         warn(message, "the others are corrected one by one");
     }
-    kept
+    (kept, at_rest)
 }
 
-/// The numbers that are missing between the first and the last frame; none where frames stand at regular numbers,
+/// The numbers that are missing between the first and the last of some frames; none where frames stand at regular numbers,
 /// such as every tenth of a camera.
-fn missing_frames(frames: &[Frame]) -> Option<String> {
-    let pairs = frames.windows(2);
-    let pairs: Vec<[usize; 2]> = pairs.map(|pair| [pair[0].number, pair[1].number]).collect();
+fn missing_frames(numbers: &[usize]) -> Option<String> {
+    let pairs = numbers.windows(2);
+    let pairs: Vec<[usize; 2]> = pairs.map(|pair| [pair[0], pair[1]]).collect();
     let steps: Vec<usize> = pairs.iter().map(|[from, to]| to - from).collect();
     if steps.len() > 1 && steps.iter().all(|step| *step == steps[0]) {
         return None;

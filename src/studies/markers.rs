@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::corrector::estimation::{
     FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate, transfer,
 };
-use crate::error::{Diagnostic, Error};
+use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw};
@@ -135,8 +135,7 @@ impl MarkerStudy {
             unknown_gap,
         } = mesh(&request, &field)?;
         area::name(&mut mesh, &request.conditions.areas)?;
-        request.conditions.check(&mesh)?;
-        request.conditions.check_frames(&field.series)?;
+        request.conditions.suit(&mesh, &field.series)?;
         let regressed = request.conditions.regressed_law(&card)?;
         let coarse = match request.mesh {
             MeshSource::File(..) => field.mesh,
@@ -191,16 +190,51 @@ impl MarkerStudy {
         }
     }
 
-    /// Estimates the field of every frame, and compares what is left of each with that of the one before.
+    /// Estimates the field of every frame, and compares what is left of each with that of the one before. Frames that cannot be corrected
+    /// are left out as by [`Self::leave_out`]; each is told before it begins.
     ///
     /// # Errors
-    /// As [`estimate`], with the frame in its message.
-    pub fn estimate(&self) -> Result<Vec<FieldEstimate>, Error> {
-        let mut compared = ComparedFrames::default();
+    /// As [`estimate`], with the frame in its message, where none can be.
+    pub fn estimate(&mut self, told: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
+        let (mut compared, mut failed) = (ComparedFrames::default(), Vec::new());
         for frame in &self.series.frames {
-            compared.push(frame, self.estimate_frame(frame)?);
+            told(frame);
+            match self.estimate_frame(frame) {
+                Ok(found) => drop(compared.push(frame, found)),
+                Err(fault) => failed.push((frame.number, fault)),
+            }
         }
-        Ok(compared.into_estimates())
+        let estimates = compared.into_estimates();
+        self.leave_out(failed)?;
+        Ok(estimates)
+    }
+
+    /// Leaves out the frames that could not be corrected, with a doubt for each.
+    ///
+    /// # Errors
+    /// The first fault where no frame is left.
+    pub fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
+        if !failed.is_empty() && failed.len() == self.series.frames.len() {
+            return Err(failed.swap_remove(0).1);
+        }
+        for (number, fault) in failed {
+            self.series.frames.retain(|frame| frame.number != number);
+            let doubts = match fault {
+                Error::Input(faults) => faults,
+                other => {
+                    let hint = other.advice().map(str::to_owned);
+                    let told = Diagnostic::warning("", other.to_string());
+                    vec![Diagnostic { hint, ..told }]
+                }
+            };
+            self.doubts
+                .extend(doubts.into_iter().map(|doubt| Diagnostic {
+                    severity: Severity::Warning,
+                    message: format!("{}; the frame is left out", doubt.message),
+                    ..doubt
+                }));
+        }
+        Ok(())
     }
 
     /// Estimates the field of a frame by itself.
@@ -219,7 +253,7 @@ impl MarkerStudy {
             ..self.conditions.knowledge(frame.number, law)
         };
         let found = match &self.coarse {
-            None => self.weighted(knowledge, &|knowledge| {
+            None => self.weighted(&frame.markers, knowledge, &|knowledge| {
                 estimate(&specimen, &frame.markers, knowledge)
             }),
             Some(coarse) => {
@@ -239,7 +273,7 @@ fn of_one_frame(error: Error, number: usize, frames: usize) -> Error {
         Error::Solve { model, fault, .. } => Error::Solve {
             model,
             step: format!("frame {number}"),
-            fault,
+            fault: fault.of_measured(),
         },
         Error::Input(faults) if frames > 1 => {
             let named = |fault: Diagnostic| Diagnostic {

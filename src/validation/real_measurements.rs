@@ -91,12 +91,13 @@ impl MeasuredField {
 
     /// The numbers of the frames and their estimates.
     fn estimate(&self) -> Result<Estimated, Error> {
-        let study = MarkerStudy::prepare(self.request.clone())?;
+        let mut study = MarkerStudy::prepare(self.request.clone())?;
+        let estimates = study.estimate(&|_| ())?;
         let frames = study.series.frames.iter();
         let frames = frames.map(|frame| (frame.number, frame.markers.len()));
         Ok(Estimated {
             frames: frames.collect(),
-            estimates: study.estimate()?,
+            estimates,
         })
     }
 }

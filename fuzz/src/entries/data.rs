@@ -48,7 +48,7 @@ pub fn correct(bytes: &[u8]) -> Became {
     with_file("markers.csv", text.as_bytes(), |file| {
         let request = request(file.to_owned(), &mut choices);
         let field = MarkerStudy::prepare(request);
-        let found = field.and_then(|field| Ok((field.estimate()?, field)));
+        let found = field.and_then(|mut field| Ok((field.estimate(&|_| ())?, field)));
         match found {
             Ok((estimates, field)) => {
                 let _ = field.all_doubts(&estimates);

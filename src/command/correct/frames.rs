@@ -33,7 +33,7 @@ pub struct Told {
 
 /// Corrects all frames of a field, writes into a folder, and prints.
 pub fn correct(
-    field: &MarkerStudy,
+    field: &mut MarkerStudy,
     (told, inputs): (Told, &[PathBuf]),
     folder: &Path,
 ) -> Result<(Vec<FieldEstimate>, Results), Error> {
@@ -43,7 +43,13 @@ pub fn correct(
     warn(results_folder.replaces().as_slice());
     let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();
-    let estimates = estimates(field, &mut results_folder, &progress)?;
+    let (estimates, failed) = estimates(field, &mut results_folder, &progress)?;
+    field.leave_out(failed)?;
+    for series in SERIES {
+        let collection = output::vtk::collection(&played(field, series));
+        results_folder.add(&format!("vtk/{series}.pvd"), &collection)?;
+    }
+    results_folder.add("vtk/view.py", output::vtk::VIEW.as_bytes())?;
     let seconds = start.elapsed().as_secs_f64();
     progress.tell("files");
     let results = written::results_with(
@@ -78,36 +84,41 @@ pub fn finish(folder: ResultFolder, results: &Results) -> Result<(), Error> {
 /// The exit code where the data are not explained.
 const NOT_EXPLAINED: u8 = 5;
 
+/// The estimates of frames, and the numbers of those that could not be corrected with the reasons.
+type Estimates = (Vec<FieldEstimate>, Vec<(usize, Error)>);
+
 /// Corrects frame after frame and writes each as soon as the one after it is known; what a run of the same identity has done
 /// is not done again.
 fn estimates(
     field: &MarkerStudy,
     folder: &mut ResultFolder,
     progress: &Progress,
-) -> Result<Vec<FieldEstimate>, Error> {
-    let mut compared = ComparedFrames::default();
+) -> Result<Estimates, Error> {
+    let (mut compared, mut failed) = (ComparedFrames::default(), Vec::new());
     let mut was_kept = false;
     for frame in &field.series.frames {
         progress.tell(&format!("frame {}", frame.number));
         let kept = folder.kept(&part(frame));
         let is_kept = kept.is_some();
-        let estimate = kept.map_or_else(|| field.estimate_frame(frame), Ok)?;
+        let found = kept.map_or_else(|| field.estimate_frame(frame), Ok);
+        progress.advance();
+        let estimate = match found {
+            Ok(estimate) => estimate,
+            Err(fault) => {
+                failed.push((frame.number, fault));
+                continue;
+            }
+        };
         let settled = compared.push(frame, estimate);
         if let Some((before, estimate)) = settled.filter(|_| !was_kept) {
             write(field, before, estimate, folder)?;
         }
         was_kept = is_kept;
-        progress.advance();
     }
     if let Some((last, estimate)) = compared.last().filter(|_| !was_kept) {
         write(field, last, estimate, folder)?;
     }
-    for series in SERIES {
-        let collection = output::vtk::collection(&played(field, series));
-        folder.add(&format!("vtk/{series}.pvd"), &collection)?;
-    }
-    folder.add("vtk/view.py", output::vtk::VIEW.as_bytes())?;
-    Ok(compared.into_estimates())
+    Ok((compared.into_estimates(), failed))
 }
 
 /// The name under which a frame is kept.

@@ -42,14 +42,18 @@ pub fn run(options: Options) -> Outcome {
     drop(progress);
     let mut corrected = Vec::new();
     for (name, specimen) in &study.specimens {
-        let own = specimen.with_card(&found.card);
+        let mut own = specimen.with_card(&found.card);
         let told = Told {
             name: name.clone(),
             text: String::new(),
             identity: format!("{identity}_{name}"),
             pictures: pictures.clone(),
         };
-        let (estimates, _) = correct(&own, (told, &inputs), &folder.join("specimens").join(name))?;
+        let (estimates, _) = correct(
+            &mut own,
+            (told, &inputs),
+            &folder.join("specimens").join(name),
+        )?;
         corrected.push(CorrectedSpecimen {
             name: name.clone(),
             study: own,

@@ -19,7 +19,7 @@ mod linearise;
 
 pub use approach::approach;
 pub use body_force::{BodyForce, nodal_areas};
-pub use linearise::{Grip, Linear, dot};
+pub use linearise::{Grip, Linear};
 
 /// How equilibria on the way and at the end are solved.
 pub const ON_THE_WAY: NewtonSettings = NewtonSettings {

@@ -1,7 +1,7 @@
 //! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
 
 use super::edges::Body;
-use super::equations::{Grip, dot};
+use super::equations::Grip;
 use super::given::Edge;
 use super::outcome::{EdgeForce, ForceCheck, FoundParameter};
 use super::search::NearestField;
@@ -9,6 +9,7 @@ use super::uncertainty::{MeshError, ScaleChange};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics};
+use crate::solve::vector::dot;
 use crate::statistics::Estimate;
 
 impl NearestField<'_> {

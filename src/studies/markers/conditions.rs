@@ -133,11 +133,23 @@ impl Conditions {
         }
     }
 
+    /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with what does not.
+    pub fn suit(&mut self, mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
+        let is_kept =
+            |frame: &Option<usize>| frame.is_none_or(|own| !series.at_rest.contains(&own));
+        self.forces.retain(|(frame, _)| is_kept(frame));
+        self.check(mesh)?;
+        self.check_frames(series)
+    }
+
     /// Whether the frames have the forces that are given: one frame each, the only one where none is said.
     ///
     /// # Errors
     /// [`Error::Input`] with the first force that belongs to no frame.
-    pub fn check_frames(&self, series: &MarkerSeries) -> Result<(), Error> {
+    fn check_frames(&self, series: &MarkerSeries) -> Result<(), Error> {
         let frames = &series.frames;
         let numbers = || frames.iter().map(|frame| frame.number);
         for (frame, force) in &self.forces {

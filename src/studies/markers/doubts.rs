@@ -4,13 +4,13 @@
 
 use super::MarkerStudy;
 use super::axes::mistaken;
-use super::gross_errors::has_many;
+use super::gross_errors::{has_hidden, has_many};
 use super::report::{outliers, used};
-use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw};
+use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
 use crate::results::{Stretches, small_strain};
-use crate::statistics::{Estimate, small_probability};
+use crate::statistics::{Estimate, median, small_probability};
 
 impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
@@ -23,6 +23,7 @@ impl MarkerStudy {
                 axes.flatten(),
                 self.strains(estimate),
                 self.beyond_card(estimate),
+                self.no_measurement(estimate, estimates),
             ];
             all.extend(of_frame(frame, estimate, strained));
             all.extend(self.unknown_edge(estimate).map(|(message, hint)| {
@@ -67,6 +68,33 @@ impl MarkerStudy {
         Some((reason, EXTRAPOLATED))
     }
 
+    /// Noise that is no measurement's: a share of the specimen, or many times that of the other frames.
+    fn no_measurement(&self, estimate: &FieldEstimate, all: &[FieldEstimate]) -> Option<Doubt> {
+        if !estimate.is_explained() {
+            return None;
+        }
+        let (noise, [low, high]) = (estimate.noise, self.mesh.bounding_box());
+        let across = (high[0] - low[0]).min(high[1] - low[1]);
+        let others = median(all.iter().map(|own| own.noise));
+        let reason = if noise > NO_MEASUREMENT * across {
+            format!(
+                "{:.1} % of the specimen's smaller extent",
+                100.0 * noise / across
+            )
+        } else if all.len() > 2 && others > 0.0 && noise > NOISIER * others {
+            format!("{:.0} times as much as in most frames", noise / others)
+        } else {
+            return None;
+        };
+        let message = format!(
+            "the markers scatter by {noise:.4} mm, {reason}: markers were lost or matched wrongly"
+        );
+        Some((
+            message,
+            "leave the frame out, or look at its picture; its figures are those of nearly no data",
+        ))
+    }
+
     /// An estimate whose intervals of forces hold that the edge may lie a marker's spacing farther out: one more row of
     /// markers would fit in else. The force grows with the width as far as the strain energy along the free edges says; a
     /// modulus that follows a measured force falls by as much.
@@ -89,6 +117,10 @@ impl MarkerStudy {
     }
 }
 
+/// Noise over the specimen's smaller extent, and over the median of all frames, beyond which a frame is no measurement.
+const NO_MEASUREMENT: f64 = 0.03;
+const NOISIER: f64 = 20.0;
+
 /// The share of the area that may lie beyond the range of the card: beside a clamped corner stretches have no bound.
 const BESIDE_CORNERS: f64 = 0.01;
 
@@ -108,10 +140,11 @@ fn widen(estimate: &mut Estimate, by: f64) {
 fn of_frame(
     frame: &Frame,
     estimate: &FieldEstimate,
-    strained: [Option<Doubt>; 3],
+    strained: [Option<Doubt>; 4],
 ) -> Vec<Diagnostic> {
     let doubts = [
         noise(estimate),
+        hidden_outliers(estimate),
         many_outliers(estimate),
         edges(estimate),
         idle_edges(estimate),
@@ -149,14 +182,32 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
     ))
 }
 
+/// Gross errors that are so many that their size was taken for that of the noise.
+fn hidden_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
+    has_hidden(estimate).then(|| {
+        let message = format!(
+            "half of the markers lie far nearer to the field than the noise of {:.4} mm: many are gross errors, and intervals mean nothing",
+            estimate.noise
+        );
+        let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which takes the say from those that are far off";
+        (message, hint)
+    })
+}
+
 fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
     has_many(estimate).then(|| {
         let (off, count) = (outliers(estimate), used(estimate));
-        (
-            format!("{off} of {count} markers are outliers, which is no noise"),
-            "look at the conditions, the law, and the noise if it is stated; --physics weighted, or look at vtk/markers.pvd \
-             where they are",
-        )
+        let hint = match estimate.robust {
+            Robust::No => {
+                "look at the conditions, the law, and the noise if it is stated; --physics weighted, or look at vtk/markers.pvd \
+                 where they are"
+            }
+            _ => {
+                "they have less say, or none; look at vtk/markers.pvd where they are: markers that were lost or matched wrongly lie anywhere, those \
+                 that the law or the conditions do not fit lie together"
+            }
+        };
+        (format!("{off} of {count} markers are outliers, which is no noise"), hint)
     })
 }
 
@@ -183,13 +234,13 @@ fn edges(estimate: &FieldEstimate) -> Option<Doubt> {
 fn idle_edges(estimate: &FieldEstimate) -> Option<Doubt> {
     let idle = estimate.edges.iter().filter(|edge| edge.idle);
     let names: Vec<&str> = idle.map(|edge| edge.edge.as_str()).collect();
-    let (verb, which) = match names[..] {
+    let which = match names[..] {
         [] => return None,
-        [_] => ("carries no force and is", "an edge"),
-        _ => ("carry no force and are", "edges"),
+        [_] => "carries no force and is no free edge",
+        _ => "carry no force and are no free edges",
     };
     let message = format!(
-        "{} {verb} no free {which} for the data: the specimen probably ends elsewhere, and forces are those of the mesh's width",
+        "{} {which} for the data: the specimen probably ends elsewhere, and forces are those of the mesh's width",
         names.join(", ")
     );
     Some((

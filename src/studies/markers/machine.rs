@@ -215,7 +215,7 @@ mod tests {
         };
         MarkerSeries {
             frames: frames.iter().map(frame).collect(),
-            lost: Vec::new(),
+            ..MarkerSeries::default()
         }
     }
 

@@ -177,17 +177,16 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
 /// The places that tell of the outline: those of lost markers too, but for those in gaps that are holes without them, if gaps are
 /// holes; and how many these are. Where so many are lost that the others are scattered, gaps are no holes.
 fn places(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
-    let mut places = series.places();
-    if !gaps_are_holes || series.lost.is_empty() {
-        return (places, 0);
+    let found = series.places_of_found();
+    let mut lost = series.lost.clone();
+    if gaps_are_holes && !lost.is_empty() {
+        let outline = Outline::of_points(&found).ok();
+        if let Some(own) = outline.filter(|own| !own.is_scattered) {
+            lost.retain(|place| !own.outline.has_in_a_hole(*place));
+        }
     }
-    let all = places.len();
-    let found = Outline::of_points(&places[..all - series.lost.len()]);
-    if let Some(found) = found.ok().filter(|found| !found.is_scattered) {
-        places.retain(|place| !found.outline.has_in_a_hole(*place));
-    }
-    let in_gaps = all - places.len();
-    (places, in_gaps)
+    let in_gaps = series.lost.len() - lost.len();
+    (found.into_iter().chain(lost).collect(), in_gaps)
 }
 
 /// A mesh inside an outline, and the size of its cells in mm. Without a wish its cells are as long as the markers' spacing, but at least 12 go across

@@ -12,8 +12,8 @@ use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
 use gelbench::output::{self, vtk};
 use gelbench::results::{Drawing, Panel, Results, mesh_outlines, nodal_states};
+use gelbench::studies::markers::MarkerStudy;
 use gelbench::studies::markers::written::{self, FrameFiles, SERIES, played};
-use gelbench::studies::markers::{ComparedFrames, MarkerStudy};
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -139,7 +139,7 @@ fn with_own_files<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
 
 fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     let begun = Instant::now();
-    let study = MarkerStudy::prepare(request(question)?)?;
+    let mut study = MarkerStudy::prepare(request(question)?)?;
     let preview = preview(&study);
     if !question.correct {
         return Ok(FieldAnswer {
@@ -147,7 +147,7 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
             corrected: None,
         });
     }
-    let estimates = estimates(&study)?;
+    let estimates = study.estimate(&|_| ())?;
     let results = results(question, &study, &estimates, begun);
     let mut report = Report::from(results);
     for said in &mut report.told {
@@ -165,14 +165,6 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
         preview,
         corrected: Some((corrected, report)),
     })
-}
-
-fn estimates(study: &MarkerStudy) -> Result<Vec<FieldEstimate>, Error> {
-    let mut compared = ComparedFrames::default();
-    for frame in &study.series.frames {
-        compared.push(frame, study.estimate_frame(frame)?);
-    }
-    Ok(compared.into_estimates())
 }
 
 fn results(
@@ -195,8 +187,8 @@ fn results(
 pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
     with_own_files(question, || {
         let begun = Instant::now();
-        let study = MarkerStudy::prepare(request(question)?)?;
-        let estimates = estimates(&study)?;
+        let mut study = MarkerStudy::prepare(request(question)?)?;
+        let estimates = study.estimate(&|_| ())?;
         let mut files: Vec<NamedFile> = Vec::new();
         for (frame, estimate) in study.series.frames.iter().zip(&estimates) {
             let own = FrameFiles::new(&study, frame, estimate);

@@ -8,6 +8,7 @@ use crate::corrector::estimation::given::MeasuredForce;
 use crate::error::Error;
 use crate::problem::corner_forces::Share;
 use crate::solve::Assembly;
+use crate::solve::vector::dot;
 
 /// The equations and the observations linearised about a place.
 pub struct Linear {
@@ -140,8 +141,4 @@ impl Grip {
         }
         slopes
     }
-}
-
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -65,13 +65,14 @@ impl Observations {
             all.add(mesh, index, marker, deviation(marker))?;
         }
         if all.chosen.len() < 3 {
-            let fault = format!(
-                "{} of {} markers lie on the mesh",
-                all.chosen.len(),
-                markers.len()
-            );
-            return Err(Diagnostic::error("", fault)
-                .hint("look at the units and the origins of markers and mesh"));
+            let (found, count) = (all.chosen.len(), markers.len());
+            let fault =
+                format!("{found} of {count} markers lie on the mesh, and three are the fewest");
+            let hint = match found == count {
+                true => "leave this frame out, or look why its markers were lost",
+                false => "look at the units and the origins of markers and mesh",
+            };
+            return Err(Diagnostic::error("", fault).hint(hint));
         }
         Ok(all)
     }

@@ -17,13 +17,14 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::corrector::estimation::edges::Body;
-use crate::corrector::estimation::equations::{BodyForce, Equations, Linear, dot};
+use crate::corrector::estimation::equations::{BodyForce, Equations, Linear};
 use crate::corrector::estimation::given::{Edge, EdgeCondition};
 use crate::corrector::estimation::regression::Trade;
 use crate::corrector::estimation::search::NearestField;
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
 use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::vector::dot;
 use crate::solve::{Newton, NewtonSettings, Sum};
 
 /// Meshes with more cells are not refined.

@@ -12,9 +12,10 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::corrector::estimation::equations::{Equations, dot};
+use crate::corrector::estimation::equations::Equations;
 use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
+use crate::solve::vector::dot;
 
 /// What an error of the scale changes, per relative error.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]

@@ -16,11 +16,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::corrector::estimation::equations::{dot, solve};
+use crate::corrector::estimation::equations::solve;
 use crate::corrector::estimation::given::Edge;
 use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
 use crate::problem::corner_forces::Share;
+use crate::solve::vector::dot;
 
 /// Distances of free edges that are considered.
 pub struct UnknownPlaces {
