@@ -148,10 +148,12 @@ impl ResultFolder {
         let source = self.before.sources.get(&self.writer)?;
         let other = fs::canonicalize(self.path.join(source)).ok()?;
         (!self.inputs.contains(&other)).then(|| {
+            let here = std::env::current_dir().and_then(fs::canonicalize);
+            let shown = here.ok().and_then(|here| other.strip_prefix(here).ok());
             let message = format!(
                 "{} holds the results of {}: they are replaced",
                 self.path.display(),
-                self.path.join(source).display()
+                shown.unwrap_or(&other).display()
             );
             Diagnostic::warning("", message).hint(ANOTHER_FOLDER)
         })

@@ -50,11 +50,11 @@ impl Pictures {
         let fields = section
             .choices("fields", &SheetField::NAMES)
             .unwrap_or_default();
+        let shown = read_shown(section, (key, dimension), path);
         let formats = section.choices("formats", &PictureFormat::NAMES);
         if formats.as_ref().is_some_and(Vec::is_empty) {
             section.fault("formats", "needs at least one format", "such as [\"png\"]");
         }
-        let shown = read_shown(section, (key, dimension), path);
         let style = PictureStyle {
             formats: formats.unwrap_or_default(),
             width: section

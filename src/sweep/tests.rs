@@ -317,6 +317,45 @@ fn every_run_is_in_one_part_and_parts_of_others_are_refused() {
 }
 
 #[test]
+fn a_sweep_over_other_keys_is_told_before_it_is_replaced() {
+    let place = tempfile::TempDir::new().unwrap();
+    let output = place.path().join("out");
+    let open = |sweep: &Sweep, then: &dyn Fn(SweepFolder)| {
+        then(SweepFolder::open(sweep, Share::Whole, &output, &[], None).unwrap());
+    };
+    let (width, thickness) = (
+        sweep(&["plate.width=40..60 mm:2"], None),
+        sweep(&["plate.thickness=1..2 mm:2"], None),
+    );
+    open(&width, &|mut folder| {
+        assert!(folder.replaces().is_none());
+        let rows = folder.rows(&|_| (), &|| ()).unwrap();
+        folder.finish(&rows).unwrap();
+    });
+    open(&width, &|folder| assert!(folder.replaces().is_none()));
+    open(&thickness, &|folder| {
+        let told = folder.replaces().unwrap().message;
+        assert!(
+            told.contains("a sweep over plate.width: it is replaced"),
+            "{told}"
+        );
+    });
+}
+
+#[test]
+fn values_are_each_one_and_without_the_noise_of_their_last_digits() {
+    let told = Variable::parse("plate.width=40,50,40 mm")
+        .unwrap_err()
+        .to_string();
+    assert!(told.contains("the value 40 stands twice"), "{told}");
+    let Values::Listed(values) = Variable::parse("x=0.3..0.6:11").unwrap().values else {
+        panic!("no grid");
+    };
+    let words: Vec<String> = values.iter().map(Setting::words).collect();
+    assert_eq!(words[3], "0.39");
+}
+
+#[test]
 fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
     use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
     let place = tempfile::TempDir::new().unwrap();
