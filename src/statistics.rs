@@ -119,6 +119,11 @@ pub fn beta_cumulated(shapes: [f64; 2], x: f64) -> f64 {
     Beta::new(shapes[0], shapes[1]).map_or(f64::NAN, |law| law.cdf(x))
 }
 
+/// The larger of two numbers; NaN where one of them is none.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 /// The median, the upper one of the middle two; NaN of nothing.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();

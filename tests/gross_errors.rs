@@ -12,6 +12,16 @@ use common::{gelbench, report_of_correction, root, words};
 /// Standard deviation of the example's noise in mm; one marker in fifty is off by 3 to 8 mm.
 const NOISE: f64 = 0.25;
 
+/// What is known of the plate's edges.
+const EDGES: [&str; 6] = [
+    "--rigid",
+    "left,right",
+    "--free",
+    "top,bottom",
+    "--edge-gap",
+    "0 mm",
+];
+
 /// The example's markers.
 fn markers() -> String {
     fs::read_to_string(root().join("examples/measured_plate.csv")).unwrap()
@@ -33,15 +43,7 @@ fn corrected(markers: &str, options: &[&str]) -> (String, Value) {
 #[test]
 fn gross_errors_have_no_say_unless_it_is_said_that_they_have() {
     const TOLD: &str = "farther off than noise can be";
-    let edges = [
-        "--rigid",
-        "left,right",
-        "--free",
-        "top,bottom",
-        "--edge-gap",
-        "0 mm",
-    ];
-    let weighted = |weights: &[&str]| corrected(&markers(), &[&edges, weights].concat());
+    let weighted = |weights: &[&str]| corrected(&markers(), &[&EDGES, weights].concat());
     let (text, found) = weighted(&[]);
     assert_eq!(found["weights"], "tukey");
     assert!((found["noise_mm"].as_f64().unwrap() / NOISE - 1.0).abs() < 0.1);
@@ -92,15 +94,7 @@ fn with_a_third_anywhere() -> String {
 
 #[test]
 fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
-    let edges = [
-        "--rigid",
-        "left,right",
-        "--free",
-        "top,bottom",
-        "--edge-gap",
-        "0 mm",
-    ];
-    let (text, found) = corrected(&with_a_third_anywhere(), &edges);
+    let (text, found) = corrected(&with_a_third_anywhere(), &EDGES);
     assert_eq!(found["weights"], "tukey", "{text}");
     let noise = found["noise_mm"].as_f64().unwrap();
     // The median of all, of which two thirds have noise alone, lies at the three quarters of these: 1.41 times as far.
@@ -112,7 +106,7 @@ fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
     // Without weights their size is taken for noise, and told.
     let (text, found) = corrected(
         &with_a_third_anywhere(),
-        &[&edges[..], &["--robust", "no"]].concat(),
+        &[&EDGES[..], &["--robust", "no"]].concat(),
     );
     assert!(found["noise_mm"].as_f64().unwrap() > 5.0 * NOISE);
     assert!(text.contains("of the specimen's smaller extent"), "{text}");
@@ -152,22 +146,9 @@ fn a_frame_that_cannot_be_corrected_leaves_the_others_theirs() {
     fs::write(folder.path().join("plate.csv"), all.join("\n")).unwrap();
     let study = "[[force]]\nedge = \"right\"\nframe = 3\naxis = \"x\"\nforce = \"0 N\"\n";
     fs::write(folder.path().join("known.toml"), study).unwrap();
-    let arguments = [
-        "correct",
-        "plate.csv",
-        "--material",
-        "pva-10",
-        "--thickness",
-        "2 mm",
-        "--edge-gap",
-        "0 mm",
-        "--rigid",
-        "left,right",
-        "--free",
-        "top,bottom",
-        "--study",
-        "known.toml",
-    ];
+    let usual = ["correct", "plate.csv", "--material", "pva-10"];
+    let more = ["--thickness", "2 mm", "--study", "known.toml"];
+    let arguments = [&usual[..], &more, &EDGES].concat();
     let done = gelbench(folder.path(), &arguments).code(1);
     let told = words(&done.get_output().stderr);
     assert!(told.contains("in the frame 3 no marker moves"), "{told}");

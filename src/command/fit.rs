@@ -272,12 +272,15 @@ fn a_law() -> impl TypedValueParser<Value = &'static Law> {
         .map(|name| Law::named(&name).expect("clap has found the name among the laws"))
 }
 
-fn chosen<T: Copy>(option: &str, name: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
-    let found = names.iter().find(|(known, _)| *known == name);
-    found.map(|(_, choice)| *choice).ok_or_else(|| {
-        let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        let hint = format!("it must be one of {}", known.join(", "));
-        Error::input(format!("{option} {name} is not known"), hint)
+/// The weighting of a record.
+fn weighting(name: &str) -> Result<Weighting, Error> {
+    let found = Weighting::NAMES.iter().find(|(known, _)| *known == name);
+    found.map(|(_, weighting)| *weighting).ok_or_else(|| {
+        let hint = format!(
+            "it must be one of {}",
+            Weighting::NAMES.map(|(known, _)| known).join(", ")
+        );
+        Error::input(format!("weighting {name} is not known"), hint)
     })
 }
 
@@ -310,7 +313,7 @@ pub fn refit(name: &str) -> Outcome {
     let folder = Path::new(name).parent().filter(|_| !shipped(name));
     let tests = together(record.data.iter().map(|file| data(file, folder, record)))?;
     let settings = FitSettings {
-        weighting: chosen("weighting", &record.weighting, &Weighting::NAMES)?,
+        weighting: weighting(&record.weighting)?,
         bounds: bounds(&record.bounds)?,
         starts: record.starts,
     };

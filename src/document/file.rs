@@ -17,9 +17,9 @@ pub const MOST_OF_DATA: u64 = 2 << 30;
 /// Why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
-    /// Nothing is there, but perhaps a file of a similar name.
+    /// Nothing is at this path, but perhaps a file of a similar name, which is looked for when it is told.
     #[error("there is no such file{}", meant(.0))]
-    Missing(Option<PathBuf>),
+    Missing(PathBuf),
     /// A folder.
     #[error("it is a folder; name a file in it")]
     Folder,
@@ -48,7 +48,7 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
     }
     // Before it is opened, for opening waits until somebody writes into a pipe.
     let about = std::fs::metadata(path).map_err(|fault| match fault.kind() {
-        ErrorKind::NotFound => FileFault::Missing(similar(path)),
+        ErrorKind::NotFound => FileFault::Missing(path.to_owned()),
         _ => fault.into(),
     })?;
     if about.is_dir() {
@@ -63,10 +63,8 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
     limited(bytes)
 }
 
-fn meant(similar: &Option<PathBuf>) -> String {
-    let named = similar
-        .as_ref()
-        .map(|path| format!("; did you mean {}?", path.display()));
+fn meant(path: &Path) -> String {
+    let named = similar(path).map(|path| format!("; did you mean {}?", path.display()));
     named.unwrap_or_default()
 }
 
@@ -109,7 +107,7 @@ mod tests {
             Err(FileFault::Folder)
         ));
         let meant = |name: &str| match read_bytes(&folder.path().join(name), 9) {
-            Err(FileFault::Missing(meant)) => meant,
+            Err(FileFault::Missing(path)) => similar(&path),
             other => panic!("{other:?}"),
         };
         assert_eq!(meant("a"), Some(path.clone()));

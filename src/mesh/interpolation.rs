@@ -1,7 +1,6 @@
 //! The maps of cells, and fields between the nodes.
 
-use super::cell_shape::CellShape;
-use super::cell_shape::GAUSS_3;
+use super::cell_shape::{CellShape, GAUSS_3};
 use super::cells::Mesh;
 use super::geometry::determinant;
 

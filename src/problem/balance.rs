@@ -1,6 +1,7 @@
 //! The balance of all forces on a body, and of their moments.
 
 use crate::mesh::Mesh;
+use crate::statistics::larger;
 
 /// Forces and their moment about a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,15 +67,10 @@ impl Balance {
         let ratio = |rest: f64, largest: f64| if rest == 0.0 { 0.0 } else { rest / largest };
         let force = self.force[0].hypot(self.force[1]);
         let moment = self.moment.abs();
-        let [force, moment] = [
+        larger(
             ratio(force, self.largest_force),
             ratio(moment, self.largest_moment),
-        ];
-        if force.is_nan() || force > moment {
-            force
-        } else {
-            moment
-        }
+        )
     }
 }
 

@@ -5,6 +5,7 @@ use super::reactions::GroupState;
 use super::work::Work;
 use crate::mesh::Mesh;
 use crate::solve::State;
+use crate::statistics::larger;
 
 /// The equilibria of a model at the load factors that it reaches.
 #[derive(Clone, Debug)]
@@ -69,7 +70,6 @@ impl Solution {
 
     /// The worst balance of all states, one that is no number being worse than any; `None` where there are no states.
     pub fn worst_balance(&self) -> Option<f64> {
-        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
-        self.balances.iter().copied().reduce(worse)
+        self.balances.iter().copied().reduce(larger)
     }
 }

@@ -54,6 +54,16 @@ fn both_versions_of_gmsh_are_read_with_their_groups() {
     }
 }
 
+/// A triangle of six nodes.
+const SIX: [[f64; 2]; 6] = [
+    [0.0, 0.0],
+    [2.0, 0.0],
+    [0.0, 2.0],
+    [1.0, 0.0],
+    [1.0, 1.0],
+    [0.0, 1.0],
+];
+
 #[test]
 fn quadrilaterals_with_a_corner_twice_are_triangles() {
     // The upper triangle as a quadrilateral, whichever corner stands twice.
@@ -64,14 +74,6 @@ fn quadrilaterals_with_a_corner_twice_are_triangles() {
         assert!((mesh.cell_area(1) - 50.0).abs() < 1e-12, "{nodes}");
     }
     // Eight nodes: the middle of the side without a length is the corner.
-    let places = [
-        [0.0, 0.0],
-        [2.0, 0.0],
-        [0.0, 2.0],
-        [1.0, 0.0],
-        [1.0, 1.0],
-        [0.0, 1.0],
-    ];
     for side in 0..4 {
         let corners = [0, 1, 2];
         let middles = [3, 4, 5];
@@ -98,7 +100,7 @@ fn quadrilaterals_with_a_corner_twice_are_triangles() {
         let mut raw = Raw {
             cells: vec![(CellShape::Quad8, nodes)],
             places: (0..6)
-                .map(|node: usize| (node as u64, [places[node][0], places[node][1], 0.0]))
+                .map(|node: usize| (node as u64, [SIX[node][0], SIX[node][1], 0.0]))
                 .collect(),
             ..Raw::default()
         };
@@ -158,18 +160,10 @@ fn what_cannot_be_read_is_refused_by_name() {
 
 #[test]
 fn quadratic_cells_given_clockwise_are_turned_with_their_middles() {
-    let nodes = [
-        [0.0, 0.0],
-        [2.0, 0.0],
-        [0.0, 2.0],
-        [1.0, 0.0],
-        [1.0, 1.0],
-        [0.0, 1.0],
-    ];
-    let turned = counter_clockwise(CellShape::Triangle6, vec![0, 2, 1, 5, 4, 3], &nodes);
+    let turned = counter_clockwise(CellShape::Triangle6, vec![0, 2, 1, 5, 4, 3], &SIX);
     assert_eq!(turned, [0, 1, 2, 3, 4, 5]);
     assert_eq!(
-        counter_clockwise(CellShape::Triangle6, turned.clone(), &nodes),
+        counter_clockwise(CellShape::Triangle6, turned.clone(), &SIX),
         turned
     );
 }

@@ -16,6 +16,8 @@ impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
         let mut all = self.doubts.clone();
+        let usual = median(estimates.iter().map(|own| own.noise));
+        let usual = Some(usual).filter(|usual| estimates.len() > 2 && *usual > 0.0);
         let frames = self.series.frames.iter().zip(estimates);
         for (frame, estimate) in frames {
             let axes = (!estimate.is_explained()).then(|| mistaken(frame, &*self.law(estimate)));
@@ -23,7 +25,7 @@ impl MarkerStudy {
                 axes.flatten(),
                 self.strains(estimate),
                 self.beyond_card(estimate),
-                self.no_measurement(estimate, estimates),
+                self.no_measurement(estimate, usual),
             ];
             all.extend(of_frame(frame, estimate, strained));
             all.extend(self.unknown_edge(estimate).map(|(message, hint)| {
@@ -68,23 +70,21 @@ impl MarkerStudy {
         Some((reason, EXTRAPOLATED))
     }
 
-    /// Noise that is no measurement's: a share of the specimen, or many times that of the other frames.
-    fn no_measurement(&self, estimate: &FieldEstimate, all: &[FieldEstimate]) -> Option<Doubt> {
+    /// Noise that is no measurement's: a share of the specimen, or many times that of most frames, where there are several.
+    fn no_measurement(&self, estimate: &FieldEstimate, usual: Option<f64>) -> Option<Doubt> {
         if !estimate.is_explained() {
             return None;
         }
         let (noise, [low, high]) = (estimate.noise, self.mesh.bounding_box());
         let across = (high[0] - low[0]).min(high[1] - low[1]);
-        let others = median(all.iter().map(|own| own.noise));
         let reason = if noise > NO_MEASUREMENT * across {
             format!(
                 "{:.1} % of the specimen's smaller extent",
                 100.0 * noise / across
             )
-        } else if all.len() > 2 && others > 0.0 && noise > NOISIER * others {
-            format!("{:.0} times as much as in most frames", noise / others)
         } else {
-            return None;
+            let usual = usual.filter(|usual| noise > NOISIER * usual)?;
+            format!("{:.0} times as much as in most frames", noise / usual)
         };
         let message = format!(
             "the markers scatter by {noise:.4} mm, {reason}: markers were lost or matched wrongly"

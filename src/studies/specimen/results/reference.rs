@@ -11,6 +11,7 @@ use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{Block, Check, Wanted};
+use crate::statistics::larger;
 use crate::studies::specimen::problem::Specimen;
 
 /// The finest finite elements.
@@ -227,8 +228,7 @@ impl Reference {
     pub fn field_percent(&self, step: usize) -> Option<f64> {
         let on_lattice = (*self.displacement.get(step)?)?;
         let of_all = (*self.of_all_nodes.get(step)?)?;
-        let is_larger = on_lattice.is_nan() || on_lattice > of_all;
-        self.with_outline(step, Some(if is_larger { on_lattice } else { of_all }))
+        self.with_outline(step, Some(larger(on_lattice, of_all)))
     }
 
     /// An error of the displacement with that of a file's outline.
@@ -241,10 +241,10 @@ impl Reference {
 
     /// The error of the displacement at each load factor at the nodes of a mesh, without that of a file's outline.
     pub(super) fn errors_at(&self, at: &Mesh) -> Vec<Option<f64>> {
-        let others = match &self.all_halved {
-            Some(halved) if !self.rounds.is_empty() => vec![halved],
-            _ if !self.rounds.is_empty() => Vec::new(),
-            _ => self.coarser.iter().collect(),
+        let is_refined = !self.rounds.is_empty();
+        let others: Vec<&Solution> = match is_refined {
+            true => self.all_halved.iter().collect(),
+            false => self.coarser.iter().collect(),
         };
         let all = others.into_iter().chain([&self.finest]);
         let on_nodes: Vec<_> = all
@@ -257,10 +257,7 @@ impl Reference {
             let fields: Vec<Vec<f64>> = fields.collect();
             let distance = |u: &[f64], v: &[f64]| percent_at_all_nodes(at, u, v);
             match &fields[..] {
-                _ if self.finest.displacement(step).is_none() => None,
-                [halved, own] if !self.rounds.is_empty() => {
-                    Some(self.by_halving(distance(own, halved)))
-                }
+                [halved, own] if is_refined => Some(self.by_halving(distance(own, halved))),
                 [only, fine] => Some(distance(only, fine)),
                 [first, second, fine] => {
                     Some(self.by_coarser(step, distance(first, second), distance(second, fine)))

@@ -3,6 +3,7 @@
 use super::models::Models;
 use crate::compare::judgement::{Judgement, judge, judge_correction};
 use crate::results::{Check, Wanted};
+use crate::statistics::larger;
 use crate::studies::specimen::problem::Specimen;
 
 /// The deviations of one load factor at which the corrected field and the finite elements both exist, in %.
@@ -40,14 +41,7 @@ fn worst(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
     });
     let above = pairs.map(|[d, e]| d + e - deviation);
     // A number that is not known stays so.
-    let own = above.fold(own, |most, own| {
-        if own.is_nan() || own > most {
-            own
-        } else {
-            most
-        }
-    });
-    [deviation, own]
+    [deviation, above.fold(own, larger)]
 }
 
 /// The requirements, over all load factors with a corrected field and finite elements.
