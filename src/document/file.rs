@@ -81,6 +81,8 @@ fn similar(path: &Path) -> Option<PathBuf> {
     });
     let mut names: Vec<String> = names.collect();
     names.sort();
+    // A study rather than the picture beside it.
+    names.sort_by_key(|name| !name.ends_with(".toml"));
     let with_ending = names.iter().find(|name| {
         Path::new(name)
             .file_stem()
@@ -113,6 +115,10 @@ mod tests {
         assert_eq!(meant("a"), Some(path.clone()));
         assert_eq!(meant("b.txt"), Some(path.clone()));
         assert_eq!(meant("other"), None);
+        let [picture, study] = ["plate.png", "plate.toml"].map(|name| folder.path().join(name));
+        std::fs::write(picture, "").unwrap();
+        std::fs::write(&study, "").unwrap();
+        assert_eq!(meant("plate"), Some(study));
         #[cfg(unix)]
         assert!(matches!(
             read_bytes(Path::new("/dev/zero"), 9),
