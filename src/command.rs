@@ -356,8 +356,7 @@ const NO_SOLUTION: u8 = 3;
 fn conclude(results: &[Results], written: &str) -> Outcome {
     let outcomes = || results.iter().map(|results| &results.outcome);
     for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
-        let warning = warning.strip_prefix("Warning: ").unwrap_or(warning);
-        warn(&[Diagnostic::warning("", warning)]);
+        warn(&[Diagnostic::warning("", warning.clone())]);
     }
     let summaries: String = outcomes().map(|outcome| &*outcome.summary).collect();
     let told = match summaries.is_empty() {

@@ -100,7 +100,7 @@ pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
     let off = (nu - 1.0 / 3.0).abs() > NEGLIGIBLE;
     off.then(|| {
         format!(
-            "Warning: springs alone have ν = ⅓, and the sheet has ν = {nu:.3} in its plane at small strain"
+            "springs alone have ν = ⅓, and the sheet has ν = {nu:.3} in its plane at small strain"
         )
     })
 }

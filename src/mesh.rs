@@ -23,7 +23,7 @@ mod triangulate;
 
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
-pub use cells::{Group, Mesh};
+pub use cells::{Group, Mesh, decimals_for};
 pub use faults::{Exemptions, UnknownName};
 pub use grid::{Grid, Side};
 pub use import::{

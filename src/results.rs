@@ -31,6 +31,7 @@ mod sheet_figures;
 pub mod small_strain;
 mod softening;
 mod state;
+pub mod strained;
 mod stress_unit;
 mod stretches;
 mod surface;
@@ -57,7 +58,7 @@ pub use series::{Series, csv};
 pub use sheet_arrays::Sheet;
 pub use sheet_figures::{Deformed, SheetField, sheet_figures};
 pub use state::{LocalState, cell_states, nodal_states};
-pub use stretches::Stretches;
+pub use stretches::{BESIDE_CORNERS, Stretches};
 pub use surface::Surface;
 pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;
@@ -156,6 +157,12 @@ impl Outcome {
             .push(Check::end(format!("{}{advice}", end.message)));
         self.ends.push(end);
     }
+
+    /// The warnings for a report.
+    pub(crate) fn warning_paragraphs(&self) -> impl Iterator<Item = Block> {
+        let warnings = self.warnings.iter();
+        warnings.map(|warning| Block::paragraph(format!("Warning: {warning}")))
+    }
 }
 
 /// The results of a study.
@@ -194,6 +201,16 @@ impl Results {
             ..
         } = &self.outcome;
         checks.iter().all(Check::passed) && doubts.is_empty() && ends.is_empty()
+    }
+}
+
+/// A number with some decimals; one of which these would leave fewer than three digits as [`number`] has it.
+pub fn decimals(value: f64, decimals: usize) -> String {
+    const ROUNDING: f64 = 1e-12;
+    let least = 10_f64.powi(2 - decimals as i32);
+    match (ROUNDING..least).contains(&value.abs()) {
+        true => number(value),
+        false => format!("{value:.decimals$}"),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::material::Card;
 use crate::results::{Outcome, Results};
 use crate::solve::{Attendance, Journal};
 
+pub mod card;
 pub mod markers;
 mod models;
 pub mod motion;

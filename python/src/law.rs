@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use gelbench::material::code::{Code, CodeLaw};
 use gelbench::material::law::TensionResponse;
-use gelbench::material::sheet::{COMPONENTS, Gradient, Kinematics, PlaneState, SheetResponse};
+use gelbench::material::sheet::{COMPONENTS, Kinematics, PlaneState, PlaneTensor, SheetResponse};
 use gelbench::material::{
     EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants, Softening, Volume,
 };
@@ -92,7 +92,7 @@ impl PythonLaw {
 }
 
 impl HyperelasticLaw for PythonLaw {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         self.0.stress(kinematics)
     }
 
@@ -166,7 +166,7 @@ impl fmt::Debug for Watched {
 }
 
 impl HyperelasticLaw for Watched {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         self.watch.check();
         self.law.stress(kinematics)
     }
@@ -211,7 +211,7 @@ impl HyperelasticLaw for Watched {
         self.law.thickness_stretch(kinematics)
     }
 
-    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
         self.law.thickness_gradient(kinematics)
     }
 
@@ -219,7 +219,7 @@ impl HyperelasticLaw for Watched {
         self.law.thickness_stress(kinematics)
     }
 
-    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &Gradient) -> [f64; 3] {
+    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3] {
         self.law.cauchy_stress(kinematics, stress)
     }
 

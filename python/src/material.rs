@@ -186,7 +186,7 @@ impl MaterialCard {
     }
 
     fn youngs_modulus(&self, py: Python<'_>) -> PyResult<f64> {
-        caught(py, || self.card.law.youngs_modulus())
+        caught(py, || self.card.youngs_modulus())
     }
 
     fn stable_range(&self, py: Python<'_>, test: &str) -> PyResult<(f64, f64)> {

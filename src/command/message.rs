@@ -106,7 +106,7 @@ pub fn moduli_line(card: &Card) -> String {
 }
 
 fn moduli(card: &Card) -> String {
-    let (young, shear) = (card.law.youngs_modulus(), card.law.shear_modulus());
+    let (young, shear) = (card.youngs_modulus(), card.law.shear_modulus());
     let along = if card.law.is_isotropic() {
         ""
     } else {
@@ -127,6 +127,12 @@ fn in_time(card: &Card) -> String {
             None => "of the law itself".to_owned(),
         };
         text += &format!("  volume     bulk modulus κ = {modulus:.6} MPa, {energy}\n");
+        if let Some([stretch, change]) = card.tension_by_volume() {
+            let percent = 100.0 * change;
+            text += &format!(
+                "             uniaxial stress {percent:+.2} % at λ = {stretch:.2}, at most, against constant volume\n"
+            );
+        }
     }
     let viscosity = &card.viscosity;
     if viscosity.shear_viscosity > 0.0 {

@@ -49,9 +49,9 @@ pub use joint::{
     JointSettings, Told, VAGUE, check_joint_frames, estimate_jointly,
 };
 pub use outcome::{
-    Answer, Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, Freedom,
-    MarkerEstimate, Mend, NoiseCorrelation, Reason, Smoothing, StressEstimate, TRADE,
-    TRADE_WEIGHTED, VariogramBin, Verdict, Whiteness, Worst,
+    Alternative, Answer, Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck,
+    MarkerEstimate, NoiseCorrelation, RULE, RULE_WITH_MODEL_ERROR, Reason, Smoothing,
+    StressEstimate, Trial, VariogramBin, Verdict, Whiteness, Worst,
 };
 pub use regression::Robust;
 pub use transfer::transfer;
@@ -68,7 +68,7 @@ pub fn estimate(
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
     let found = estimate_with(specimen, markers, knowledge);
-    let known = knowledge.law.is_none() && !knowledge.facts().is_empty();
+    let known = knowledge.law.is_none() && !knowledge.measured_forces().is_empty();
     match found {
         // Where no field has such forces, it is compared with them.
         Err(Error::Solve { .. }) if known => {

@@ -1,7 +1,7 @@
 //! Tables of texts, for programs alone.
 
 /// The text of records, one a line; fields with commas or line ends stand in quotes.
-pub fn write_records(records: impl IntoIterator<Item = Vec<String>>) -> Vec<u8> {
+pub fn write_records(records: impl IntoIterator<Item = Vec<String>>) -> String {
     const SOUND: &str = "memory takes all that is written";
     let mut table = csv::WriterBuilder::new()
         .flexible(true)
@@ -9,7 +9,8 @@ pub fn write_records(records: impl IntoIterator<Item = Vec<String>>) -> Vec<u8> 
     for record in records {
         table.write_record(record).expect(SOUND);
     }
-    table.into_inner().expect(SOUND)
+    let bytes = table.into_inner().expect(SOUND);
+    String::from_utf8(bytes).expect("fields are texts")
 }
 
 /// The records of a text that [`write_records`] has written; `None` of any other.

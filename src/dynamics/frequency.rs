@@ -19,16 +19,44 @@ pub struct Mode {
     pub shape: Vec<f64>,
 }
 
+/// The share of a body's mass that its principal vibration along an axis takes at least: a bar's takes 8/π².
+const PRINCIPAL: f64 = 0.25;
+
 /// The mode that takes most of a motion of the whole body along an axis: (Σ mᵢ φᵢ)² over its unknowns is its effective
-/// mass.
+/// mass. `None` where that is less than a quarter of the whole: bending takes nothing of a motion along a strip.
 pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
+    let along = || (axis..mass.len()).step_by(2);
     let effective = |mode: &Mode| {
-        let along = (axis..mass.len()).step_by(2);
-        along.map(|i| mass[i] * mode.shape[i]).sum::<f64>().abs()
+        along()
+            .map(|i| mass[i] * mode.shape[i])
+            .sum::<f64>()
+            .powi(2)
     };
     let pairs = modes.into_iter().map(|mode| (effective(&mode), mode));
     let most = pairs.max_by(|a, b| a.0.total_cmp(&b.0));
-    most.map(|(_, mode)| mode)
+    let whole: f64 = along().map(|i| mass[i]).sum();
+    most.filter(|(effective, _)| *effective >= PRINCIPAL * whole)
+        .map(|(_, mode)| mode)
+}
+
+/// The principal vibration along an axis about a displacement in mm, looked for among ever more of the slowest ones: of slender strips many
+/// of bending are slower. `None` where it is none of the first hundred.
+///
+/// # Errors
+/// As [`slowest`].
+pub fn principal(
+    motion: &Motion,
+    held: &[bool],
+    displacement: &[f64],
+    axis: usize,
+) -> Result<Option<Mode>, SolveFault> {
+    for count in [6, 24, 96] {
+        let modes = slowest(motion, held, displacement, count)?;
+        if let Some(found) = strongest(modes, &motion.mass, axis) {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
 }
 
 /// The fastest vibration ω in rad/s, or somewhat more: ω² is the largest eigenvalue of M^−½ K M^−½.
@@ -205,5 +233,6 @@ mod tests {
         ];
         let found = [0, 1].map(|axis| strongest(modes.clone(), &[1.0; 4], axis).unwrap().frequency);
         assert_eq!(found, [2.0, 3.0]);
+        assert_eq!(strongest(modes[..1].to_vec(), &[1.0; 4], 0), None);
     }
 }

@@ -1,7 +1,7 @@
 //! The viscous forces of a sheet of finite elements.
 
 use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
 };
@@ -18,7 +18,7 @@ pub struct SheetViscosity<'a> {
 
 /// The viscous stress at a point, and its derivatives by F and Ḟ.
 struct PointStress {
-    stress: Gradient,
+    stress: PlaneTensor,
     tangents: Option<[nalgebra::Matrix4<f64>; 2]>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> SheetViscosity<'a> {
     fn point_stress(
         &self,
         kinematics: &Kinematics,
-        rate: &Gradient,
+        rate: &PlaneTensor,
         memory: &[f64],
         elapsed: f64,
         with_tangents: bool,

@@ -41,7 +41,7 @@ use rayon::prelude::*;
 use super::recovery::Recovery;
 use crate::error::SolveFault;
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{GAUSS_3, Mesh};
 
 /// A finite-element solution of a sheet.
@@ -75,6 +75,8 @@ pub struct EnergyError {
     pub cells: Vec<f64>,
     /// ‖u_h‖² in mJ.
     pub norm_squared: f64,
+    /// Whether the field has a stress and a tangent at all points of the rule; cells lack the others.
+    pub is_complete: bool,
 }
 
 /// The estimated error of a solution.
@@ -91,13 +93,14 @@ impl EnergyError {
         Self {
             cells: vec![0.0; count],
             norm_squared: 0.0,
+            is_complete: true,
         }
     }
 
     /// Adds the share of a point with the error of its gradient.
-    fn add(&mut self, point: &Point, error: &Gradient) {
+    fn add(&mut self, point: &Point, error: &PlaneTensor) {
         let eigen = point.tangent.symmetric_eigen();
-        let size = |v: &Gradient| {
+        let size = |v: &PlaneTensor| {
             let along = eigen.eigenvectors.tr_mul(v);
             let pairs = along.iter().zip(&eigen.eigenvalues);
             pairs.map(|(v, a)| a.max(0.0) * v * v).sum::<f64>()
@@ -111,9 +114,12 @@ impl EnergyError {
         self.cells.iter().sum()
     }
 
-    /// 100 η/‖u_h‖ in %.
+    /// 100 η/‖u_h‖ in %; not a number where points are lacking.
     pub fn percent(&self) -> f64 {
-        100.0 * (self.squared() / self.norm_squared).sqrt()
+        match self.is_complete {
+            true => 100.0 * (self.squared() / self.norm_squared).sqrt(),
+            false => f64::NAN,
+        }
     }
 
     /// 100 η_c/‖u_h‖ of every cell in %; the root of the sum of their squares is [`Self::percent`].
@@ -149,9 +155,9 @@ struct Point {
     local: [f64; 2],
     /// Share of the reference volume in mm³.
     volume: f64,
-    gradient: Gradient,
+    gradient: PlaneTensor,
     tangent: Matrix4<f64>,
-    stress: Gradient,
+    stress: PlaneTensor,
 }
 
 impl SheetSolution<'_> {
@@ -161,7 +167,7 @@ impl SheetSolution<'_> {
         let [field, other] = [self.displacement, influence].map(|u| recovery.gradient(u));
         let mut energy = EnergyError::of_cells(mesh.cell_count());
         let mut force = 0.0;
-        self.each_point(|point| {
+        energy.is_complete = self.each_point(|point| {
             let error = Vector4::from(field.at(mesh, point.cell, point.local)) - point.gradient;
             let z = Vector4::from(mesh.gradient_at(influence, point.cell, point.local));
             let z_error = Vector4::from(other.at(mesh, point.cell, point.local)) - z;
@@ -172,6 +178,9 @@ impl SheetSolution<'_> {
             force += point.volume * (linear.dot(&z_error) + beyond);
             energy.add(point, &error);
         });
+        if !energy.is_complete {
+            force = f64::NAN;
+        }
         ErrorEstimate { energy, force }
     }
 
@@ -185,29 +194,32 @@ impl SheetSolution<'_> {
     /// the true error, where that field is the exact one.
     pub fn distance(&self, gradient: impl Fn(usize, [f64; 2]) -> [f64; 4]) -> EnergyError {
         let mut found = EnergyError::of_cells(self.mesh.cell_count());
-        self.each_point(|point| {
+        found.is_complete = self.each_point(|point| {
             let error = Vector4::from(gradient(point.cell, point.local)) - point.gradient;
             found.add(point, &error);
         });
         found
     }
 
-    fn stress(&self, gradient: &Gradient) -> Option<Gradient> {
+    fn stress(&self, gradient: &PlaneTensor) -> Option<PlaneTensor> {
         let kinematics = Kinematics::new(gradient).ok()?;
         Some(self.law.stress(&kinematics).1)
     }
 
-    /// Calls with every point of a rule that resolves errors.
-    fn each_point(&self, mut call: impl FnMut(&Point)) {
+    /// Calls with every point of a rule that resolves errors where the field has a tangent; whether it has one at all of them: a cell that is
+    /// admissible at the points of its own rule may be folded between them, or beyond the limit of its law.
+    fn each_point(&self, mut call: impl FnMut(&Point)) -> bool {
+        let mut all = true;
         for cell in 0..self.mesh.cell_count() {
             for (local, weight) in self.mesh.shape(cell).product_quadrature(&GAUSS_3) {
                 let gradient = self.mesh.gradient_at(self.displacement, cell, local);
                 let gradient = Vector4::from(gradient);
-                // A cell that is admissible at the points of its own rule may be folded between them.
-                let Ok(kinematics) = Kinematics::new(&gradient) else {
+                let response = Kinematics::new(&gradient).map(|own| self.law.response(&own));
+                let Some(response) = response.ok().filter(|own| own.tangent.sum().is_finite())
+                else {
+                    all = false;
                     continue;
                 };
-                let response = self.law.response(&kinematics);
                 let (_, jacobian) = self.mesh.gradients(cell, local);
                 call(&Point {
                     cell,
@@ -219,6 +231,7 @@ impl SheetSolution<'_> {
                 });
             }
         }
+        all
     }
 }
 

@@ -10,7 +10,7 @@ use super::invariants::{EnergyDerivatives, Invariants};
 use super::law::HyperelasticLaw;
 use super::registry::LAWS;
 use super::samples;
-use super::sheet::{COMPONENTS, Gradient, Kinematics};
+use super::sheet::{COMPONENTS, Kinematics, PlaneTensor};
 
 mod changing_volume;
 mod particular;
@@ -75,11 +75,11 @@ fn strip(law: &dyn HyperelasticLaw, strain: f64) -> f64 {
     law.tension([1.0, 0.0], strain).nominal_stress
 }
 
-fn gradient(h: [f64; 4]) -> Gradient {
+fn gradient(h: [f64; 4]) -> PlaneTensor {
     Vector4::from(h)
 }
 
-fn stress(law: &dyn HyperelasticLaw, h: &Gradient) -> Gradient {
+fn stress(law: &dyn HyperelasticLaw, h: &PlaneTensor) -> PlaneTensor {
     law.stress(&Kinematics::new(h).unwrap()).1
 }
 
@@ -98,7 +98,7 @@ fn rest_has_no_energy_and_no_stress() {
         assert_eq!(response.energy, 0.0, "{name}");
         assert_eq!(
             response.first_piola_kirchhoff_stress,
-            Gradient::zeros(),
+            PlaneTensor::zeros(),
             "{name}"
         );
     });
@@ -179,7 +179,7 @@ fn a_rotation_changes_nothing_but_the_frame() {
             };
             let p = stress(law, &gradient(h));
             let p = Matrix2::new(p[0], p[1], p[2], p[3]);
-            let matrix = |v: Gradient| Matrix2::new(v[0], v[1], v[2], v[3]);
+            let matrix = |v: PlaneTensor| Matrix2::new(v[0], v[1], v[2], v[3]);
             let objective = matrix(stress(law, &turn(rotation * f))) - rotation * p;
             let isotropic = matrix(stress(law, &turn(f * rotation))) - p * rotation;
             let turned = objective.norm() < 1e-12 * (1.0 + p.norm());
@@ -330,7 +330,7 @@ fn many_points_at_once_are_each_point_by_itself() {
     for_each_law(|name, law| {
         let gradient = |point: usize| {
             let x = |k: usize| ((point * 37 + k * 11) % 101) as f64 / 101.0;
-            Gradient::new(0.4 * x(0), 0.2 * x(1) - 0.1, 0.2 * x(2) - 0.1, -0.2 * x(3))
+            PlaneTensor::new(0.4 * x(0), 0.2 * x(1) - 0.1, 0.2 * x(2) - 0.1, -0.2 * x(3))
         };
         let points = 53;
         let lines: [Vec<f64>; 4] =

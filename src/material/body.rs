@@ -29,7 +29,7 @@ use super::exponential::exponential_less_one;
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::logarithm::logarithm_of_one_plus;
 use super::measures::{Derivatives, Measures};
-use super::sheet::{COMPONENTS, Gradient, Kinematics, PlaneState, SheetResponse};
+use super::sheet::{COMPONENTS, Kinematics, PlaneState, PlaneTensor, SheetResponse};
 
 mod points;
 mod thickness;
@@ -233,7 +233,7 @@ impl<L: BodyLaw> BodySheet<L> {
 }
 
 impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         let (measures, _, w) = self.state(kinematics);
         let w = self.condensed(&w);
         (w.energy, measures.stress(&w))
@@ -264,14 +264,14 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
         1.0 + self.state(kinematics).1.thickness_change()
     }
 
-    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
         match self.plane {
             PlaneState::Stress => {
                 let (measures, stretches, w) = self.state(kinematics);
                 let thickness = 1.0 + stretches.thickness_change();
                 -thickness / w.bb * (w.ab * measures.dm + w.zb * measures.dz)
             }
-            PlaneState::Strain => Gradient::zeros(),
+            PlaneState::Strain => PlaneTensor::zeros(),
         }
     }
 

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::curve::Mode;
 use super::law::HyperelasticLaw;
 use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
@@ -16,6 +15,7 @@ use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
+mod published;
 mod resistance;
 
 /// A material: law, parameters and provenance.
@@ -31,6 +31,8 @@ pub struct Card {
     pub formula: &'static str,
     /// The law with its parameters, and with the resistance to a change of volume.
     pub law: Arc<dyn HyperelasticLaw>,
+    /// The law without the card's change of volume; `None` where the card states none.
+    isochoric: Option<Arc<dyn HyperelasticLaw>>,
     /// How the material resists a change of volume; `None` where it keeps its volume.
     pub volume: Option<Volume>,
     /// Poisson's ratio, where the card states it and the bulk modulus follows from it.
@@ -179,6 +181,7 @@ impl Card {
             law_name: name.to_owned(),
             formula: "not stated",
             law,
+            isochoric: None,
             volume: None,
             poisson_ratio: None,
             parameters: Vec::new(),
@@ -245,42 +248,6 @@ impl Card {
                 "bulk_modulus" => self.bulk_modulus(),
                 _ => None,
             })
-    }
-
-    /// The published tension curve σ₀ + A e^{b ε} behind the card as nominal stress in MPa, with its
-    /// stress at rest; `None` for cards that are not made from such a curve.
-    pub fn published_nominal_stress(&self, stretch: f64) -> Option<f64> {
-        let [amplitude, exponent, offset] =
-            ["amplitude", "exponent", "offset"].map(|key| self.parameter(key));
-        let strain = match self.strain_measure {
-            StrainMeasure::Nominal => stretch - 1.0,
-            StrainMeasure::Logarithmic => stretch.ln(),
-        };
-        let stress = offset? + amplitude? * (exponent? * strain).exp();
-        Some(match self.stress_measure {
-            StressMeasure::Nominal => stress,
-            StressMeasure::Cauchy => stress / stretch,
-        })
-    }
-
-    /// How far the law's tension curve is from the published one without its stress at rest, over the
-    /// range of the card: largest difference in % of the largest stress.
-    pub fn fit_error_percent(&self) -> Option<f64> {
-        let at_rest = self.published_nominal_stress(1.0)?;
-        let [low, high] = self.stretch_range;
-        let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
-        for i in 0..=200 {
-            let stretch = low + (high - low) * f64::from(i) / 200.0;
-            let offset = match self.stress_measure {
-                StressMeasure::Nominal => at_rest,
-                StressMeasure::Cauchy => at_rest / stretch,
-            };
-            let published = self.published_nominal_stress(stretch)? - offset;
-            let law = Mode::Uniaxial.nominal_stress(&*self.law, stretch - 1.0);
-            worst = worst.max((law - published).abs());
-            largest = largest.max(published.abs());
-        }
-        Some(100.0 * worst / largest)
     }
 
     /// Whether the card may be used at the stretch `lambda`.

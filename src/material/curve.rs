@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2, Vector4};
 
 use super::law::{HyperelasticLaw, TensionResponse};
-use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::sheet::{Kinematics, PlaneTensor, SheetResponse};
 use crate::document::name_of;
 
 /// The usual tests of a sheet, stretched by λ along its first axis.
@@ -32,7 +32,7 @@ impl Mode {
 
     /// The displacement gradient of the test at λ = 1 + `strain`; `None` where the edges of a strip find
     /// no equilibrium.
-    pub fn gradient(self, law: &dyn HyperelasticLaw, strain: f64) -> Option<Gradient> {
+    pub fn gradient(self, law: &dyn HyperelasticLaw, strain: f64) -> Option<PlaneTensor> {
         match self {
             Self::Uniaxial => free_edges(&|kinematics| law.response(kinematics), strain),
             Self::Planar => Some(Vector4::new(strain, 0.0, 0.0, 0.0)),
@@ -105,7 +105,7 @@ pub fn samples(law: &dyn HyperelasticLaw, range: [f64; 2]) -> Vec<Sample> {
 pub fn free_edges(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
     strain: f64,
-) -> Option<Gradient> {
+) -> Option<PlaneTensor> {
     let of = |scale: Scale| free_edges_by(response, strain, scale);
     of(Scale::Stretch).or_else(|| of(Scale::Logarithm))
 }
@@ -121,7 +121,7 @@ enum Scale {
 
 impl Scale {
     /// Residual, and its tangent by H₁₂ and the unknown.
-    fn linearised(self, h: &Gradient, state: &SheetResponse) -> (Vector2<f64>, Matrix2<f64>) {
+    fn linearised(self, h: &PlaneTensor, state: &SheetResponse) -> (Vector2<f64>, Matrix2<f64>) {
         let (stress, a) = (&state.first_piola_kirchhoff_stress, &state.tangent);
         match self {
             Self::Stretch => (
@@ -152,10 +152,10 @@ fn free_edges_by(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
     strain: f64,
     scale: Scale,
-) -> Option<Gradient> {
+) -> Option<PlaneTensor> {
     let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt()); // λ^−½ − 1
     let mut h = Vector4::new(strain, 0.0, 0.0, lateral);
-    let at = |h: &Gradient| Some(response(&Kinematics::new(h).ok()?));
+    let at = |h: &PlaneTensor| Some(response(&Kinematics::new(h).ok()?));
     let mut state = at(&h)?;
     for _ in 0..60 {
         let (residual, block) = scale.linearised(&h, &state);

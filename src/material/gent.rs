@@ -67,14 +67,14 @@ impl InvariantLaw for Gent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::sheet::{Gradient, Kinematics};
+    use crate::material::sheet::{Kinematics, PlaneTensor};
 
     #[test]
     fn beyond_the_limit_there_is_neither_energy_nor_stress() {
         let law = Gent { mu: 0.1, jm: 20.0 };
         let stress = |stretch: f64| {
             let across = 1.0 / stretch.sqrt();
-            let gradient = Gradient::new(stretch - 1.0, 0.0, 0.0, across - 1.0);
+            let gradient = PlaneTensor::new(stretch - 1.0, 0.0, 0.0, across - 1.0);
             let (energy, stress) = law.stress(&Kinematics::new(&gradient).unwrap());
             [energy, stress[0]]
         };

@@ -4,7 +4,7 @@ use super::code::{Code, CodeLaw};
 use super::curve;
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::parameters::Parameters;
-use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::sheet::{Kinematics, PlaneTensor, SheetResponse};
 use crate::document::Bound;
 
 /// The law of Holzapfel, Gasser and Ogden: a neo-Hookean matrix with one or two families of fibres in the
@@ -84,7 +84,7 @@ impl HolzapfelGasserOgden {
 
     /// Eₐ, ∂Eₐ/∂F, and Ψ, Ψ′, Ψ″ of one family; `None` for fibres that are pressed.
     fn family(&self, kinematics: &Kinematics, [x, y]: [f64; 2]) -> Option<Family> {
-        let [e11, e12, e22] = kinematics.stretch_change;
+        let [e11, e12, e22] = kinematics.twice_green_lagrange;
         let stretched = x * x * e11 + 2.0 * x * y * e12 + y * y * e22; // I₄ − 1
         let aligned = 1.0 - 3.0 * self.kappa;
         let e = self.kappa * kinematics.invariants.i1_minus_3 + aligned * stretched;
@@ -93,7 +93,7 @@ impl HolzapfelGasserOgden {
         }
         let f = &kinematics.deformation_gradient;
         let along = [f[0] * x + f[1] * y, f[2] * x + f[3] * y]; // F a
-        let direction = Gradient::new(along[0] * x, along[0] * y, along[1] * x, along[1] * y);
+        let direction = PlaneTensor::new(along[0] * x, along[0] * y, along[1] * x, along[1] * y);
         let exponent = self.k2 * e * e;
         let growth = self.k1 * exponent.exp();
         Some(Family {
@@ -106,14 +106,14 @@ impl HolzapfelGasserOgden {
 }
 
 struct Family {
-    de: Gradient,
+    de: PlaneTensor,
     energy: f64,
     d: f64,
     dd: f64,
 }
 
 impl HyperelasticLaw for HolzapfelGasserOgden {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         let mut energy = 0.5 * self.mu * kinematics.invariants.i1_minus_3;
         let mut stress = self.mu * kinematics.half_d1;
         for family in self

@@ -10,7 +10,7 @@ use super::flory::{self, IsochoricLaw};
 use super::invariants::{EnergyDerivatives, Invariants};
 use super::law::{HyperelasticLaw, LANES, TensionResponse, store};
 use super::measures::Derivatives;
-use super::sheet::{COMPONENTS, Gradient, Kinematics, SheetResponse};
+use super::sheet::{COMPONENTS, Kinematics, PlaneTensor, SheetResponse};
 use super::volume::Volume;
 
 /// An isotropic law Ψ(I₁, I₂).
@@ -53,7 +53,7 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
         Some(flory::sheet(self, volume))
     }
 
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         kinematics.stress(&self.evaluate(kinematics.invariants))
     }
 
@@ -195,7 +195,7 @@ impl<L: InvariantLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_
             let [h11, h12, h21, h22] = &gradients;
             let mut found = [[0.0; LANES]; N];
             for lane in 0..LANES {
-                let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+                let h = PlaneTensor::new(h11[lane], h12[lane], h21[lane], h22[lane]);
                 let kinematics = Kinematics::unchecked(&h);
                 let made = M::of(&kinematics, &self.law.evaluate(kinematics.invariants));
                 for (component, value) in found.iter_mut().zip(made) {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::code::{Code, CodeLaw};
-use super::sheet::{COMPONENTS, Gradient, Kinematics, PlaneState, SheetResponse, cofactor};
+use super::sheet::{COMPONENTS, Kinematics, PlaneState, PlaneTensor, SheetResponse, cofactor};
 use super::softening::Softening;
 use super::volume::Volume;
 
@@ -15,7 +15,7 @@ use super::volume::Volume;
 /// all laws, in [`super::curve`] and [`super::stability`].
 pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     /// Energy per reference volume in mJ/mm³ and first Piola–Kirchhoff stress P = ∂Ψ/∂F in MPa.
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient);
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor);
 
     /// Energy, stress and consistent tangent.
     fn response(&self, kinematics: &Kinematics) -> SheetResponse;
@@ -27,7 +27,7 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     /// Nominal stresses along both axes of a sheet stretched by 1 + ε₁ and 1 + ε₂ along them, in MPa; not
     /// numbers where a stretch is not positive.
     fn biaxial(&self, [first, second]: [f64; 2]) -> [f64; 2] {
-        match Kinematics::new(&Gradient::new(first, 0.0, 0.0, second)) {
+        match Kinematics::new(&PlaneTensor::new(first, 0.0, 0.0, second)) {
             Ok(kinematics) => {
                 let (_, stress) = self.stress(&kinematics);
                 [stress[0], stress[3]]
@@ -90,7 +90,7 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     }
 
     /// ∂λ₃/∂F: −cof F/J² where the volume stays as it is.
-    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
         -cofactor(&kinematics.deformation_gradient) / kinematics.area_ratio().powi(2)
     }
 
@@ -100,7 +100,7 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     }
 
     /// Cauchy stress σ = P Fᵀ/J₃ in the plane, in MPa, of the first Piola–Kirchhoff stress `stress`: components 11, 12, 22.
-    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &Gradient) -> [f64; 3] {
+    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3] {
         let volume = self.volume_ratio(kinematics);
         kinematics.kirchhoff_stress(stress).map(|tau| tau / volume)
     }

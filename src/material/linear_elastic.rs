@@ -6,7 +6,7 @@ use nalgebra::Matrix4;
 
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::parameters::Parameters;
-use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+use super::sheet::{Kinematics, PlaneState, PlaneTensor, SheetResponse};
 use super::volume::lame_modulus;
 
 /// Linear elasticity: Hooke's law in the strain of small displacement gradients.
@@ -68,14 +68,14 @@ fn trace(kinematics: &Kinematics) -> f64 {
 }
 
 impl HyperelasticLaw for LinearElastic {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         let trace = trace(kinematics);
         // ε₁₁ − ε₂₂ and 2 ε₁₂
         let [difference, shear] = [kinematics.distortion[0], kinematics.distortion[1]];
         let (mu, lame) = (self.shear_modulus, self.in_plane());
         let mean = (lame + mu) * trace;
         let squares = 0.5 * (trace * trace + difference * difference + shear * shear);
-        let stress = Gradient::new(
+        let stress = PlaneTensor::new(
             mean + mu * difference,
             mu * shear,
             mu * shear,
@@ -119,8 +119,8 @@ impl HyperelasticLaw for LinearElastic {
         1.0 + self.contraction() * trace(kinematics)
     }
 
-    fn thickness_gradient(&self, _: &Kinematics) -> Gradient {
-        self.contraction() * Gradient::new(1.0, 0.0, 0.0, 1.0)
+    fn thickness_gradient(&self, _: &Kinematics) -> PlaneTensor {
+        self.contraction() * PlaneTensor::new(1.0, 0.0, 0.0, 1.0)
     }
 
     fn thickness_stress(&self, kinematics: &Kinematics) -> f64 {
@@ -131,7 +131,7 @@ impl HyperelasticLaw for LinearElastic {
     }
 
     /// P itself, which is symmetric.
-    fn cauchy_stress(&self, _: &Kinematics, stress: &Gradient) -> [f64; 3] {
+    fn cauchy_stress(&self, _: &Kinematics, stress: &PlaneTensor) -> [f64; 3] {
         [stress[0], stress[1], stress[3]]
     }
 

@@ -11,7 +11,7 @@
 
 use nalgebra::Matrix4;
 
-use super::sheet::{Gradient, Kinematics, SheetResponse, cofactor, cofactor_derivative};
+use super::sheet::{Kinematics, PlaneTensor, SheetResponse, cofactor, cofactor_derivative};
 
 /// An energy and its derivatives by m and z.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,9 +36,9 @@ pub struct Measures {
     /// z.
     pub z: f64,
     /// ∂m/∂F.
-    pub dm: Gradient,
+    pub dm: PlaneTensor,
     /// ∂z/∂F.
-    pub dz: Gradient,
+    pub dz: PlaneTensor,
     /// 1/J.
     inverse: f64,
 }
@@ -63,7 +63,7 @@ impl Measures {
 
     /// P in MPa.
     #[inline(always)]
-    pub fn stress(&self, w: &Derivatives) -> Gradient {
+    pub fn stress(&self, w: &Derivatives) -> PlaneTensor {
         w.m * self.dm + w.z * self.dz
     }
 

@@ -248,7 +248,7 @@ mod tests {
     use super::*;
     use crate::material::Card;
     use crate::material::samples;
-    use crate::material::sheet::{Gradient, Kinematics};
+    use crate::material::sheet::{Kinematics, PlaneTensor};
 
     /// Gels of all kinds whose swelling is known: φ is chosen and χ follows from it.
     ///
@@ -346,7 +346,7 @@ mod tests {
         };
         let swollen = (0.1 / network.free_swelling()).cbrt();
         let held = 1.0 / swollen - 1.0;
-        let state = Kinematics::new(&Gradient::new(held, 0.0, 0.0, held)).unwrap();
+        let state = Kinematics::new(&PlaneTensor::new(held, 0.0, 0.0, held)).unwrap();
         let thickness = swollen * sheet.thickness_stretch(&state);
         assert!((thickness / low - 1.0).abs() < 1e-10, "{thickness} {low}");
         let stress = sheet.stress(&state).1;

@@ -7,7 +7,7 @@ use super::flory::{self, IsochoricLaw};
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::measures::{Derivatives, Measures};
 use super::parameters::Parameters;
-use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::sheet::{Kinematics, PlaneTensor, SheetResponse};
 use super::volume::Volume;
 use crate::document::Bound;
 
@@ -174,7 +174,7 @@ impl IsochoricLaw for Ogden {
 }
 
 impl HyperelasticLaw for Ogden {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         let measures = Measures::new(kinematics);
         let w = IsochoricLaw::at(self, kinematics.area_change, self.powers(measures.z));
         (w.energy, measures.stress(&w))

@@ -21,8 +21,8 @@ use nalgebra::{Matrix4, Vector4};
 use super::invariants::{EnergyDerivatives, Invariants};
 use crate::document::name_of;
 
-/// Displacement gradient components H₁₁, H₁₂, H₂₁, H₂₂ where Hᵢⱼ = ∂uᵢ/∂Xⱼ.
-pub type Gradient = Vector4<f64>;
+/// Components 11, 12, 21, 22 of a tensor in the plane: a displacement gradient Hᵢⱼ = ∂uᵢ/∂Xⱼ, F = 1 + H, or a stress P.
+pub type PlaneTensor = Vector4<f64>;
 
 /// What is known of the third direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,17 +60,17 @@ pub struct Kinematics {
     /// I₁ − 3 and I₂ − 3.
     pub invariants: Invariants,
     /// F.
-    pub deformation_gradient: Gradient,
+    pub deformation_gradient: PlaneTensor,
     /// J − 1.
     pub area_change: f64,
-    /// C − I: components 11, 12, 22.
-    pub stretch_change: [f64; 3],
+    /// 2 E = C − I with the Green–Lagrange strain E: components 11, 12, 22.
+    pub twice_green_lagrange: [f64; 3],
     /// F − cof F, which is zero at rest.
-    pub distortion: Gradient,
+    pub distortion: PlaneTensor,
     /// ½ ∂I₁/∂F.
-    pub half_d1: Gradient,
+    pub half_d1: PlaneTensor,
     /// ½ ∂I₂/∂F.
-    half_d2: Gradient,
+    half_d2: PlaneTensor,
 }
 
 /// Energy, stress and tangent of the sheet.
@@ -79,7 +79,7 @@ pub struct SheetResponse {
     /// Ψ per reference volume in mJ/mm³.
     pub energy: f64,
     /// First Piola–Kirchhoff stress P = ∂Ψ/∂F in MPa; the nominal stress is its transpose.
-    pub first_piola_kirchhoff_stress: Gradient,
+    pub first_piola_kirchhoff_stress: PlaneTensor,
     /// ∂P/∂F in MPa, symmetric.
     pub tangent: Matrix4<f64>,
 }
@@ -115,7 +115,7 @@ impl SheetResponse {
 impl Kinematics {
     /// The sheet at rest.
     pub fn rest() -> Self {
-        Self::new(&Gradient::zeros()).expect("J = 1 at rest")
+        Self::new(&PlaneTensor::zeros()).expect("J = 1 at rest")
     }
 
     /// Kinematics of the displacement gradient `h`.
@@ -123,7 +123,7 @@ impl Kinematics {
     /// # Errors
     /// [`Inadmissible`] when J is not positive.
     #[inline]
-    pub fn new(h: &Gradient) -> Result<Self, Inadmissible> {
+    pub fn new(h: &PlaneTensor) -> Result<Self, Inadmissible> {
         let kinematics = Self::unchecked(h);
         match kinematics.is_admissible() {
             true => Ok(kinematics),
@@ -133,7 +133,7 @@ impl Kinematics {
 
     /// Kinematics of a displacement gradient, without meaning where J is not positive.
     #[inline(always)]
-    pub fn unchecked(h: &Gradient) -> Self {
+    pub fn unchecked(h: &PlaneTensor) -> Self {
         let [h11, h12, h21, h22] = [h[0], h[1], h[2], h[3]];
         let j = h11 + h22 + (h11 * h22 - h12 * h21); // J − 1
         let jacobian = 1.0 + j;
@@ -159,7 +159,7 @@ impl Kinematics {
             },
             deformation_gradient: f,
             area_change: j,
-            stretch_change: [e11, e12, e22],
+            twice_green_lagrange: [e11, e12, e22],
             distortion,
             half_d1: distortion + s * cofactor,
             half_d2: distortion - q * f + m * cofactor,
@@ -188,7 +188,7 @@ impl Kinematics {
     }
 
     /// Kirchhoff stress τ = P Fᵀ in the plane, in MPa: components 11, 12, 22; the Cauchy stress where the volume stays as it is.
-    pub fn kirchhoff_stress(&self, first_piola_kirchhoff: &Gradient) -> [f64; 3] {
+    pub fn kirchhoff_stress(&self, first_piola_kirchhoff: &PlaneTensor) -> [f64; 3] {
         let (p, f) = (first_piola_kirchhoff, &self.deformation_gradient);
         [
             p[0] * f[0] + p[1] * f[1],
@@ -199,7 +199,7 @@ impl Kinematics {
 
     /// Energy and stress of a law Ψ(I₁, I₂) with the derivatives `w`.
     #[inline(always)]
-    pub fn stress(&self, w: &EnergyDerivatives) -> (f64, Gradient) {
+    pub fn stress(&self, w: &EnergyDerivatives) -> (f64, PlaneTensor) {
         (w.energy, 2.0 * (w.d1 * self.half_d1 + w.d2 * self.half_d2))
     }
 
@@ -250,13 +250,13 @@ impl Kinematics {
 }
 
 #[inline(always)]
-fn identity() -> Gradient {
+fn identity() -> PlaneTensor {
     Vector4::new(1.0, 0.0, 0.0, 1.0)
 }
 
 /// cof F = ∂J/∂F.
 #[inline(always)]
-pub fn cofactor(f: &Gradient) -> Gradient {
+pub fn cofactor(f: &PlaneTensor) -> PlaneTensor {
     Vector4::new(f[3], -f[2], -f[1], f[0])
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::code::{Code, CodeLaw};
 use super::law::{HyperelasticLaw, TensionResponse};
-use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+use super::sheet::{Kinematics, PlaneState, PlaneTensor, SheetResponse};
 use super::softening::Softening;
 use crate::error::Error;
 
@@ -31,7 +31,7 @@ impl SoftenedLaw {
 }
 
 impl HyperelasticLaw for SoftenedLaw {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
         let virgin = self.virgin.stress(kinematics);
         self.softening.stress(virgin, self.largest_energy)
     }
@@ -54,7 +54,7 @@ impl HyperelasticLaw for SoftenedLaw {
         self.virgin.thickness_stretch(kinematics)
     }
 
-    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
         self.virgin.thickness_gradient(kinematics)
     }
 
@@ -64,7 +64,7 @@ impl HyperelasticLaw for SoftenedLaw {
         factor * self.virgin.thickness_stress(kinematics)
     }
 
-    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &Gradient) -> [f64; 3] {
+    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3] {
         self.virgin.cauchy_stress(kinematics, stress)
     }
 
@@ -148,7 +148,7 @@ pub struct StressAfter {
     /// Ψ, the work that was done on the point, in mJ/mm³.
     pub energy: f64,
     /// First Piola–Kirchhoff stress in MPa.
-    pub stress: Gradient,
+    pub stress: PlaneTensor,
     /// η; 1 for a law without softening.
     pub factor: f64,
     /// The part of Ψ that is dissipated, in mJ/mm³; none without softening.
@@ -160,7 +160,7 @@ impl StressAfter {
     pub fn new(
         law: &dyn HyperelasticLaw,
         now: &Kinematics,
-        past: impl IntoIterator<Item = Gradient>,
+        past: impl IntoIterator<Item = PlaneTensor>,
     ) -> Self {
         let virgin = law.stress(now);
         let Some(softening) = law.softening() else {

@@ -34,7 +34,7 @@ use std::f64::consts::PI;
 
 use libm::erf;
 
-use super::sheet::{Gradient, SheetResponse};
+use super::sheet::{PlaneTensor, SheetResponse};
 use crate::document::{Bound, Section};
 use crate::units::Dimension;
 
@@ -107,7 +107,7 @@ impl Softening {
     }
 
     /// Energy and stress of a point, from those of the law that was never loaded.
-    pub fn stress(&self, (energy, stress): (f64, Gradient), most: f64) -> (f64, Gradient) {
+    pub fn stress(&self, (energy, stress): (f64, PlaneTensor), most: f64) -> (f64, PlaneTensor) {
         let [factor, _] = self.factor(energy, most);
         (self.energy(energy, most), factor * stress)
     }

@@ -18,7 +18,7 @@ use nalgebra::{Matrix2, Matrix3, Vector4};
 
 use super::curve::Mode;
 use super::law::HyperelasticLaw;
-use super::sheet::{Gradient, Kinematics};
+use super::sheet::{Kinematics, PlaneTensor};
 
 /// Stretches beyond which stability is not looked for.
 pub const SEARCHED: [f64; 2] = [0.1, 10.0];
@@ -83,7 +83,7 @@ pub fn is_stable(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> bool {
 /// D by the components ε₁₁, ε₂₂ and √2 ε₁₂; `None` where it is not finite.
 fn tangent(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> Option<Matrix3<f64>> {
     let response = law.response(kinematics);
-    let matrix = |v: &Gradient| Matrix2::new(v[0], v[1], v[2], v[3]);
+    let matrix = |v: &PlaneTensor| Matrix2::new(v[0], v[1], v[2], v[3]);
     let f = matrix(&kinematics.deformation_gradient);
     let p = matrix(&response.first_piola_kirchhoff_stress);
     let half = std::f64::consts::FRAC_1_SQRT_2;

@@ -16,7 +16,7 @@
 
 use nalgebra::Matrix4;
 
-use super::sheet::{Gradient, Kinematics};
+use super::sheet::{Kinematics, PlaneTensor};
 
 /// One term of a Prony series.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,7 +129,7 @@ impl ViscousMaterial {
     }
 
     /// P_v of the fluid for a rate Ḟ in 1/s.
-    pub fn newtonian_stress(&self, kinematics: &Kinematics, rate: &Gradient) -> Gradient {
+    pub fn newtonian_stress(&self, kinematics: &Kinematics, rate: &PlaneTensor) -> PlaneTensor {
         let [a, b, c, d] = inverse(&kinematics.deformation_gradient);
         // L = Ḟ F⁻¹.
         let l = [
@@ -142,7 +142,7 @@ impl ViscousMaterial {
         let shear = 0.5 * (l[1] + l[2]);
         let [s11, s12, s22] =
             [l[0] + trace, shear, l[3] + trace].map(|part| 2.0 * self.shear_viscosity * part);
-        Gradient::new(
+        PlaneTensor::new(
             s11 * a + s12 * b,
             s11 * c + s12 * d,
             s12 * a + s22 * b,
@@ -154,7 +154,7 @@ impl ViscousMaterial {
     pub fn newtonian_tangent(&self, kinematics: &Kinematics) -> Matrix4<f64> {
         let mut tangent = Matrix4::zeros();
         for column in 0..4 {
-            let mut rate = Gradient::zeros();
+            let mut rate = PlaneTensor::zeros();
             rate[column] = 1.0;
             tangent.set_column(column, &self.newtonian_stress(kinematics, &rate));
         }
@@ -169,13 +169,13 @@ impl ViscousMaterial {
 }
 
 /// F⁻¹.
-fn inverse(f: &Gradient) -> [f64; 4] {
+fn inverse(f: &PlaneTensor) -> [f64; 4] {
     let determinant = f[0] * f[3] - f[1] * f[2];
     [f[3], -f[1], -f[2], f[0]].map(|entry| entry / determinant)
 }
 
 /// S = F⁻¹ P: components 11, 12, 22 in MPa.
-pub fn second_piola_kirchhoff(kinematics: &Kinematics, first: &Gradient) -> [f64; 3] {
+pub fn second_piola_kirchhoff(kinematics: &Kinematics, first: &PlaneTensor) -> [f64; 3] {
     let [a, b, c, d] = inverse(&kinematics.deformation_gradient);
     let mixed = 0.5 * (a * first[1] + b * first[3] + c * first[0] + d * first[2]);
     [
@@ -186,10 +186,10 @@ pub fn second_piola_kirchhoff(kinematics: &Kinematics, first: &Gradient) -> [f64
 }
 
 /// P = F S.
-pub fn first_piola_kirchhoff(kinematics: &Kinematics, second: [f64; 3]) -> Gradient {
+pub fn first_piola_kirchhoff(kinematics: &Kinematics, second: [f64; 3]) -> PlaneTensor {
     let f = &kinematics.deformation_gradient;
     let [s11, s12, s22] = second;
-    Gradient::new(
+    PlaneTensor::new(
         f[0] * s11 + f[1] * s12,
         f[0] * s12 + f[1] * s22,
         f[2] * s11 + f[3] * s12,
@@ -237,21 +237,21 @@ mod tests {
         let rate = 0.3;
         // F = diag(λ, λ^−½) as an incompressible strip with free edges.
         let across = stretch.powf(-0.5);
-        let h = Gradient::new(stretch - 1.0, 0.0, 0.0, across - 1.0);
+        let h = PlaneTensor::new(stretch - 1.0, 0.0, 0.0, across - 1.0);
         let kinematics = Kinematics::new(&h).unwrap();
-        let rates = Gradient::new(rate, 0.0, 0.0, -0.5 * across / stretch * rate);
+        let rates = PlaneTensor::new(rate, 0.0, 0.0, -0.5 * across / stretch * rate);
         let p = material().newtonian_stress(&kinematics, &rates);
         let [expected, _] = material().newtonian_tension(stretch, rate);
         assert!((p[0] - expected).abs() < 1e-14 && p[3].abs() < 1e-14, "{p}");
         // Ḟ = W F with a spin W.
         let f = kinematics.deformation_gradient;
-        let spin = Gradient::new(-f[2], -f[3], f[0], f[1]);
+        let spin = PlaneTensor::new(-f[2], -f[3], f[0], f[1]);
         assert!(material().newtonian_stress(&kinematics, &spin).norm() < 1e-15);
     }
 
     #[test]
     fn the_fluid_only_dissipates() {
-        let h = Gradient::new(0.3, 0.2, -0.1, 0.4);
+        let h = PlaneTensor::new(0.3, 0.2, -0.1, 0.4);
         let tangent = material().newtonian_tangent(&Kinematics::new(&h).unwrap());
         assert!((tangent - tangent.transpose()).norm() < 1e-14);
         assert!(tangent.symmetric_eigenvalues().min() > -1e-14);
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn stresses_are_converted_both_ways() {
-        let kinematics = Kinematics::new(&Gradient::new(0.3, 0.2, -0.1, 0.4)).unwrap();
+        let kinematics = Kinematics::new(&PlaneTensor::new(0.3, 0.2, -0.1, 0.4)).unwrap();
         let s = [0.5, -0.2, 0.9];
         let back = second_piola_kirchhoff(&kinematics, &first_piola_kirchhoff(&kinematics, s));
         assert!(s.iter().zip(back).all(|(s, back)| (s - back).abs() < 1e-15));

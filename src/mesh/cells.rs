@@ -256,6 +256,12 @@ impl Mesh {
     /// `cell 80 near (150.0, 0.0) mm`, for messages.
     pub fn describe_cell(&self, cell: usize) -> String {
         let [x, y] = self.centre(cell);
-        format!("cell {cell} near ({x:.1}, {y:.1}) mm")
+        let decimals = decimals_for(self.cell_area(cell).sqrt());
+        format!("cell {cell} near ({x:.decimals$}, {y:.decimals$}) mm")
     }
+}
+
+/// The decimals that tell places apart on bodies, or cells, of a size in mm: one for those of a tenth and larger.
+pub fn decimals_for(size: f64) -> usize {
+    (-size.log10().floor()).clamp(1.0, 9.0) as usize
 }

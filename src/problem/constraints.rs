@@ -64,6 +64,8 @@ enum SupportMisfit {
     NoNodes,
     #[error("is no straight line parallel to an axis, which a roller or an axis of symmetry needs")]
     NotAlongAxis,
+    #[error("is a single point, which has no line along which it slides")]
+    NoLine,
 }
 
 impl SupportMisfit {
@@ -72,6 +74,7 @@ impl SupportMisfit {
             Self::NodeAtCentre => "move the centre, or leave the node out",
             Self::NoNodes => "take a group with nodes",
             Self::NotAlongAxis => "turn the mesh, or hold the group with the kind \"displacement\"",
+            Self::NoLine => "hold it with the kind \"displacement\" and x or y",
         }
     }
 }
@@ -246,6 +249,9 @@ fn normal(mesh: &Mesh, group: &Group) -> Result<usize, SupportMisfit> {
         high - low
     };
     let extents = [extent(0), extent(1)];
+    if extents == [0.0; 2] {
+        return Err(SupportMisfit::NoLine);
+    }
     let axis = usize::from(extents[1] < extents[0]);
     if extents[axis] <= 1e-9 * extents[1 - axis] {
         return Ok(axis);

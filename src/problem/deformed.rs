@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
 
@@ -131,8 +131,8 @@ impl DeformedSheet {
         Kinematics::new(&gradient).map_err(|_| PointFault::Inverted { x, y })
     }
 
-    fn gradient_in(&self, (cell, local): Place, field: &[f64]) -> Gradient {
-        Gradient::from(self.mesh.gradient_at(field, cell, local))
+    fn gradient_in(&self, (cell, local): Place, field: &[f64]) -> PlaneTensor {
+        PlaneTensor::from(self.mesh.gradient_at(field, cell, local))
     }
 
     fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<Place, PointFault> {

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::constraints::Constraints;
 use crate::error::Diagnostic;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, decimals_for};
 
 /// Eigenvalue of the conditions, relative to the largest, below which a motion is free: the square of how far
 /// apart two held nodes must be, relative to the mesh.
@@ -214,9 +214,13 @@ impl<'a> Bodies<'a> {
     fn pole(&self, turn: &DVector<f64>) -> String {
         let by = self.size / turn[2];
         let [x, y] = [self.centre[0] - by * turn[1], self.centre[1] + by * turn[0]];
+        let decimals = decimals_for(0.01 * self.size);
         // No minus before a zero.
-        let tidy = |x: f64| if x.abs() < 0.05 { 0.0 } else { x };
-        format!("({:.1}, {:.1}) mm", tidy(x), tidy(y))
+        let tidy = |x: f64| match x.abs() < 0.5 * 10_f64.powi(-(decimals as i32)) {
+            true => 0.0,
+            false => x,
+        };
+        format!("({:.decimals$}, {:.decimals$}) mm", tidy(x), tidy(y))
     }
 
     fn tell(&self, body: usize, motion: &str) -> Diagnostic {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::stability::is_stable;
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::vector::gather;
@@ -139,8 +139,8 @@ impl SheetEnergy {
 
 impl SamplingPoint<'_> {
     /// ∂u/∂X, or ∂u̇/∂X, from nodal values: components 11, 12, 21, 22.
-    pub fn gradient(&self, u: &[f64]) -> Gradient {
-        let mut h = Gradient::zeros();
+    pub fn gradient(&self, u: &[f64]) -> PlaneTensor {
+        let mut h = PlaneTensor::zeros();
         for (g, u) in self.gradients.iter().zip(u.chunks_exact(2)) {
             h[0] += u[0] * g[0];
             h[1] += u[0] * g[1];
@@ -151,7 +151,7 @@ impl SamplingPoint<'_> {
     }
 
     /// Adds the nodal forces of a first Piola–Kirchhoff stress in MPa.
-    pub fn add_force(&self, stress: &Gradient, force: &mut [f64]) {
+    pub fn add_force(&self, stress: &PlaneTensor, force: &mut [f64]) {
         let traction = stress * self.volume;
         for (r, g) in force.chunks_exact_mut(2).zip(self.gradients) {
             r[0] += traction[0] * g[0] + traction[1] * g[1];
@@ -312,7 +312,7 @@ mod tests {
         let law = NeoHooke { c10: 0.05 };
         let mesh = mesh();
         let energy = SheetEnergy::of_mesh(Arc::new(law), &mesh, 2.0);
-        let h = Gradient::new(0.3, 0.1, -0.05, 0.2);
+        let h = PlaneTensor::new(0.3, 0.1, -0.05, 0.2);
         let field = |[x, y]: &[f64; 2]| [h[0] * x + h[1] * y, h[2] * x + h[3] * y];
         let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
         let mut residual = vec![0.0; u.len()];

@@ -11,7 +11,7 @@ pub fn is_one_of_several(state: &State) -> bool {
 pub fn one_of_several(states: &[String]) -> Option<String> {
     (!states.is_empty()).then(|| {
         format!(
-            "Warning: the tangent was not positive definite, or the body snapped, on the way to {}: the state is one of several, and \
+            "the tangent was not positive definite, or the body snapped, on the way to {}: the state is one of several, and \
              which one depends on mesh and load steps",
             states.join(", ")
         )

@@ -64,7 +64,7 @@ pub fn warning(law: &dyn HyperelasticLaw, locking: &[(&str, &str)]) -> Option<St
     };
     let reason = reason(law)?;
     Some(format!(
-        "Warning: {reason}: {models} too stiff. {}",
+        "{reason}: {models} too stiff. {}",
         remedies.join("; ")
     ))
 }

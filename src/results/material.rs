@@ -39,7 +39,7 @@ fn json(card: &Card) -> Value {
         "law": card.law_name,
         "formula": card.formula,
         "parameters": parameters.chain(choices).collect::<Map<_, _>>(),
-        "youngs_modulus_MPa": card.law.youngs_modulus(),
+        "youngs_modulus_MPa": card.youngs_modulus(),
         "bulk_modulus_MPa": card.bulk_modulus(),
         "sheet": card.law.plane_state().name(),
         "stretch_range": card.stretch_range,
@@ -71,12 +71,19 @@ fn statement(card: &Card) -> Vec<Block> {
         let modulus = format!("{modulus:.6} MPa; {}", law.plane_state().name());
         rows.push(row("bulk modulus κ", modulus));
     }
+    if let Some([stretch, change]) = card.tension_by_volume() {
+        let percent = 100.0 * change;
+        let told = format!(
+            "{percent:+.2} % at λ = {stretch:.3}, against the same parameters at constant volume"
+        );
+        rows.push(row("tension by the change of volume, at most", told));
+    }
     let statements = law.statements().into_iter();
     rows.extend(statements.map(|(name, statement)| row(name, statement)));
     rows.extend([
         row(
             "initial Young's modulus E₀",
-            format!("{:.6} MPa", law.youngs_modulus()),
+            format!("{:.6} MPa", card.youngs_modulus()),
         ),
         row(
             "calibrated range",

@@ -10,7 +10,7 @@ impl Results {
         blocks.extend(judged(outcome));
         blocks.extend(ends(outcome));
         blocks.extend(paragraphs("Doubts", &outcome.doubts));
-        blocks.extend(outcome.warnings.iter().map(Block::paragraph));
+        blocks.extend(outcome.warning_paragraphs());
         blocks.extend(claims(outcome.claims.iter()));
         blocks.extend(outcome.blocks.iter().cloned());
         let placed = |block: &Block| matches!(block, Block::Figure(..));

@@ -1,6 +1,6 @@
 //! Quantities over time as a table.
 
-use std::fmt::Write;
+use crate::document::write_records;
 
 /// A quantity at all instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,27 +31,22 @@ impl Series {
 /// Instants in s with their quantities as a CSV table, units in its heads. `gelbench identify` reads one with the
 /// columns `extension` and `force`.
 pub fn csv(times: &[f64], series: &[Series]) -> String {
-    let quoted = |head: String| match head.contains([',', '"']) {
-        true => format!("\"{}\"", head.replace('"', "\"\"")),
-        false => head,
+    let first = "time [s]".to_owned();
+    let head = std::iter::once(first).chain(series.iter().map(Series::head));
+    let line = |(instant, time): (usize, &f64)| {
+        let values = series.iter().map(|one| written(one.values[instant]));
+        std::iter::once(time.to_string()).chain(values).collect()
     };
-    let mut text = String::from("time [s]");
-    for one in series {
-        text += ",";
-        text += &quoted(one.head());
+    let lines = times.iter().enumerate().map(line);
+    write_records(std::iter::once(head.collect()).chain(lines))
+}
+
+/// A number with all its digits; small ones with an exponent.
+fn written(value: f64) -> String {
+    match value {
+        small if small != 0.0 && small.abs() < 1e-5 => format!("{small:e}"),
+        value => value.to_string(),
     }
-    text.push('\n');
-    for (instant, time) in times.iter().enumerate() {
-        text += &time.to_string();
-        for one in series {
-            let _ = match one.values[instant] {
-                small if small != 0.0 && small.abs() < 1e-5 => write!(text, ",{small:e}"),
-                value => write!(text, ",{value}"),
-            };
-        }
-        text.push('\n');
-    }
-    text
 }
 
 #[cfg(test)]

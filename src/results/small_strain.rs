@@ -2,15 +2,13 @@
 
 use nalgebra::Matrix2;
 
+use super::BESIDE_CORNERS;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
 
 /// Strains and rotations in rad up to which linear elasticity is taken at its word: its stresses are wrong by some times the strain, and
 /// by the square of the rotation.
 const SMALL: [f64; 2] = [0.05, 0.1];
-
-/// The share of the sheet that may have more: beside a clamped corner strains have no bound.
-const BESIDE_CORNERS: f64 = 0.01;
 
 /// The strain |λ − 1| and the rotation in rad that a small share of the sheet exceeds, by the centres of the cells.
 fn extremes(mesh: &Mesh, displacement: &[f64]) -> [f64; 2] {
@@ -61,7 +59,7 @@ pub fn warning<'a>(
     mut states: impl Iterator<Item = (String, &'a [f64])>,
 ) -> Option<String> {
     let (load, reason) = states.find_map(|(load, u)| Some((load, reason(law, mesh, u)?)))?;
-    Some(format!("Warning: {reason} at {load}. {LARGE_STRAINS}"))
+    Some(format!("{reason} at {load}. {LARGE_STRAINS}"))
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ impl LocalState {
         let after = StressAfter::new(law, &kinematics, past);
         let p = after.stress + Vector4::from(viscous);
         let [s11, s12, s22] = law.cauchy_stress(&kinematics, &p);
-        let [c11, c12, c22] = kinematics.stretch_change;
+        let [c11, c12, c22] = kinematics.twice_green_lagrange;
         let thickness = law.thickness_stretch(&kinematics);
         let across = after.factor * law.thickness_stress(&kinematics);
         let [larger, smaller] = kinematics.principal_stretches();

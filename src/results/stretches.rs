@@ -2,8 +2,12 @@
 
 use nalgebra::Matrix2;
 
-use crate::material::Card;
+use crate::material::curve::Mode;
+use crate::material::{Card, HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
+
+/// The share of the area that may lie beyond the range of a card, or be unlike the rest: beside a clamped corner stretches have no bound.
+pub const BESIDE_CORNERS: f64 = 0.01;
 
 /// Stretches are outside of the range from so much, relative, on.
 const ROUNDING: f64 = 1e-3;
@@ -24,11 +28,12 @@ pub struct Stretches {
 impl Stretches {
     /// The stretches of a displacement field beside the range of a card.
     ///
-    /// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smaller of λ₁ and λ₂^−½ and the
-    /// larger of λ₂ and λ₁^−½: an incompressible sample contracts across.
+    /// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smallest and the largest of both and of those
+    /// across the samples, λ₁^−½ and λ₂^−½ where the volume stays as it is.
     pub fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
         let [low, high] = card.stretch_range;
-        let (least, most) = (low.min(high.powf(-0.5)), high.max(low.powf(-0.5)));
+        let [above, below] = [low, high].map(|along| across(&*card.law, along));
+        let (least, most) = (low.min(below), high.max(above));
         let mut all = Self {
             smallest: f64::INFINITY,
             largest: 0.0,
@@ -71,6 +76,16 @@ impl Stretches {
     }
 }
 
+/// The stretch across a strip that is stretched along the sheet's first axis; in plane strain, of which the tests of cards are not, at constant
+/// volume.
+fn across(law: &dyn HyperelasticLaw, along: f64) -> f64 {
+    let free = match law.plane_state() {
+        PlaneState::Stress => Mode::Uniaxial.gradient(law, along - 1.0),
+        PlaneState::Strain => None,
+    };
+    free.map_or(along.powf(-0.5), |gradient| 1.0 + gradient[3])
+}
+
 /// A share in percent, of small ones the first digit.
 fn percent(share: f64) -> String {
     match 100.0 * share {
@@ -83,6 +98,8 @@ fn percent(share: f64) -> String {
 mod tests {
     use super::*;
     use crate::material::NeoHooke;
+    use crate::material::body::BodySheet;
+    use crate::material::{FoamTerm, OgdenHill};
     use crate::mesh::CellShape;
     use std::sync::Arc;
 
@@ -111,6 +128,21 @@ mod tests {
             told.contains("0.700 … 1.300 at load factor 1, on 100.0 % of the area"),
             "{told}"
         );
+        // A foam without Poisson's ratio keeps its width, so that a pressed sample is not wider.
+        let foam = FoamTerm {
+            modulus: 0.1,
+            exponent: 8.0,
+            volume_exponent: 0.0,
+        };
+        let foam = OgdenHill { terms: vec![foam] };
+        let foam = Arc::new(BodySheet::new(foam, PlaneState::Stress));
+        let foam = Card::of_law("foam", foam, [0.4, 1.0]);
+        let pulled: Vec<f64> = mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, _]| [0.5 * x, 0.0])
+            .collect();
+        assert_eq!(Stretches::new(&foam, &mesh, &pulled).share, 1.0);
         // A turn stretches nothing.
         let turned: Vec<f64> = mesh
             .nodes

@@ -75,7 +75,7 @@ pub fn warning<'a>(
 /// The warning about parts of a sheet, such as `7.9 % at 30 % stretch of the area`.
 pub fn of_parts(parts: &str) -> String {
     format!(
-        "Warning: part of the sheet is under compression, where a thin sheet wrinkles and the plane solution carries stress that it would \
+        "part of the sheet is under compression, where a thin sheet wrinkles and the plane solution carries stress that it would \
          lose: {parts} (array `wrinkling` of the finite elements' VTK files)."
     )
 }

@@ -11,9 +11,7 @@ use crate::error::Error;
 use crate::markers::THICK;
 use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
-use crate::material::parameters::OffsetTreatment;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::material::volume::{LARGEST_POISSON_RATIO, bulk_modulus};
 use crate::material::{Card, HyperelasticLaw, NeoHooke, PlaneState};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
@@ -21,9 +19,6 @@ use crate::units::Dimension;
 
 /// Cells of a plate in one direction at most; how many fit into the budget is asked besides.
 pub const MOST_CELLS: usize = 100_000;
-
-/// The key of the plane state.
-const SHEET: &str = "sheet";
 
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
@@ -53,100 +48,6 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
     let text = document::read_text(path, file::MOST_OF_A_STUDY, hint)?;
     other_files::refuse(path, &text)?;
     Ok(text)
-}
-
-/// The card under `card` of a section, looked for relative to `folder`; `None` where it is no card to work
-/// with, which is recorded as a fault.
-pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
-    const KEY: &str = "card";
-    let name = section.text(KEY);
-    // Before the card is loaded, so that a card in fault leaves no other key unread.
-    let plane = plane_state(section);
-    if name.is_empty() && !section.has(KEY) {
-        return None; // told already
-    }
-    match Card::load(&name, folder) {
-        Ok(card) if card.offset == OffsetTreatment::Keep => {
-            section.fault(
-                KEY,
-                "this card keeps a stress at rest and cannot drive a model",
-                "set `offset = \"subtract\"` in the card",
-            );
-            None
-        }
-        Ok(card) if card.law.shear_modulus() <= 0.0 => {
-            section.fault(
-                KEY,
-                &format!(
-                    "this card's law is unstable from rest: its shear modulus is {:.4} MPa",
-                    card.law.shear_modulus()
-                ),
-                "choose another law; see `gelbench materials show`",
-            );
-            None
-        }
-        Ok(card) => in_plane(section, plane?, card),
-        Err(Error::Input(found)) => {
-            for fault in found {
-                match fault.place {
-                    Some(_) => section.add(fault),
-                    None => section.fault(KEY, &fault.message, fault.hint.as_deref().unwrap_or("")),
-                }
-            }
-            None
-        }
-        Err(other) => {
-            section.fault(KEY, &other.to_string(), "choose another card");
-            None
-        }
-    }
-}
-
-/// What the section chooses with `sheet`; plane stress where it says nothing.
-fn plane_state(section: &Section<'_>) -> Option<PlaneState> {
-    match section.has(SHEET) {
-        true => section.choice(SHEET, &PlaneState::NAMES),
-        false => Some(PlaneState::Stress),
-    }
-}
-
-/// The card in a plane state.
-fn in_plane(section: &Section<'_>, plane: PlaneState, card: Card) -> Option<Card> {
-    if plane == PlaneState::Stress {
-        return Some(card);
-    }
-    let name = card.name.clone();
-    let found = card.in_plane_strain();
-    if found.is_none() {
-        let message = format!(
-            "the card `{name}` keeps its volume: in plane strain its stress does not follow from the strain"
-        );
-        let hint = "give the card a `[volume]` with `poisson_ratio` or `bulk_modulus`";
-        section.fault(SHEET, &message, hint);
-    }
-    found.filter(|card| changes_volume_enough(section, card))
-}
-
-/// Whether a sheet in plane strain changes its volume as much as displacements alone can say; that it does not is recorded. Beyond,
-/// pressures of κ times what rounding and iteration leave of a change of volume hide the stress.
-fn changes_volume_enough(section: &Section<'_>, card: &Card) -> bool {
-    const ROUNDED: f64 = 1.001;
-    let largest = bulk_modulus(1.0, LARGEST_POISSON_RATIO);
-    let ratio = card.law.bulk_modulus().unwrap_or(0.0) / card.law.shear_modulus();
-    let enough = ratio <= ROUNDED * largest;
-    if !enough {
-        let message = format!(
-            "the card `{}` has a bulk modulus of {ratio:.0} times its shear modulus: in plane strain gelbench computes sheets of up to \
-             {largest:.0} times, a Poisson's ratio of {LARGEST_POISSON_RATIO}",
-            card.name
-        );
-        let hint = format!(
-            "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses are then about 0.02 % from those of a body that keeps \
-             its volume"
-        );
-        section.fault(SHEET, &message, &hint);
-    }
-    enough
 }
 
 /// The plate of a section without its stretches, and the cells of its lattice.

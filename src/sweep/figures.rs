@@ -61,7 +61,7 @@ impl Row {
             figures,
             passed: results.passed(),
             fault: ends.collect::<Vec<_>>().join("; "),
-            warnings: warnings.map(|one| plain(one)).collect(),
+            warnings: warnings.cloned().collect(),
         }
     }
 
@@ -89,12 +89,6 @@ impl Row {
             .find(|(own, _)| own == name)
             .map(|(_, value)| *value)
     }
-}
-
-/// A warning without the word before it.
-fn plain(warning: &str) -> String {
-    let own = warning.strip_prefix("Warning: ");
-    own.unwrap_or(warning).to_owned()
 }
 
 /// All numbers below a name, with two components where it ends with a unit; other lists are left out.

@@ -54,7 +54,8 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
         ];
         first.chain(settings).chain(found).chain(last).collect()
     };
-    write_records(std::iter::once(head.collect()).chain(rows.iter().map(line)))
+    let lines = rows.iter().map(line);
+    write_records(std::iter::once(head.collect()).chain(lines)).into_bytes()
 }
 
 /// The rows of a table that [`write()`] has written, with as many keys.

@@ -111,7 +111,8 @@ fn is_name(text: &str) -> bool {
     text.chars().all(char::is_alphabetic)
 }
 
-/// The terms of a sum with their signs; a sign after an exponent's `e` belongs to its number.
+/// The terms of a sum with their signs; a sign after an exponent's `e` belongs to its number, and so does one right before a number that
+/// follows another sign or `*`.
 fn terms(text: &str) -> Vec<(f64, &str)> {
     let bytes = text.as_bytes();
     let in_exponent = |at: usize| {
@@ -120,9 +121,13 @@ fn terms(text: &str) -> Vec<(f64, &str)> {
             before.is_ascii_digit() || before == b'.'
         }
     };
+    let of_number = |at: usize| {
+        let follows = text[..at].trim_end().ends_with(['+', '-', '*']);
+        follows && text[at + 1..].starts_with(|next: char| next.is_ascii_digit() || next == '.')
+    };
     let (mut all, mut sign, mut start) = (Vec::new(), 1.0, 0);
     for (at, byte) in bytes.iter().enumerate() {
-        if !matches!(byte, b'+' | b'-') || in_exponent(at) {
+        if !matches!(byte, b'+' | b'-') || in_exponent(at) || of_number(at) {
             continue;
         }
         // A sign before the first term.
@@ -151,6 +156,8 @@ mod tests {
             ("Y * 1e-3", 0.0, [0.0, 1e-3]),
             ("2 mm + 0.1*X - 5 % * Y", 2.0, [0.1, -0.05]),
             ("1 mm - 0.2 * X + 0.3 * X", 1.0, [-0.2 + 0.3, 0.0]),
+            ("4 mm + -0.1 * Y", 4.0, [0.0, -0.1]),
+            ("-4 mm - -.1*X + Y * -2e-1", -4.0, [0.1, -0.2]),
         ] {
             assert_eq!(
                 parse_linear_length(text),

@@ -15,7 +15,7 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Mesh};
 use crate::results::{Axis, LineChart, Stroke};
-use crate::studies::sections;
+use crate::studies::card::read_card;
 use crate::units::Dimension;
 use inference::{free_edges, modulus};
 use subject::{Data, Disturbance, MIDDLE, PLATE, Subject, first_parameter, unknown_grips};
@@ -49,7 +49,7 @@ struct Settings {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
-    let card = sections::read_card(&root.section("plate"), folder);
+    let card = read_card(&root.section("plate"), folder);
     let law = card.as_ref().and_then(first_parameter);
     let plate = Plate::read(root, folder);
     let settings = section(root, "data", |section| {

@@ -11,6 +11,7 @@ use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 use crate::solve::State;
+use crate::studies::card::read_card;
 use crate::studies::sections;
 use crate::units::Dimension;
 
@@ -50,7 +51,7 @@ impl Plate {
     /// Reads the section; a card given by a path is looked for relative to `folder`.
     pub fn read(root: &Section<'_>, folder: &Path) -> Self {
         let section = root.section("plate");
-        let card = sections::read_card(&section, folder);
+        let card = read_card(&section, folder);
         let (problem, cells) = sections::read_plate(&section, card.as_ref());
         let stretch = sections::read_stretch(&section, "stretch");
         if let Some(card) = card.filter(|_| stretch > 0.0) {

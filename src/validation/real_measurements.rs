@@ -115,7 +115,7 @@ impl Estimated {
         let row = |((frame, markers), found): (&(usize, usize), &FieldEstimate)| {
             let verdict = &found.verdict;
             let reasons: Vec<String> = verdict.reasons.iter().map(|one| one.words()).collect();
-            let mend = verdict.mends.first().filter(|_| !reasons.is_empty());
+            let trial = verdict.trials.first().filter(|_| !reasons.is_empty());
             let length = verdict.correlation.map(|one| number(one.length));
             vec![
                 name.to_owned(),
@@ -125,7 +125,9 @@ impl Estimated {
                 length.unwrap_or_default(),
                 verdict.answer.words().to_owned(),
                 reasons.join("; "),
-                mend.map(|mend| mend.freedom.words()).unwrap_or_default(),
+                trial
+                    .map(|trial| trial.alternative.words())
+                    .unwrap_or_default(),
             ]
         };
         frames.map(row).collect()

@@ -43,7 +43,7 @@ pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {
             continue;
         }
         blocks.push(Block::Heading(2, case.title.clone()));
-        blocks.extend(outcome.warnings.iter().map(Block::paragraph));
+        blocks.extend(outcome.warning_paragraphs());
         blocks.extend(outcome.blocks.iter().cloned());
         let material = outcome.material.iter();
         blocks.extend(material.flat_map(|material| material.blocks.clone()));

@@ -4,7 +4,7 @@ use crate::document::{Statements, name_of};
 use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 
 /// The kinds of test that a sheet can be put to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,7 +169,7 @@ impl TestData {
             }
             _ => {
                 let [first, second] = observation.strains;
-                let kinematics = Kinematics::new(&Gradient::new(first, 0.0, 0.0, second));
+                let kinematics = Kinematics::new(&PlaneTensor::new(first, 0.0, 0.0, second));
                 kinematics.map_or([f64::NAN; 2], |kinematics| {
                     let (energy, stress) = law.stress(&kinematics);
                     [energy, stress[3 * axis]]

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::tests::{SIZE, STRETCH, Truth, law, specimen, with_grips};
 use super::*;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Mesh};
 
 const SEEDS: u64 = 40;
@@ -143,7 +143,7 @@ fn stress_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
         }
         let (at, local) = truth.mesh.locate(place);
         let gradient = truth.mesh.gradient_at(truth.field(), at, local);
-        let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
+        let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
         let exact: [f64; 4] = law().stress(&kinematics).1.into();
         let own = stress.first_piola_kirchhoff_stress.iter();
         for ((exact, own), error) in exact.iter().zip(own).zip(&stress.stress_error) {

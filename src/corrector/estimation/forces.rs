@@ -8,7 +8,7 @@ use super::search::NearestField;
 use super::uncertainty::{MeshError, ScaleChange};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::solve::vector::dot;
 use crate::statistics::Estimate;
 
@@ -154,7 +154,7 @@ impl NearestField<'_> {
     pub(super) fn growth(&self, edges: &[Edge], idle: &[bool]) -> f64 {
         let mesh = self.equations.task.specimen.mesh;
         let energy = |cell: usize, local: [f64; 2]| {
-            let gradient = Gradient::from(mesh.gradient_at(&self.field, cell, local));
+            let gradient = PlaneTensor::from(mesh.gradient_at(&self.field, cell, local));
             Kinematics::new(&gradient)
                 .map_or(0.0, |kinematics| self.equations.law.stress(&kinematics).0)
         };

@@ -105,6 +105,6 @@ impl NearestField<'_> {
     /// Σ w ω r² with the trust ω of another search.
     pub fn misfit(&self, other: &NearestField) -> f64 {
         let weights = &self.observations().weights;
-        weighted_square(&self.fit.residual, weights, &other.trade.trust)
+        weighted_square(&self.fit.residual, weights, &other.variances.trust)
     }
 }

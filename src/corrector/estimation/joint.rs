@@ -34,7 +34,7 @@ use crate::statistics::{normal_reach, student_reach};
 use descent::{Course, Descent};
 use direction::directions;
 use found::Step;
-use frame::{Ground, Judged, Say};
+use frame::{FrameInformation, FrameSetup, Judged};
 
 mod descent;
 mod direction;
@@ -64,7 +64,7 @@ pub fn estimate_jointly(
 ) -> Result<JointEstimate, Error> {
     check_joint_frames(frames)?;
     told("edges of the frames");
-    let grounds: Result<Vec<Ground>, Error> = frames.par_iter().map(Ground::new).collect();
+    let grounds: Result<Vec<FrameSetup>, Error> = frames.par_iter().map(FrameSetup::new).collect();
     let grounds = grounds?;
     let judged: Result<Vec<Judged>, Error> = grounds
         .par_iter()
@@ -103,7 +103,7 @@ fn outcome(
     settings: &JointSettings,
     told: Told,
 ) -> Result<JointEstimate, Error> {
-    let says: Result<Vec<Say>, Error> = descent
+    let says: Result<Vec<FrameInformation>, Error> = descent
         .frames
         .par_iter()
         .zip(&course.states)
@@ -120,7 +120,7 @@ fn outcome(
     }
     let inverse = direction::inverse(&directions, &scales, VAGUE);
     let common = frame::common_noise(&descent.frames, &says);
-    let sum = |value: fn(&Say) -> f64| says.iter().map(value).sum::<f64>();
+    let sum = |value: fn(&FrameInformation) -> f64| says.iter().map(value).sum::<f64>();
     let determined = directions.iter().filter(|one| one.is_determined()).count() as f64;
     let measured = descent.measured();
     let scatter = ForceScatter::new(sum(|say| say.force_misfit), measured - determined);
@@ -160,7 +160,7 @@ fn outcome(
 /// S⁻¹ (Σ Jₖ) S⁻¹, the noise of markers counted as often as it is the same in other frames, and all of it as much larger as forces scatter
 /// more than both noises let them.
 fn covariance(
-    says: &[Say],
+    says: &[FrameInformation],
     inverse: &DMatrix<f64>,
     (common, widening): (f64, f64),
 ) -> DMatrix<f64> {
@@ -173,7 +173,7 @@ fn covariance(
 }
 
 /// What errors that all frames have in common make of each parameter: those of forces, of pictures, and of meshes, as independent ones.
-fn alike(says: &[Say], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
+fn alike(says: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
     let common = [0, 1].map(|kind| {
         let targets = says.iter().map(|say| &say.common[kind]);
         inverse * targets.sum::<Step>()
@@ -185,7 +185,7 @@ fn alike(says: &[Say], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
 }
 
 /// S⁻¹ Σ tₖ of the right-hand sides that the meshes' own errors make, as alike in all frames as their meshes are.
-fn mesh_error(says: &[Say], inverse: &DMatrix<f64>) -> Option<Step> {
+fn mesh_error(says: &[FrameInformation], inverse: &DMatrix<f64>) -> Option<Step> {
     let targets = says.iter().map(|say| say.mesh.as_ref());
     let sum = targets.sum::<Option<Step>>()?;
     Some(inverse * sum)
@@ -201,7 +201,7 @@ fn reach(descent: &Descent, freedom: f64) -> f64 {
 }
 
 /// As how many equal frames they count for the parameters: (Σ s)²/Σ s² of their shares s.
-fn says_that_count(says: &[Say], inverse: &DMatrix<f64>) -> f64 {
+fn says_that_count(says: &[FrameInformation], inverse: &DMatrix<f64>) -> f64 {
     let shares = says.iter().map(|say| say.information.dot(inverse).max(0.0));
     let [sum, square] = shares.fold([0.0; 2], |[sum, square], share| {
         [sum + share, square + share * share]

@@ -1,20 +1,20 @@
 //! The verdict on an estimate: is what is left white, does it correlate as noise does, or is it no noise?
 //!
 //! Noise that correlates is found by restricted likelihood, once with the equations as they are, for the intervals, and once with
-//! every freedom of [`freedoms`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
-//! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
+//! every alternative of [`alternatives`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
+//! data tell which alternative takes more from the misfit than noise would let it (F test, in one linearised step).
 
 use super::equations::Equations;
 use super::given::{Edge, EdgeCondition, Task};
 use super::outcome::{
-    Answer, Contradiction, ForceCheck, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst,
+    Alternative, Answer, Contradiction, ForceCheck, NoiseCorrelation, Reason, Trial, Verdict, Worst,
 };
 use super::search::{NearestField, Scored};
 use super::uncertainty::{MeshError, MovedEdge};
 use crate::error::Error;
 use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
 
-mod freedoms;
+mod alternatives;
 mod linear_model;
 mod rows;
 mod whiteness;
@@ -22,11 +22,11 @@ mod whiteness;
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
 
-/// Probability by noise below which a freedom speaks against the equations. Nine are tried, and smoothness is chosen by the data.
+/// Probability by noise below which an alternative speaks against the equations. Nine are tried, and smoothness is chosen by the data.
 const LEVEL: f64 = 1e-5;
 
-/// A freedom mends something where it leaves less than this share of the misfit.
-const MENDED: f64 = 0.98;
+/// An alternative explains something where it leaves less than this share of the misfit.
+const EXPLAINS: f64 = 0.98;
 
 /// Noise that leaves fewer independent values than this beside the parameters cannot be told from a misfit, and its own length is
 /// too uncertain for intervals to hold: by their coverage, `gelbench validate interval-coverage`.
@@ -58,8 +58,8 @@ pub fn judge(
     let all = let_go(task, found, edges, &|_| true);
     let weights = &found.observations().weights;
     let sound = match &all {
-        Some(all) => soundness(weights, &all.fit, &all.trade),
-        None => soundness(weights, &found.fit, &found.trade),
+        Some(all) => soundness(weights, &all.fit, &all.variances),
+        None => soundness(weights, &found.fit, &found.variances),
     };
     let Some(rows) = Rows::new(found, &sound, own) else {
         return Ok(Judgement {
@@ -70,41 +70,43 @@ pub fn judge(
     let granted = found.granted();
     let base = Model::of_search(&rows, found).with(&rows, &granted);
     let noise = base.noise(&rows);
-    let columns = found.freedoms(own)?;
+    let columns = found.alternatives(own)?;
     let of_score = |scored: &Scored| Model::of_score(&rows, found, scored).with(&rows, &granted);
     let all = all.map(|scored| of_score(&scored));
-    let trials = Trials {
+    let basis = Basis {
         reference: Reference::new(&rows, noise.as_ref(), (&base, all.as_ref()), &columns, own),
         rows: &rows,
         base: &base,
     };
-    let mut mends: Vec<Mend> = columns
+    let mut trials: Vec<Trial> = columns
         .iter()
-        .map(|(freedom, design)| trials.mend(found, freedom.clone(), &base.with(&rows, [design])))
+        .map(|(alternative, design)| {
+            basis.try_out(found, alternative.clone(), &base.with(&rows, [design]))
+        })
         .collect();
     let together = all
         .as_ref()
-        .map(|model| trials.mend(found, Freedom::Edges, model));
+        .map(|model| basis.try_out(found, Alternative::Edges, model));
     let correlation = noise.as_ref().map(|noise| rows.correlation(noise));
-    let reasons = reasons(mends.iter().chain(&together), correlation, found);
+    let reasons = reasons(trials.iter().chain(&together), correlation, found);
     let mut contradiction = None;
     if !reasons.is_empty() {
         let alone = |name: &str| {
             let scored = let_go(task, found, edges, &|other| other == name)?;
             let model = Model::of_score(&rows, found, &scored).with(&rows, &granted);
-            Some(trials.mend(found, Freedom::Edge(name.to_owned()), &model))
+            Some(basis.try_out(found, Alternative::Edge(name.to_owned()), &model))
         };
-        let each: Vec<Mend> = said(edges).into_iter().filter_map(alone).collect();
+        let each: Vec<Trial> = said(edges).into_iter().filter_map(alone).collect();
         contradiction = contradicted(together.as_ref(), &each);
-        mends.extend(together.filter(|_| each.len() > 1));
-        mends.extend(each);
+        trials.extend(together.filter(|_| each.len() > 1));
+        trials.extend(each);
         let moved = found.moved_edges(edges)?.into_iter();
-        mends.extend(moved.filter_map(|edge| trials.moved(found, edge)));
+        trials.extend(moved.filter_map(|edge| basis.moved(found, edge)));
     }
-    // What hardly moves the misfit mends nothing.
+    // What hardly moves the misfit explains nothing.
     let left = base.plain_left(&rows, found);
-    mends.retain(|mend| mend.left < MENDED * left);
-    mends.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    trials.retain(|trial| trial.left < EXPLAINS * left);
+    trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let answer = match (reasons.is_empty(), noise) {
         (false, _) => Answer::NotExplained,
         (true, Some(_)) => Answer::Correlated,
@@ -115,7 +117,7 @@ pub fn judge(
         correlation,
         worst: (!reasons.is_empty()).then(|| rows.worst(found)),
         reasons,
-        mends,
+        trials,
     };
     Ok(Judgement {
         sound,
@@ -125,40 +127,40 @@ pub fn judge(
     })
 }
 
-/// What freedoms are tried on.
-struct Trials<'a> {
+/// What alternatives are tried on.
+struct Basis<'a> {
     rows: &'a Rows,
     base: &'a Model,
     reference: Reference,
 }
 
-impl Trials<'_> {
-    fn mend(&self, found: &NearestField, freedom: Freedom, model: &Model) -> Mend {
-        Mend {
+impl Basis<'_> {
+    fn try_out(&self, found: &NearestField, alternative: Alternative, model: &Model) -> Trial {
+        Trial {
             left: model.plain_left(self.rows, found),
-            ..self.reference.test(freedom, self.base, model)
+            ..self.reference.test(alternative, self.base, model)
         }
     }
 
-    /// What an edge that lies elsewhere mends, and how far; `None` where the data do not say.
-    fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Mend> {
+    /// What an edge that lies elsewhere explains, and how far; `None` where the data do not say.
+    fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
         let model = self.base.with(self.rows, [&design]);
-        Some(self.mend(found, Freedom::MovedEdge { edge, outwards }, &model))
+        Some(self.try_out(found, Alternative::MovedEdge { edge, outwards }, &model))
     }
 }
 
 /// Why the data are not explained, if they are not.
 fn reasons<'a>(
-    mends: impl Iterator<Item = &'a Mend>,
+    trials: impl Iterator<Item = &'a Trial>,
     correlation: Option<NoiseCorrelation>,
     found: &NearestField,
 ) -> Vec<Reason> {
-    let probability = mends.map(|mend| mend.probability).fold(1.0, f64::min);
-    let freedom = (probability < LEVEL).then_some(Reason::Freedom(probability));
+    let probability = trials.map(|trial| trial.probability).fold(1.0, f64::min);
+    let alternative = (probability < LEVEL).then_some(Reason::Alternative(probability));
     let long = correlation.filter(|one| 2.0 * one.independent - found.fit.effective < INDEPENDENT);
     let long = long.map(|one| Reason::Long(one.length));
-    freedom.into_iter().chain(long).collect()
+    alternative.into_iter().chain(long).collect()
 }
 
 /// The names of the edges of which something is said, but that they moved in an unknown way.
@@ -195,15 +197,15 @@ fn let_go(
     search.score(found).ok()
 }
 
-fn contradicted(together: Option<&Mend>, each: &[Mend]) -> Option<Contradiction> {
-    let probability = together.map_or(1.0, |mend| mend.probability);
-    let named = |mend: &Mend| match &mend.freedom {
-        Freedom::Edge(name) => Some((name.clone(), mend.probability)),
+fn contradicted(together: Option<&Trial>, each: &[Trial]) -> Option<Contradiction> {
+    let probability = together.map_or(1.0, |trial| trial.probability);
+    let named = |trial: &Trial| match &trial.alternative {
+        Alternative::Edge(name) => Some((name.clone(), trial.probability)),
         _ => None,
     };
     let mut edges: Vec<(String, f64)> = each
         .iter()
-        .filter(|mend| mend.probability < LEVEL)
+        .filter(|trial| trial.probability < LEVEL)
         .filter_map(named)
         .collect();
     edges.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
@@ -220,13 +222,13 @@ impl Verdict {
             self.reasons.push(Reason::Force(worst.standardised.abs()));
             let factor = worst.measured.force / worst.found;
             if factor > 0.0 && factor.is_finite() {
-                self.mends.push(Mend {
-                    freedom: Freedom::Factor(factor),
+                self.trials.push(Trial {
+                    alternative: Alternative::Factor(factor),
                     left: f64::NAN,
                     probability: normal_tail(worst.standardised),
                     gain: worst.standardised.powi(2) - 2.0,
                 });
-                self.mends.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+                self.trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
             }
         }
         self

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::given::{Edge, Observations};
 use super::judge::Judgement;
 use super::outcome::MarkerEstimate;
-use super::regression::{MarkerRows, Trade};
+use super::regression::{MarkerRows, VarianceComponents};
 use super::search::NearestField;
 use crate::error::Error;
 use crate::statistics::{Sites, Unevenness, extremes, robust_deviation};
@@ -150,7 +150,7 @@ impl NearestField<'_> {
             return None;
         }
         let sure = SURE * ERROR / (lengths.len() as f64).sqrt();
-        let ratio = self.trade.sound.sqrt() * robust_deviation(lengths);
+        let ratio = self.variances.sound.sqrt() * robust_deviation(lengths);
         (other || ratio.ln().abs() > OFF.ln().max(sure)).then_some(ratio)
     }
 
@@ -160,7 +160,7 @@ impl NearestField<'_> {
         let observations = self.observations();
         let along = |axis: usize| {
             let weights = observations.weights.iter().skip(axis).step_by(2);
-            extremes(weights.map(|weight| (larger * self.trade.sound / weight).sqrt()))
+            extremes(weights.map(|weight| (larger * self.variances.sound / weight).sqrt()))
         };
         (observations.reweighted > 0).then(|| [0, 1].map(along))
     }
@@ -168,7 +168,7 @@ impl NearestField<'_> {
     /// The noise's standard deviation of a marker of mean weight in mm, as if it were white.
     pub(super) fn deviation(&self) -> f64 {
         let weights = &self.observations().weights;
-        (self.trade.sound * weights.len() as f64 / weights.iter().sum::<f64>()).sqrt()
+        (self.variances.sound * weights.len() as f64 / weights.iter().sum::<f64>()).sqrt()
     }
 
     /// The slope of what holds the parameters, which at the best fit is that of the data: −AᵀWr/v.
@@ -176,10 +176,10 @@ impl NearestField<'_> {
         &self,
         design: &DMatrix<f64>,
         residual: &DVector<f64>,
-        trade: &Trade,
+        variances: &VarianceComponents,
     ) -> DVector<f64> {
         let weights = &self.observations().weights;
-        let weight = |row: usize| trade.weight(weights, row) / trade.variance;
+        let weight = |row: usize| variances.weight(weights, row) / variances.variance;
         let pull = DVector::from_fn(residual.len(), |row, _| -weight(row) * residual[row]);
         design.tr_mul(&pull)
     }
@@ -202,7 +202,7 @@ impl NearestField<'_> {
         let rows = MarkerRows {
             design: &self.linear.design,
             weights: &observations.weights,
-            trade: &self.trade,
+            variances: &self.variances,
         };
         let middle = rows.spread(&noise, &sites) + &self.fit.held;
         let independent = noise.correlation.independent(sites.places());

@@ -5,6 +5,7 @@ mod verdict;
 
 pub use field_estimate::{
     Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, FoundParameter,
-    MarkerEstimate, Smoothing, StressEstimate, TRADE, TRADE_WEIGHTED, VariogramBin, Whiteness,
+    MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing, StressEstimate, VariogramBin,
+    Whiteness,
 };
-pub use verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst};
+pub use verdict::{Alternative, Answer, NoiseCorrelation, Reason, Trial, Verdict, Worst};

@@ -6,7 +6,7 @@ mod robust;
 
 pub use marker_rows::MarkerRows;
 pub use penalised::{
-    Fit, Form, NormalEquations, Regression, Roughness, Trade, Undetermined, squares,
+    Fit, Form, NormalEquations, Regression, Roughness, Undetermined, VarianceComponents, squares,
     weighted_square,
 };
 pub use robust::Robust;

@@ -7,15 +7,15 @@ use super::equations::{Equations, Neighbours, solve};
 use super::given::Edge;
 use super::judge::Judgement;
 use super::outcome::{
-    Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE,
-    TRADE_WEIGHTED,
+    Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing,
+    StressEstimate,
 };
 use super::regression::Robust;
 use super::search::NearestField;
 use super::uncertainty::MeshError;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::Recovery;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::statistics::{chi_squared_limit, normal_reach, student_reach};
 
 /// Share of sound markers that are taken for outliers.
@@ -49,15 +49,15 @@ impl NearestField<'_> {
             contradiction: judged.contradiction,
             whiteness,
             markers,
-            noise: (larger * self.trade.sound / mean).sqrt(),
+            noise: (larger * self.variances.sound / mean).sqrt(),
             noise_range: self.deviations(larger).filter(|_| is_noise),
             robust,
             known_noise,
             effective_parameters: self.fit.effective,
             smoothing: self.smoothing(),
             rule: match self.equations.body {
-                Some(_) => TRADE_WEIGHTED.into(),
-                None => TRADE.into(),
+                Some(_) => RULE_WITH_MODEL_ERROR.into(),
+                None => RULE.into(),
             },
             interior_forces: self.equations.forces.clone(),
             edges: edges.iter().zip(&idle).map(outcome).collect(),
@@ -114,7 +114,7 @@ impl NearestField<'_> {
 
     fn smoothing(&self) -> Vec<Smoothing> {
         let priors = self.equations.priors(&self.parameters).into_iter();
-        let priors = priors.zip(&self.trade.smoothing).zip(&self.fit.freedom);
+        let priors = priors.zip(&self.variances.smoothing).zip(&self.fit.freedom);
         priors
             .map(|((prior, weight), freedom)| Smoothing {
                 edge: prior.edge,
@@ -170,10 +170,10 @@ impl NearestField<'_> {
         let centre = mesh.shape(cell).centre();
         let (gradients, _) = mesh.gradients(cell, centre);
         let gradient = |field: &[f64]| {
-            let mut h = Gradient::zeros();
+            let mut h = PlaneTensor::zeros();
             for (node, g) in mesh.cell(cell).iter().zip(&gradients) {
                 let [x, y] = [field[2 * node], field[2 * node + 1]];
-                h += Gradient::new(x * g[0], x * g[1], y * g[0], y * g[1]);
+                h += PlaneTensor::new(x * g[0], x * g[1], y * g[0], y * g[1]);
             }
             h
         };
@@ -201,7 +201,7 @@ impl NearestField<'_> {
         let stress = response.first_piola_kirchhoff_stress;
         // Where the better gradient turns the cell inside out, all of the stress is in doubt.
         let (stress_off, thickness_off) =
-            Kinematics::new(&Gradient::from(better)).map_or((stress, thickness), |better| {
+            Kinematics::new(&PlaneTensor::from(better)).map_or((stress, thickness), |better| {
                 let thinner = specimen.thickness * law.thickness_stretch(&better) - thickness;
                 (law.stress(&better).1 - stress, thinner)
             });
@@ -232,9 +232,9 @@ impl NearestField<'_> {
         let residual = Vector2::new(left[2 * index], left[2 * index + 1]);
         let rows = self.linear.design.rows(2 * index, 2);
         let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
-        let trust = self.trade.trust[index];
+        let trust = self.variances.trust[index];
         let weights = &self.observations().weights;
-        let own = Vector2::from_fn(|axis, _| self.trade.sound / weights[2 * index + axis]);
+        let own = Vector2::from_fn(|axis, _| self.variances.sound / weights[2 * index + axis]);
         let covariance =
             Matrix2::from_diagonal(&own) + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
         let solved = covariance

@@ -4,17 +4,17 @@ use nalgebra::DMatrix;
 
 use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, Place, solve};
 use super::given::Observations;
-use super::regression::{Fit, Regression, Trade, Undetermined};
+use super::regression::{Fit, Regression, Undetermined, VarianceComponents};
 use crate::error::{Error, SolveFault};
 use crate::solve::vector::largest;
 
 /// Steps allowed.
 pub const MOST_STEPS: usize = 40;
 
-/// Steps after which the trade stays as it is: two of equal likelihood could take turns.
-pub const TRADING: usize = 6;
+/// Steps after which the variances stay as they are: two of equal likelihood could take turns.
+pub const VARIANCE_STEPS: usize = 6;
 
-/// Length of a step in standard errors that does not matter, where a trade that stays lets it become no shorter soon.
+/// Length of a step in standard errors that does not matter, where variances that stay let it become no shorter soon.
 const NEAR: f64 = 0.03;
 
 /// The shortest share of a step.
@@ -30,7 +30,7 @@ pub struct NearestField<'a> {
     pub residual: Vec<f64>,
     pub linear: Linear,
     pub fit: Fit,
-    pub trade: Trade,
+    pub variances: VarianceComponents,
     /// p.
     pub parameters: Vec<f64>,
     /// ζ of node after node.
@@ -42,7 +42,7 @@ pub struct NearestField<'a> {
 pub struct Scored {
     pub linear: Linear,
     pub fit: Fit,
-    pub trade: Trade,
+    pub variances: VarianceComponents,
 }
 
 impl<'a> Equations<'a> {
@@ -52,43 +52,43 @@ impl<'a> Equations<'a> {
     /// [`Error::Input`] when the data do not determine it, [`Error::Solve`] when `most` steps do not reach it.
     pub fn run(mut self, most: usize) -> Result<NearestField<'a>, Error> {
         let (place, trust) = self.start()?;
-        let trade = Trade {
+        let variances = VarianceComponents {
             smoothing: Vec::new(),
             trust,
             variance: self.first_variance(&place.field),
             sound: 1.0,
         };
-        self.run_from((place, trade), TRADING, most)
+        self.run_from((place, variances), VARIANCE_STEPS, most)
     }
 
-    /// The same from a place, with a trade that the data change in so many first steps.
+    /// The same from a place, with variances that the data change in so many first steps.
     ///
     /// # Errors
     /// As [`Self::run`].
     pub fn run_from(
         mut self,
-        (mut place, mut trade): (Place, Trade),
-        trading: usize,
+        (mut place, mut variances): (Place, VarianceComponents),
+        adjusting: usize,
         most: usize,
     ) -> Result<NearestField<'a>, Error> {
         let (mut last, mut share) = (f64::INFINITY, 1.0);
         let (mut moved, mut wanted) = (f64::NAN, f64::NAN);
         for steps in 1..=most {
             let linear = self.linearise(&place)?;
-            let fit = self.regress((&place, steps > trading), &linear, &mut trade)?;
+            let fit = self.regress((&place, steps > adjusting), &linear, &mut variances)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
-            let close = self.close(&trade, &place.field);
+            let close = self.close(&variances, &place.field);
             let scale = largest(&place.field);
             (moved, wanted) = (largest(&change) / scale, close / scale);
-            if steps > trading {
+            if steps > adjusting {
                 share = next_share(share, fit.length / last);
             }
             last = fit.length;
             let near = fit.length <= NEAR && largest(&linear.still) <= close;
-            let done = largest(&change) <= close || (steps > trading && near);
+            let done = largest(&change) <= close || (steps > adjusting && near);
             let cut = self.advance(&mut place, &change, fit.step.as_slice(), share)?;
             if done && !cut {
-                let multipliers = self.multipliers(&fit, &trade)?;
+                let multipliers = self.multipliers(&fit, &variances)?;
                 let residual = self.settle(&mut place, AT_THE_END)?;
                 return Ok(NearestField {
                     field: place.field,
@@ -97,7 +97,7 @@ impl<'a> Equations<'a> {
                     residual,
                     linear,
                     fit,
-                    trade,
+                    variances,
                     steps,
                     equations: self,
                 });
@@ -123,17 +123,21 @@ impl<'a> Equations<'a> {
             field: found.field.clone(),
         };
         self.settle(&mut place, ON_THE_WAY)?;
-        let mut trade = Trade {
+        let mut variances = VarianceComponents {
             smoothing: Vec::new(),
-            ..found.trade.clone()
+            ..found.variances.clone()
         };
         let linear = self.linearise(&place)?;
-        let fit = self.regress((&place, false), &linear, &mut trade)?;
-        Ok(Scored { linear, fit, trade })
+        let fit = self.regress((&place, false), &linear, &mut variances)?;
+        Ok(Scored {
+            linear,
+            fit,
+            variances,
+        })
     }
 
     /// The largest move that does not matter, in mm.
-    fn close(&self, trade: &Trade, field: &[f64]) -> f64 {
+    fn close(&self, variances: &VarianceComponents, field: &[f64]) -> f64 {
         let Observations {
             weights,
             known_noise,
@@ -142,7 +146,11 @@ impl<'a> Equations<'a> {
         let most = weights
             .iter()
             .fold(0.0, |most: f64, weight| most.max(*weight));
-        let variance = if *known_noise { 1.0 } else { trade.variance };
+        let variance = if *known_noise {
+            1.0
+        } else {
+            variances.variance
+        };
         (MOVEMENT * (variance / most).sqrt()).max(1e-9 * largest(field))
     }
 
@@ -150,10 +158,11 @@ impl<'a> Equations<'a> {
         &self,
         (place, settled): (&Place, bool),
         linear: &Linear,
-        trade: &mut Trade,
+        variances: &mut VarianceComponents,
     ) -> Result<Fit, Error> {
-        let fitted =
-            self.with_regression((place, settled), linear, |regression| regression.fit(trade));
+        let fitted = self.with_regression((place, settled), linear, |regression| {
+            regression.fit(variances)
+        });
         fitted.map_err(|Undetermined| {
             Error::input(
                 "the data do not determine how the edges moved, or the parameters of the law",
@@ -178,7 +187,7 @@ impl<'a> Equations<'a> {
             residual: &residual,
             weights: &self.task.observations.weights,
             known_noise: self.task.observations.known_noise,
-            facts: (&linear.facts.0, &linear.facts.1),
+            force_rows: (&linear.force_rows.0, &linear.force_rows.1),
             priors: &priors,
             robust: self.task.knowledge.robust,
             settled,
@@ -186,10 +195,14 @@ impl<'a> Equations<'a> {
     }
 
     /// K⁻¹ Hᵀ W (d − H u) by the last tangent, with weights relative to their mean.
-    fn multipliers(&mut self, fit: &Fit, trade: &Trade) -> Result<Vec<f64>, Error> {
+    fn multipliers(
+        &mut self,
+        fit: &Fit,
+        variances: &VarianceComponents,
+    ) -> Result<Vec<f64>, Error> {
         let Observations { weights, .. } = self.task.observations;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let weight = |row: usize| trade.weight(weights, row) / mean;
+        let weight = |row: usize| variances.weight(weights, row) / mean;
         let residual = fit.residual.iter().enumerate();
         let pull: Vec<f64> = residual.map(|(row, r)| -weight(row) * r).collect();
         let force = self

@@ -16,7 +16,7 @@ use super::equations::{approach, solve};
 use super::given::{Edge, EdgeCondition, Knowledge, Segment, Specimen, parts};
 use super::outcome::{EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate};
 use crate::error::{Error, SolveFault};
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
 use crate::problem::RigidMotion;
 use crate::problem::sheet_energy::SheetEnergy;
@@ -201,7 +201,7 @@ fn equilibrium(
 fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstimate, Error> {
     let mesh = specimen.mesh;
     let gradient = mesh.gradient_at(field, cell, mesh.shape(cell).centre());
-    let kinematics = Kinematics::new(&Gradient::from(gradient)).map_err(|_| {
+    let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).map_err(|_| {
         solve(SolveFault::Inverted {
             element: mesh.describe_cell(cell),
         })

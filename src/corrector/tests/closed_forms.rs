@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::corrector::climb::{Climb, ClimbSettings};
 use crate::finite_element::{Element, FiniteElements};
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{CellShape, Shape};
 use crate::problem::{BoundaryProblem, Drive, Load, Measures, Support};
@@ -136,7 +136,7 @@ fn the_corner_scheme_takes_one_sided_differences() {
             let (right, left, top, bottom) = (at(3.0, y), at(0.0, y), at(x, 2.0), at(x, 0.0));
             let by_x = [0, 1].map(|i| (right[i] - left[i]) / 3.0);
             let by_y = [0, 1].map(|i| (top[i] - bottom[i]) / 2.0);
-            let h = Gradient::new(by_x[0], by_y[0], by_x[1], by_y[1]);
+            let h = PlaneTensor::new(by_x[0], by_y[0], by_x[1], by_y[1]);
             let kinematics = Kinematics::new(&h).unwrap();
             expected += 3.0 * problem.law.stress(&kinematics).0;
         }

@@ -295,7 +295,7 @@ fn the_incompressible_limit_is_the_law_that_keeps_its_volume() {
         ] {
             let [near, nearer, exact] =
                 [&near, &nearer, &exact].map(|law| stress(&**law, &gradient(h)));
-            let off = |found: &Gradient| (found - exact).norm() / exact.norm();
+            let off = |found: &PlaneTensor| (found - exact).norm() / exact.norm();
             let own = 1.0 - 2.0 * 0.4999;
             assert!(
                 off(&nearer) < 2.5 * own,

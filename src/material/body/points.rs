@@ -7,7 +7,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::{BodyLaw, BodySheet, BodyStretches};
 use crate::material::law::{LANES, store};
 use crate::material::measures::{Derivatives, Measures};
-use crate::material::sheet::{COMPONENTS, Gradient, Kinematics};
+use crate::material::sheet::{COMPONENTS, Kinematics, PlaneTensor};
 
 impl<L: BodyLaw> BodySheet<L> {
     /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
@@ -62,7 +62,7 @@ impl<S: Copy> Lanes<S> {
         let mut inverted = 0_u64;
         let [h11, h12, h21, h22] = &gradients;
         for lane in 0..LANES {
-            let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+            let h = PlaneTensor::new(h11[lane], h12[lane], h21[lane], h22[lane]);
             let kinematics = Kinematics::unchecked(&h);
             inverted |= u64::from(!kinematics.is_admissible());
             area_change[lane] = kinematics.area_change;
@@ -89,7 +89,7 @@ impl<S: Copy> Lanes<S> {
         lane: usize,
     ) -> (Measures, Derivatives) {
         let [h11, h12, h21, h22] = &self.gradients;
-        let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+        let h = PlaneTensor::new(h11[lane], h12[lane], h21[lane], h22[lane]);
         let kinematics = Kinematics::unchecked(&h);
         let measures = Measures::new(&kinematics);
         let w = sheet.law.evaluate(BodyStretches {

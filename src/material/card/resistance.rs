@@ -4,9 +4,13 @@ use std::sync::Arc;
 
 use super::Card;
 use crate::document::{Bound, Section};
+use crate::material::curve::Mode;
 use crate::material::sheet::PlaneState;
 use crate::material::volume::{POISSON_RATIO, Volume, VolumeEnergy, bulk_modulus};
 use crate::units::Dimension;
+
+/// Stretches at which tension is compared.
+const POINTS: u32 = 100;
 
 /// The law of gels in contact with their solvent.
 const SWELLING: &str = "flory-rehner";
@@ -44,7 +48,10 @@ impl Card {
         };
         let own = self.law.bulk_modulus().is_some();
         match Arc::clone(&self.law).with_volume(volume) {
-            Some(law) => (self.law, self.volume) = (law, Some(volume)),
+            Some(law) => {
+                let isochoric = std::mem::replace(&mut self.law, law);
+                (self.isochoric, self.volume) = (Some(isochoric), Some(volume));
+            }
             None if own => section.fault(
                 bulk,
                 &format!("the law `{}` has a change of volume of its own", self.law_name),
@@ -62,6 +69,39 @@ impl Card {
     pub fn bulk_modulus(&self) -> Option<f64> {
         let stated = self.volume.map(|volume| volume.bulk_modulus);
         stated.or_else(|| self.law.bulk_modulus())
+    }
+
+    /// The initial Young's modulus in MPa, in plane strain too: E = 9 κ μ/(3 κ + μ); along the first axis where there are fibres.
+    pub fn youngs_modulus(&self) -> f64 {
+        match (self.law.plane_state(), self.law.bulk_modulus()) {
+            (PlaneState::Strain, Some(bulk)) => {
+                let shear = self.law.shear_modulus();
+                9.0 * bulk * shear / (3.0 * bulk + shear)
+            }
+            _ => self.law.youngs_modulus(),
+        }
+    }
+
+    /// What the card's `[volume]` makes of uniaxial tension: where over the range of the card the nominal stress differs most from that
+    /// of the same parameters at constant volume, as a stretch, and by what share of it. `None` without a `[volume]`.
+    ///
+    /// Parameters, and curves, are mostly those of tests that were read as if they kept their volume.
+    pub fn tension_by_volume(&self) -> Option<[f64; 2]> {
+        let isochoric = self.isochoric.as_ref()?;
+        let volume = Volume {
+            plane: PlaneState::Stress,
+            ..self.volume?
+        };
+        let with_volume = Arc::clone(isochoric).with_volume(volume)?;
+        let [low, high] = self.stretch_range;
+        let stretches = (0..=POINTS).map(|i| low + (high - low) * f64::from(i) / f64::from(POINTS));
+        let changes = stretches.filter_map(|stretch| {
+            let [own, kept] = [&with_volume, isochoric]
+                .map(|law| Mode::Uniaxial.nominal_stress(&**law, stretch - 1.0));
+            let change = own / kept - 1.0;
+            change.is_finite().then_some([stretch, change])
+        });
+        changes.max_by(|a, b| a[1].abs().total_cmp(&b[1].abs()))
     }
 
     /// What the sheet is in words: `an incompressible material in plane stress`.

@@ -14,7 +14,7 @@ use crate::material::parameters::{Parameters, StrainMeasure, StressMeasure};
 /// | `extrapolation` | | `"linear"`, `"none"` | beyond the last point: straight on, or no energy at all |
 ///
 /// The points are turned into nominal stress P over x = λ − 1. A stress of the first point at rest is
-/// subtracted from all (`offset = "subtract"`); where the table begins above rest, rest is added with P = 0.
+/// subtracted from all in the measure of the card (`offset = "subtract"`); where the table begins above rest, rest is added with P = 0.
 /// P and dP/dx are continuous; the slopes at the points are those of Fritsch and Butland, so that the curve
 /// has no overshoot.
 ///
@@ -66,8 +66,13 @@ struct Knot {
 impl TableCurve {
     /// Reads the table of a card.
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        let mut points = parameters.curve();
+        // In its own measure, as of a formula.
+        if let Some(&[_, at_rest]) = points.first().filter(|[strain, _]| *strain == 0.0) {
+            points.iter_mut().for_each(|point| point[1] -= at_rest);
+        }
         let points = nominal_points(
-            &parameters.curve(),
+            &points,
             parameters.stress_measure,
             parameters.strain_measure,
         );

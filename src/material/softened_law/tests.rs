@@ -119,7 +119,7 @@ fn stress_and_tangent_are_derivatives_of_the_energy() {
     for virgin in laws.chain(of_bodies).chain(plane_strain) {
         for (softening, share) in softenings().into_iter().zip([0.97, 0.7, 0.9]) {
             let h = [0.3, 0.08, -0.05, 0.12];
-            let at = |h: [f64; 4]| Kinematics::new(&Gradient::from(h)).unwrap();
+            let at = |h: [f64; 4]| Kinematics::new(&PlaneTensor::from(h)).unwrap();
             let (energy, _) = virgin.stress(&at(h));
             let law = SoftenedLaw {
                 virgin: Arc::clone(&virgin),
@@ -168,7 +168,7 @@ fn softening_is_objective_and_ends_where_it_should() {
     };
     let f = nalgebra::Matrix2::new(1.4, 0.2, -0.1, 0.9);
     let state = |f: nalgebra::Matrix2<f64>| {
-        Kinematics::new(&Gradient::new(f.m11 - 1.0, f.m12, f.m21, f.m22 - 1.0)).unwrap()
+        Kinematics::new(&PlaneTensor::new(f.m11 - 1.0, f.m12, f.m21, f.m22 - 1.0)).unwrap()
     };
     let turn = nalgebra::Rotation2::new(0.6).into_inner();
     let softened = law(2.0, 0.1);

@@ -7,6 +7,8 @@
 //! # References
 //! S. A. Maas et al., FEBio User's Manual 4.x; `FEBioMech` in <https://github.com/febiosoftware/FEBio>
 
+use std::collections::BTreeSet;
+
 use super::model::{Constraint, Model};
 use super::text::{ascii, number};
 use crate::material::CodeLaw;
@@ -145,13 +147,10 @@ fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
     for (name, nodes) in &model.sets {
         file.text("NodeSet", &[("name", name)], &list(columns.all(nodes)));
     }
-    for held in turned(model) {
-        for node in &model.sets[held.set].1 {
-            let name = turned_set(*node);
-            if held.axis == 0 {
-                file.text("NodeSet", &[("name", &name)], &list(columns.all(&[*node])));
-            }
-        }
+    let nodes = turned(model).flat_map(|held| &model.sets[held.set].1);
+    for node in nodes.collect::<BTreeSet<_>>() {
+        let name = turned_set(*node);
+        file.text("NodeSet", &[("name", &name)], &list(columns.all(&[*node])));
     }
     for (number, (node, share, _)) in node_forces(model, columns).into_iter().enumerate() {
         let name = force_set(number);

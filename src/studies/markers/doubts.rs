@@ -9,7 +9,7 @@ use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::results::{Stretches, small_strain};
+use crate::results::{BESIDE_CORNERS, Stretches, small_strain};
 use crate::statistics::{Estimate, median, small_probability};
 
 impl MarkerStudy {
@@ -120,9 +120,6 @@ impl MarkerStudy {
 /// Noise over the specimen's smaller extent, and over the median of all frames, beyond which a frame is no measurement.
 const NO_MEASUREMENT: f64 = 0.03;
 const NOISIER: f64 = 20.0;
-
-/// The share of the area that may lie beyond the range of the card: beside a clamped corner stretches have no bound.
-const BESIDE_CORNERS: f64 = 0.01;
 
 /// What helps where the card is left.
 const EXTRAPOLATED: &str = "stresses and forces there are an extrapolation that no interval holds: take a card of tests up to these \
@@ -253,11 +250,11 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
     let verdict = &estimate.verdict;
     (verdict.answer == Answer::NotExplained).then(|| {
         let reasons: Vec<String> = verdict.reasons.iter().map(|reason| reason.words()).collect();
-        let mend = verdict.mends.first();
-        let mend = mend.map_or(String::new(), |mend| {
-            format!("; most would be mended by {}", mend.freedom.words())
+        let trial = verdict.trials.first();
+        let trial = trial.map_or(String::new(), |trial| {
+            format!("; most would be mended by {}", trial.alternative.words())
         });
-        let message = format!("{}: {}{mend}", verdict.answer.words(), reasons.join("; "));
+        let message = format!("{}: {}{trial}", verdict.answer.words(), reasons.join("; "));
         (
             message,
             "no interval holds here; the report ranks what would mend it, and residuals.png and misfit.png show where it is worst",

@@ -6,7 +6,7 @@ use crate::corrector::estimation::MeasuredForce;
 use crate::error::{Diagnostic, Error};
 use crate::markers::Frame;
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
 
 /// Components of the mean stress that are smaller than this part of the largest say nothing.
@@ -72,7 +72,7 @@ fn expected_sign(
 }
 
 /// The displacement gradient of the linear field that is nearest to the markers.
-fn mean_gradient(frame: &Frame) -> Option<Gradient> {
+fn mean_gradient(frame: &Frame) -> Option<PlaneTensor> {
     let mut normal = Matrix3::zeros();
     let mut sides = [Vector3::zeros(); 2];
     for marker in &frame.markers {
@@ -84,5 +84,5 @@ fn mean_gradient(frame: &Frame) -> Option<Gradient> {
     }
     let inverse = normal.try_inverse()?;
     let [u, v] = sides.map(|side| inverse * side);
-    Some(Gradient::new(u[1], u[2], v[1], v[2]))
+    Some(PlaneTensor::new(u[1], u[2], v[1], v[2]))
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::quantities::{nominal, nominal_stress, residuals};
 use crate::corrector::estimation::FieldEstimate;
+use crate::document::write_records;
 use crate::markers::Frame;
 use crate::results::cell_states;
 use crate::studies::markers::MarkerStudy;
@@ -103,35 +104,28 @@ pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
 
 /// The forces on the edges in all frames.
 pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
-    let mut text = String::from("frame,edge");
-    for axis in ["x", "y"] {
-        let _ = write!(
-            text,
-            ",force_{axis}_N,force_{axis}_standard_error_N,force_{axis}_low_N,force_{axis}_high_N"
-        );
-    }
-    text += ",verdict\n";
+    let of_axis = |axis: &str| {
+        ["", "_standard_error", "_low", "_high"].map(|of| format!("force_{axis}{of}_N"))
+    };
+    let mut head = vec!["frame".to_owned(), "edge".to_owned()];
+    head.extend(["x", "y"].iter().flat_map(|axis| of_axis(axis)));
+    head.push("verdict".to_owned());
+    let mut records = vec![head];
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
+        let explained = |value: f64| match estimate.is_explained() {
+            true => format!("{value:.9e}"),
+            false => String::new(),
+        };
         for force in &estimate.forces {
-            let values = force.force.iter().flat_map(|force| {
-                [
-                    force.value,
-                    force.standard_error,
-                    force.interval[0],
-                    force.interval[1],
-                ]
-            });
-            let known = |index: usize| index.is_multiple_of(4) || estimate.is_explained();
-            let values = values.enumerate().map(|(index, value)| match known(index) {
-                true => format!("{value:.9e}"),
-                false => String::new(),
-            });
-            let values: Vec<String> = values.collect();
-            let edge = force.edge.replace(',', ";");
-            let verdict = estimate.verdict.answer.words().replace(',', ";");
-            let values = values.join(",");
-            let _ = writeln!(text, "{},{edge},{values},{verdict}", frame.number);
+            let mut record = vec![frame.number.to_string(), force.edge.clone()];
+            for force in &force.force {
+                record.push(format!("{:.9e}", force.value));
+                let [low, high] = force.interval;
+                record.extend([force.standard_error, low, high].map(explained));
+            }
+            record.push(estimate.verdict.answer.words().to_owned());
+            records.push(record);
         }
     }
-    text
+    write_records(records)
 }

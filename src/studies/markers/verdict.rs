@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::MarkerStudy;
-use crate::corrector::estimation::{Answer, FieldEstimate, Mend, Verdict};
+use crate::corrector::estimation::{Answer, FieldEstimate, Trial, Verdict};
 use crate::results::Block;
 use crate::statistics::extremes;
 
@@ -54,7 +54,7 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
             let ([x, y], [ux, uy]) = (worst.place, worst.misfit);
             format!("worst near ({x:.4}, {y:.4}) mm: markers there lie ({ux:.5}, {uy:.5}) mm off\n")
         });
-        if found.verdict.mends.is_empty() {
+        if found.verdict.trials.is_empty() {
             text += match found.holds_mesh_error {
                 true => "no edge, force, stiffness, law or finer mesh that was tried mends it\n",
                 false => {
@@ -64,8 +64,8 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         }
         text +=
             &finer_mesh(field, &found.verdict).map_or(String::new(), |told| format!("{told}\n"));
-        for mend in found.verdict.mends.iter().take(TOLD) {
-            text += &format!("one linearised step with {}\n", words(mend));
+        for trial in found.verdict.trials.iter().take(TOLD) {
+            text += &format!("one linearised step with {}\n", words(trial));
         }
     }
     text
@@ -110,14 +110,14 @@ fn reasons(verdict: &Verdict) -> String {
     words.join("; ")
 }
 
-fn words(mend: &Mend) -> String {
-    match mend.left.is_finite() {
+fn words(trial: &Trial) -> String {
+    match trial.left.is_finite() {
         true => format!(
             "{}: {:.5} mm would be left",
-            mend.freedom.words(),
-            mend.left
+            trial.alternative.words(),
+            trial.left
         ),
-        false => mend.freedom.words(),
+        false => trial.alternative.words(),
     }
 }
 
@@ -167,15 +167,15 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
              that noise alone would make the misfit fall so much.",
             frame.number
         )));
-        let rows = found.verdict.mends.iter().map(|mend| {
-            let left = match mend.left.is_finite() {
-                true => format!("{:.5}", mend.left),
+        let rows = found.verdict.trials.iter().map(|trial| {
+            let left = match trial.left.is_finite() {
+                true => format!("{:.5}", trial.left),
                 false => String::new(),
             };
             vec![
-                mend.freedom.words(),
+                trial.alternative.words(),
                 left,
-                format!("{:.1e}", mend.probability),
+                format!("{:.1e}", trial.probability),
             ]
         });
         blocks.push(Block::table(
@@ -210,11 +210,11 @@ fn variogram(found: &FieldEstimate) -> Option<Block> {
 /// The verdict for machines.
 pub fn json(found: &FieldEstimate) -> Value {
     let verdict = &found.verdict;
-    let mends = verdict.mends.iter().map(|mend| {
+    let trials = verdict.trials.iter().map(|trial| {
         json!({
-            "freedom": mend.freedom.words(),
-            "left_mm": mend.left,
-            "probability": mend.probability,
+            "freedom": trial.alternative.words(),
+            "left_mm": trial.left,
+            "probability": trial.probability,
         })
     });
     let worst = verdict
@@ -232,7 +232,7 @@ pub fn json(found: &FieldEstimate) -> Value {
         "independent_markers": verdict.correlation.map(|one| one.independent),
         "evidence_of_correlation": verdict.correlation.map(|one| one.evidence),
         "reasons": reasons,
-        "mends": mends.collect::<Vec<_>>(),
+        "mends": trials.collect::<Vec<_>>(),
         "worst": worst,
         "stated_noise_is_off_by": found.noise_ratio,
     })

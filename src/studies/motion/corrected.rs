@@ -91,7 +91,9 @@ impl MovingPlate {
         let model = model.describing(|element| format!("cell {element}"));
         let motion = self.motion(&model, viscosity)?;
         let interval = self.time.interval;
-        let within = (STEPS * interval * springs.frequency).ceil().max(1.0) as usize;
+        let within = (STEPS * interval * springs.frequency.unwrap_or_else(|| self.bar_frequency()))
+            .ceil()
+            .max(1.0) as usize;
         let step = interval / within as f64;
         let equation = match EquationOfMotion::new(&motion, step, AVERAGE_ACCELERATION) {
             Ok(equation) => equation,

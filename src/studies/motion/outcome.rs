@@ -118,13 +118,11 @@ fn steps(
 
 fn introduction(plate: &MovingPlate) -> String {
     let [length, width] = plate.problem.size;
-    // Of a quarter of a wave, or a half.
-    let (ends, waves) = match plate.release {
-        Some(_) => ("one end", 4),
-        None => ("both ends", 2),
+    let ends = match plate.release {
+        Some(_) => "one end",
+        None => "both ends",
     };
-    let speed = (plate.problem.law.youngs_modulus() / plate.density).sqrt();
-    let bar = speed / (f64::from(waves) * length);
+    let waves = plate.bar_waves();
     let (element, _) = plate.element;
     format!(
         "A plate of {length} × {width} × {} mm with a density of {} kg/m³ between grips, by springs with dashpots and by \
@@ -133,7 +131,7 @@ fn introduction(plate: &MovingPlate) -> String {
         plate.problem.thickness,
         number(1e12 * plate.density),
         element.name(),
-        number(bar)
+        number(plate.bar_frequency())
     )
 }
 
@@ -161,7 +159,7 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
             history.steps.to_string(),
             history.halved.to_string(),
             history.factorisations.to_string(),
-            number(model.frequency),
+            model.frequency.map_or("–".to_owned(), number),
             number(100.0 * history.energy_error()),
             number(stored),
             number(last.viscous_work),

@@ -94,6 +94,20 @@ pub struct MovingPlate {
 }
 
 impl MovingPlate {
+    /// The length of the first longitudinal wave over that of the plate: a quarter of a wave where one end is released, else a half.
+    pub(super) fn bar_waves(&self) -> u32 {
+        match self.release {
+            Some(_) => 4,
+            None => 2,
+        }
+    }
+
+    /// The first longitudinal vibration of a bar of the plate's length in Hz.
+    pub(super) fn bar_frequency(&self) -> f64 {
+        let speed = (self.problem.law.youngs_modulus() / self.density).sqrt();
+        speed / (f64::from(self.bar_waves()) * self.problem.size[0])
+    }
+
     /// The plate of another material, such as one made by [`Card::of_law`]; density and viscosity stay those of the study.
     #[must_use]
     pub fn with_card(mut self, card: Card) -> Self {

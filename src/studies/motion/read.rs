@@ -19,6 +19,7 @@ use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
 use crate::results::number;
+use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
 use crate::units::Dimension;
@@ -115,7 +116,7 @@ fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T)
 const LIKELY_DENSITY: std::ops::RangeInclusive<f64> = 1e-10..=1e-8;
 
 fn read_material(section: &Section, folder: &Path) -> Material {
-    let card = sections::read_card(section, folder);
+    let card = read_card(section, folder);
     let own_density = card.as_ref().and_then(|card| card.density);
     let density = match own_density {
         Some(density) if !section.has("density") => density,
@@ -166,7 +167,7 @@ fn read_material(section: &Section, folder: &Path) -> Material {
 fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotion>) {
     let section = root.section("start").requiring(&["stretch"]);
     let start = section.quantity("stretch", Dimension::Ratio, STRETCHES);
-    if let Some(card) = card.filter(|_| start > 0.0) {
+    if let Some(card) = card.filter(|_| start != 0.0) {
         sections::check_range(&section, "stretch", &[start], card);
     }
     section.unknown_keys();

@@ -3,7 +3,7 @@
 use web_time::Instant as Clock;
 
 use super::problem::MovingPlate;
-use crate::dynamics::frequency::{slowest, strongest};
+use crate::dynamics::frequency::principal;
 use crate::dynamics::{History, TimeSettings, Viscosity, follow};
 use crate::error::Error;
 use crate::mesh::Mesh;
@@ -22,14 +22,12 @@ pub struct ModelMotion {
     pub history: History,
     /// Why it ended before its time, where it did.
     pub end: Option<Error>,
-    /// The first longitudinal vibration about the undeformed plate, with the right grip as at the end, in Hz.
-    pub frequency: f64,
+    /// The first longitudinal vibration about the undeformed plate, with the right grip as at the end, in Hz; `None` where bending and
+    /// other vibrations hide it.
+    pub frequency: Option<f64>,
     /// Computing time in s.
     pub seconds: f64,
 }
-
-/// Vibrations among which the first longitudinal one is looked for.
-const MODES: usize = 6;
 
 impl MovingPlate {
     /// Computes the motion of one model; `progress` is told the instants that are reached.
@@ -49,8 +47,8 @@ impl MovingPlate {
         };
         let held = motion.held(time.duration);
         let rest = vec![0.0; motion.mass.len()];
-        let modes = slowest(&motion, &held, &rest, MODES);
-        let modes = modes.map_err(|found| fault("rest".into(), found))?;
+        let longitudinal = principal(&motion, &held, &rest, 0);
+        let longitudinal = longitudinal.map_err(|found| fault("rest".into(), found))?;
         let (history, end) = match follow(&motion, time, progress) {
             Ok(history) => (history, None),
             Err(end) => {
@@ -68,7 +66,7 @@ impl MovingPlate {
             mesh: model.mesh.clone(),
             history,
             end,
-            frequency: strongest(modes, &motion.mass, 0).map_or(f64::NAN, |mode| mode.frequency),
+            frequency: longitudinal.map(|mode| mode.frequency),
             seconds: start.elapsed().as_secs_f64(),
         })
     }

@@ -14,11 +14,12 @@ use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
 use crate::solve::LinearSolver;
+use crate::studies::card::read_card;
 use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
-    MOST_CELLS, Tolerances, check_range, even_cells, need_of_cells, read_card, read_climb,
-    read_newton, read_plate, refuse_climb_with_memory,
+    MOST_CELLS, Tolerances, check_range, even_cells, need_of_cells, read_climb, read_newton,
+    read_plate, refuse_climb_with_memory,
 };
 use crate::units::Dimension;
 

@@ -9,7 +9,7 @@ use crate::studies::plate::results::{MODELS, Results};
 mod accuracy;
 mod words;
 
-use words::{at_stretches, figure};
+use words::{at_stretches, figure, quantity};
 
 /// The tables of a plate, with the pictures of `outcome` among them.
 pub fn blocks(study: &Study, results: &Results, outcome: &Outcome) -> Vec<Block> {
@@ -143,9 +143,9 @@ fn forces(results: &Results) -> Vec<Block> {
     let row = |(index, step): (usize, &StepComparison)| {
         let models = results.measures(index);
         let mut cells = vec![ClampedPlate::percent(step.stretch)];
-        cells.extend(models.map(|model| figure(model.map(|measures| measures.force), 5)));
-        cells.extend(models.map(|model| figure(model.map(|measures| measures.mid_width), 5)));
-        cells.extend(models.map(|model| figure(model.map(|measures| measures.energy), 4)));
+        cells.extend(models.map(|model| quantity(model.map(|measures| measures.force), 5)));
+        cells.extend(models.map(|model| quantity(model.map(|measures| measures.mid_width), 5)));
+        cells.extend(models.map(|model| quantity(model.map(|measures| measures.energy), 4)));
         cells
     };
     let head = [

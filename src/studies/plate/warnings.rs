@@ -7,7 +7,9 @@ use crate::problem::ClampedPlate;
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
-use crate::results::{is_one_of_several, locking, one_of_several, small_strain, wrinkling};
+use crate::results::{
+    BESIDE_CORNERS, is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
+};
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;
@@ -34,14 +36,14 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
         .collect();
     all.extend(locking::warning(&*study.problem.law, &locking));
     let left_out = study.card.viscosity.left_out();
-    all.extend(left_out.map(|told| format!("Warning: {told}.")));
+    all.extend(left_out.map(|told| format!("{told}.")));
     all.extend(compression_and_strains(study, results));
     all.extend(instability(results));
     all.extend(imbalance(results));
     all
 }
 
-/// Compression, and strains that are too large for the law, in the finite elements, or in the corrected field where there are none.
+/// Compression, strains that are too large for the law or the card, and a material that is not stable, in the finite elements, or in the corrected field where there are none.
 fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
     let finest = results.finest();
     let model = match finest.solution.states.is_empty() {
@@ -58,8 +60,11 @@ fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
     let states: Vec<_> = states.collect();
     let law = &*study.problem.law;
     let compression = wrinkling::warning(law, mesh, states.iter().cloned());
-    let strains = small_strain::warning(law, mesh, states.into_iter());
-    compression.into_iter().chain(strains).collect()
+    let strains = small_strain::warning(law, mesh, states.iter().cloned());
+    let named = (MODELS[model], mesh);
+    let beyond = strained::warnings(&study.card, named, BESIDE_CORNERS, states.into_iter());
+    let all = compression.into_iter().chain(strains).chain(beyond);
+    all.collect()
 }
 
 /// States that were reached through tangents that are not positive definite.
@@ -93,7 +98,7 @@ fn imbalance(results: &Results) -> Vec<String> {
         let (relative, stretch) = results.worst_balance(model)?;
         (relative > BALANCED).then(|| {
             format!(
-                "Warning: {name}: the reactions of the grips are out of balance by {relative:.1e} of the largest at {}; take a \
+                "{name}: the reactions of the grips are out of balance by {relative:.1e} of the largest at {}; take a \
                  smaller tolerance",
                 ClampedPlate::describe_step(stretch)
             )

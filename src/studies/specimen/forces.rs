@@ -7,6 +7,7 @@ use super::results::models::Models;
 use crate::problem::{GroupState, Solution};
 use crate::results::Block;
 use crate::results::number;
+use crate::statistics::larger;
 
 /// A table of all groups in all models at all load factors.
 pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
@@ -60,7 +61,7 @@ pub fn worst_balance(models: &Models) -> Option<f64> {
     let balances = models.named().into_iter();
     balances
         .filter_map(|model| model.solution.worst_balance())
-        .reduce(f64::max)
+        .reduce(larger)
 }
 
 /// The balance of each model in a sentence.
@@ -80,7 +81,7 @@ fn balance(models: &Models) -> String {
 pub fn unbalanced(models: &Models) -> Option<String> {
     worst_balance(models).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
     Some(format!(
-        "Warning: forces or moments do not balance. {}",
+        "forces or moments do not balance. {}",
         balance(models)
     ))
 }

@@ -12,7 +12,7 @@ use super::{forces, statement, work};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
 use crate::problem::Solution;
-use crate::results::{Block, Check, Material, Outcome, Step, number};
+use crate::results::{Block, Check, Material, Outcome, Step, decimals, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
@@ -195,7 +195,10 @@ fn row(
         text(reference.field_percent(step), 4),
         text(springs(1), 2),
         text(corrected(1), 3),
-        text(reference.measured.at(&reference.finest, step), 5),
+        reference
+            .measured
+            .at(&reference.finest, step)
+            .map_or("–".into(), |value| decimals(value, 5)),
         text(reference.three_meshes_percent(step), 4),
         text(reference.recovered_percent(step), 4),
         text(reference.energy_percent(step), 4),

@@ -10,10 +10,9 @@ use crate::error::suggestion;
 use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
+use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
-use crate::studies::sections::{
-    Tolerances, check_thickness, read_card, read_climb, refuse_climb_with_memory,
-};
+use crate::studies::sections::{Tolerances, check_thickness, read_climb, refuse_climb_with_memory};
 use crate::units::Dimension;
 
 mod outline;

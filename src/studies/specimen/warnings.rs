@@ -1,17 +1,12 @@
 //! What deserves attention in the finite elements' states: compression, loss of stability, the range of the card.
 
-use nalgebra::Vector4;
-
 use super::problem::Specimen;
 use super::results::models::Models;
 use crate::mass_spring;
-use crate::material::Card;
-use crate::material::sheet::Kinematics;
-use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{
-    Stretches, is_one_of_several, locking, one_of_several, small_strain, wrinkling,
+    is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
 };
 
 /// All warnings, each in a sentence.
@@ -26,8 +21,6 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         })
     };
     let compression = wrinkling::warning(&*specimen.problem.law, mesh, loads());
-    let strained = loads().map(|(load, u)| (load, Strained::new(&specimen.card, mesh, u)));
-    let strained: Vec<_> = strained.collect();
     let lattice = mass_spring::warning(&*specimen.problem.law);
     let mut all: Vec<String> = lattice.into_iter().chain(compression).collect();
     let [_, corrected, finite_elements] = models.named();
@@ -40,13 +33,17 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
     let left_out = specimen.card.viscosity.left_out();
-    all.extend(left_out.map(|told| format!("Warning: {told}.")));
+    all.extend(left_out.map(|told| format!("{told}.")));
     all.extend(idle_loads(specimen, mesh));
     all.extend(loads_on_points(specimen, mesh));
     all.extend(moved_points(specimen, mesh));
     all.extend(several(models));
-    all.extend(beyond(&specimen.card, &strained));
-    all.extend(unstable(&specimen.card, &strained));
+    all.extend(strained::warnings(
+        &specimen.card,
+        ("finite elements", mesh),
+        0.0,
+        loads(),
+    ));
     all
 }
 
@@ -55,7 +52,7 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
     let idle = specimen.problem.idle_loads(mesh).unwrap_or_default();
     (!idle.is_empty()).then(|| {
         format!(
-            "Warning: the load on {} has no effect on the field: supports hold these nodes along it, and take it up at once. Hold another \
+            "the load on {} has no effect on the field: supports hold these nodes along it, and take it up at once. Hold another \
              group, or take a support that leaves the load's direction free, such as a grip with a force.",
             idle.join(", ")
         )
@@ -66,7 +63,7 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
 fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
     let named = quoted(&specimen.problem.forces_on_points(mesh))?;
     Some(format!(
-        "Warning: the force on {named} acts on single points, under which displacement and stress grow with every finer mesh, without \
+        "the force on {named} acts on single points, under which displacement and stress grow with every finer mesh, without \
          limit: neither they nor their own errors there say anything. Put it on edges, on a line or on an area."
     ))
 }
@@ -75,7 +72,7 @@ fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
 fn moved_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
     let named = quoted(&specimen.problem.moved_points(mesh))?;
     Some(format!(
-        "Warning: the support on {named} moves single points, for which the force falls with every finer mesh, to nothing, and the field with \
+        "the support on {named} moves single points, for which the force falls with every finer mesh, to nothing, and the field with \
          it: neither they nor their own errors say anything. Move edges, a line or an area."
     ))
 }
@@ -99,49 +96,4 @@ fn several(models: &Models) -> Option<String> {
         found.map(move |state| format!("{name} at load factor {}", state.factor))
     });
     one_of_several(&states.collect::<Vec<_>>())
-}
-
-/// A state of the finite elements: its stretches, and whether its material is stable.
-struct Strained {
-    stretches: Stretches,
-    /// A cell whose state is not stable, if there is one.
-    unstable: Option<String>,
-}
-
-impl Strained {
-    fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
-        let is_unstable = |cell: &usize| {
-            let gradient = mesh.gradient_at(displacement, *cell, mesh.shape(*cell).centre());
-            let kinematics = Kinematics::new(&Vector4::from(gradient));
-            !kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics))
-        };
-        let unstable = (0..mesh.cell_count()).find(is_unstable);
-        Self {
-            stretches: Stretches::new(card, mesh, displacement),
-            unstable: unstable.map(|cell| mesh.describe_cell(cell)),
-        }
-    }
-}
-
-/// The warning about stretches beyond the card's range, at the worst load factor.
-fn beyond(card: &Card, strained: &[(String, Strained)]) -> Option<String> {
-    let excess = |(_, own): &(String, Strained)| own.stretches.excess;
-    let worst = strained
-        .iter()
-        .max_by(|a, b| excess(a).total_cmp(&excess(b)));
-    let (load, worst) = worst?;
-    let reason = worst.stretches.reason(card, &format!(" at {load}"))?;
-    Some(format!("Warning: {reason}."))
-}
-
-/// The warning about a material that is not stable, at the first load factor.
-fn unstable(card: &Card, strained: &[(String, Strained)]) -> Option<String> {
-    let mut found = strained.iter();
-    found.find_map(|(load, own)| {
-        let cell = own.unstable.as_ref()?;
-        Some(format!(
-            "Warning: the material of the card `{}` is not stable (Drucker) in {cell} of the finite elements at {load}.",
-            card.name
-        ))
-    })
 }

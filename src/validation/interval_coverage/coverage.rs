@@ -19,7 +19,7 @@ use crate::markers::Marker;
 use crate::material::Card;
 use crate::mesh::{CellShape, Grid, Mesh};
 use crate::results::Block;
-use crate::studies::sections;
+use crate::studies::card::read_card;
 use crate::units::Dimension;
 use crate::validation::case::{
     Check, Computation, Outcome, Progress, check, normal_numbers_of_stream, number, section, table,
@@ -47,7 +47,7 @@ struct Settings {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
-    let law = sections::read_card(&root.section("plate"), folder)
+    let law = read_card(&root.section("plate"), folder)
         .as_ref()
         .and_then(first_parameter);
     let plate = Plate::read(root, folder);

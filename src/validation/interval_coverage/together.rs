@@ -20,7 +20,7 @@ use crate::material::Card;
 use crate::mesh::CellShape;
 use crate::mesh::Shape;
 use crate::results::Block;
-use crate::studies::sections;
+use crate::studies::card::read_card;
 use crate::units::Dimension;
 use crate::validation::case::{
     Check, Computation, Outcome, Progress, check, mean, normal_numbers_of_stream, number, section,
@@ -44,7 +44,7 @@ struct Settings {
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let all = |card: &Card| RegressedLaw::of_card(card, &["all"]).ok();
-    let law = sections::read_card(&root.section("plate"), folder);
+    let law = read_card(&root.section("plate"), folder);
     let plate = Plate::read(root, folder);
     let settings = section(root, "data", |section| Settings {
         data: Data::read(plate, root, section),

@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::error::Error;
 use crate::markers::Marker;
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::problem::{BoundaryProblem, Support};
@@ -81,7 +81,7 @@ impl Truth {
 
     /// First Piola–Kirchhoff stress of a displacement gradient; nothing where a cell is turned inside out.
     pub fn stress_of(&self, gradient: [f64; 4]) -> Option<[f64; 4]> {
-        let kinematics = Kinematics::new(&Gradient::from(gradient)).ok()?;
+        let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).ok()?;
         Some(self.law.stress(&kinematics).1.into())
     }
 

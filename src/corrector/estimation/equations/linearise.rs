@@ -19,7 +19,7 @@ pub struct Linear {
     /// H ∂u/∂p.
     pub design: DMatrix<f64>,
     /// The derivatives of the measured forces by p, and what is measured more than there, over the deviations.
-    pub facts: (DMatrix<f64>, DVector<f64>),
+    pub force_rows: (DMatrix<f64>, DVector<f64>),
 }
 
 impl Equations<'_> {
@@ -60,17 +60,17 @@ impl Equations<'_> {
             .iter()
             .flat_map(|column| interpolation.multiply(column));
         let design = DMatrix::from_iterator(interpolation.len(), sensitivities.len(), columns);
-        let facts = self.facts(field, &residual, &still, &sensitivities, &slopes)?;
+        let force_rows = self.force_rows(field, &residual, &still, &sensitivities, &slopes)?;
         Ok(Linear {
             still,
             sensitivities,
             design,
-            facts,
+            force_rows,
         })
     }
 
     /// The measured forces, linearised.
-    fn facts(
+    fn force_rows(
         &self,
         field: &[f64],
         residual: &[f64],
@@ -78,7 +78,7 @@ impl Equations<'_> {
         sensitivities: &[Vec<f64>],
         slopes: &[Vec<f64>],
     ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
-        let measured = self.task.knowledge.facts();
+        let measured = self.task.knowledge.measured_forces();
         let mut rows = DMatrix::zeros(measured.len(), sensitivities.len());
         let mut values = DVector::zeros(measured.len());
         for (row, measured) in measured.iter().enumerate() {

@@ -123,7 +123,7 @@ pub enum EdgeCondition {
 
 impl Knowledge {
     /// The measured forces that the field knows.
-    pub(in crate::corrector::estimation) fn facts(&self) -> &[MeasuredForce] {
+    pub(in crate::corrector::estimation) fn measured_forces(&self) -> &[MeasuredForce] {
         match self.forces_are_checks {
             true => &[],
             false => &self.forces,

@@ -6,7 +6,7 @@ use crate::document::Bound;
 use crate::error::{Diagnostic, suggestion};
 use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::volume::{self, bulk_modulus};
 use crate::material::{Card, HyperelasticLaw, PlaneState, Volume};
 use crate::units::Dimension;
@@ -113,7 +113,7 @@ impl RegressedLaw {
 
     /// Whether the values make the card's law, at one state.
     fn is_law_of(&self, card: &Card) -> bool {
-        let state = Kinematics::new(&Gradient::new(0.11, 0.03, -0.02, 0.05));
+        let state = Kinematics::new(&PlaneTensor::new(0.11, 0.03, -0.02, 0.05));
         let stress = |law: &dyn HyperelasticLaw| state.map(|state| law.stress(&state).1);
         match (stress(&*card.law), stress(&*self.at(&self.start()))) {
             (Ok(a), Ok(b)) => (a - b).norm() <= 1e-12 * a.norm(),

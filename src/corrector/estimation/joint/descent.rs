@@ -16,7 +16,7 @@ use crate::error::{Error, SolveFault};
 const MOST_STEPS: usize = 40;
 
 /// Steps after which smoothness and noise of the frames stay as they are, so that the misfit has a minimum.
-const TRADING: usize = 4;
+const JOINT_VARIANCE_STEPS: usize = 4;
 
 /// Length of a step in standard errors that does not matter.
 const CLOSE: f64 = 0.02;
@@ -163,7 +163,7 @@ impl<'a> Descent<'a> {
         let mut course = self.moved(&from, from.values.clone(), warm)?;
         let mut length = f64::NAN;
         for step in 1..=MOST_STEPS {
-            let settled = warm || step > TRADING;
+            let settled = warm || step > JOINT_VARIANCE_STEPS;
             let change = self.step(&course, held);
             length = course.standard_errors(&change);
             told(&format!("step {step}, {length:.1e} standard errors"));

@@ -13,14 +13,14 @@ use crate::corrector::estimation::given::{
 };
 use crate::corrector::estimation::judge::{Model, Rows, soundness};
 use crate::corrector::estimation::noise::with_own_noise;
-use crate::corrector::estimation::regression::{MarkerRows, Trade};
-use crate::corrector::estimation::search::{MOST_STEPS, NearestField, TRADING};
+use crate::corrector::estimation::regression::{MarkerRows, VarianceComponents};
+use crate::corrector::estimation::search::{MOST_STEPS, NearestField, VARIANCE_STEPS};
 use crate::corrector::estimation::uncertainty::MeshDifference;
 use crate::error::{Diagnostic, Error};
 use crate::statistics::{CorrelatedNoise, Sites};
 
 /// What does not change with the law.
-pub struct Ground<'a> {
+pub struct FrameSetup<'a> {
     frame: &'a JointFrame<'a>,
     outline: Vec<Segment>,
     observations: Observations,
@@ -28,7 +28,7 @@ pub struct Ground<'a> {
 
 /// A frame whose edges are settled.
 pub struct Judged<'a> {
-    ground: &'a Ground<'a>,
+    ground: &'a FrameSetup<'a>,
     edges: Vec<Edge<'a>>,
     observations: Observations,
 }
@@ -37,7 +37,7 @@ pub struct Judged<'a> {
 #[derive(Clone)]
 pub struct State {
     place: Place,
-    trade: Trade,
+    variances: VarianceComponents,
     /// Sₖ.
     pub information: DMatrix<f64>,
     /// tₖ.
@@ -47,7 +47,7 @@ pub struct State {
 }
 
 /// What a frame says at the end.
-pub struct Say {
+pub struct FrameInformation {
     /// Sₖ.
     pub information: DMatrix<f64>,
     /// Jₖ.
@@ -71,7 +71,7 @@ pub struct Say {
 }
 
 /// A frame with the law of others.
-pub struct Foreign {
+pub struct CrossPrediction {
     /// Each measured force as the field has it, in N.
     pub forces: Vec<f64>,
     /// Root mean square of what is left of the components of trusted markers in mm.
@@ -89,7 +89,7 @@ struct AboutField {
     common: [DVector<f64>; 2],
 }
 
-impl<'a> Ground<'a> {
+impl<'a> FrameSetup<'a> {
     /// # Errors
     /// As [`crate::corrector::estimation::estimate`].
     pub fn new(frame: &'a JointFrame<'a>) -> Result<Self, Error> {
@@ -172,7 +172,7 @@ impl Judged<'_> {
         self.observations.known_noise
     }
 
-    /// The frame's field at values of the law's parameters, from a state or from nothing; with a trade that stays where `settled`.
+    /// The frame's field at values of the law's parameters, from a state or from nothing; with variances that stay where `settled`.
     ///
     /// # Errors
     /// As the search.
@@ -183,7 +183,7 @@ impl Judged<'_> {
         from: (Option<&State>, bool),
     ) -> Result<State, Error> {
         self.with_field(law, values, from, |found| {
-            let (place, trade) = (place(&found), found.trade.clone());
+            let (place, variances) = (place(&found), found.variances.clone());
             let equations = self.law_equations(found, (law, values), None)?.normal;
             let reduced = Reduced::new(&equations, values.len())?;
             Ok(State {
@@ -191,7 +191,7 @@ impl Judged<'_> {
                 score: reduced.score,
                 misfit: reduced.misfit,
                 place,
-                trade,
+                variances,
             })
         })
     }
@@ -200,11 +200,16 @@ impl Judged<'_> {
     ///
     /// # Errors
     /// As the search.
-    pub fn say(&self, law: &RegressedLaw, values: &[f64], from: &State) -> Result<Say, Error> {
+    pub fn say(
+        &self,
+        law: &RegressedLaw,
+        values: &[f64],
+        from: &State,
+    ) -> Result<FrameInformation, Error> {
         self.with_field(law, values, (Some(from), true), |found| {
             let left = self.left(&found);
             let observations = found.observations();
-            let sound = soundness(&observations.weights, &found.fit, &found.trade);
+            let sound = soundness(&observations.weights, &found.fit, &found.variances);
             let rows = Rows::new(&found, &sound, None);
             let noise = rows
                 .as_ref()
@@ -215,13 +220,13 @@ impl Judged<'_> {
                 * noise.map_or(markers, |noise: CorrelatedNoise| {
                     noise.correlation.independent(sites.places())
                 });
-            let rms: f64 = found.trade.variance;
+            let variance: f64 = found.variances.variance;
             let markers_deviance = match observations.known_noise {
                 true => found.misfit(&found) * independent / (2.0 * markers),
-                false => independent * rms.ln(),
+                false => independent * variance.ln(),
             };
             let effective = found.fit.effective;
-            let trade = found.trade.clone();
+            let variances = found.variances.clone();
             let difference = found.mesh_difference(&self.edges);
             let about = self.law_equations(found, (law, values), difference.as_ref())?;
             let equations = about.normal;
@@ -230,12 +235,12 @@ impl Judged<'_> {
             let rows = MarkerRows {
                 design: &about.design,
                 weights: &self.observations.weights,
-                trade: &trade,
+                variances: &variances,
             };
             let white = rows.information();
             let of_markers = noise.map_or(white.clone(), |noise| rows.spread(&noise, &sites));
             let spread = &equations.matrix - white + &of_markers;
-            Ok(Say {
+            Ok(FrameInformation {
                 spread: reduced.project(&spread),
                 spread_of_markers: reduced.project(&of_markers),
                 mesh: about.mesh.map(|target| reduced.score_of(&target)),
@@ -259,20 +264,20 @@ impl Judged<'_> {
         law: &RegressedLaw,
         values: &[f64],
         from: Option<&State>,
-    ) -> Result<Foreign, Error> {
+    ) -> Result<CrossPrediction, Error> {
         self.with_field(law, values, (from, false), |found| {
             let forces = found.forces(1.0, None)?;
             let prediction = |measured: &MeasuredForce| {
                 let own = forces.iter().filter(|force| force.edge == measured.edge);
                 own.map(|force| force.force[measured.axis].value).sum()
             };
-            let trusted = found.trade.trust.iter().sum::<f64>().max(1.0);
+            let trusted = found.variances.trust.iter().sum::<f64>().max(1.0);
             let rows = found.fit.residual.as_slice().chunks_exact(2);
             let square: f64 = rows
-                .zip(&found.trade.trust)
+                .zip(&found.variances.trust)
                 .map(|(r, trust)| trust * (r[0] * r[0] + r[1] * r[1]))
                 .sum();
-            Ok(Foreign {
+            Ok(CrossPrediction {
                 forces: self.measured().iter().map(prediction).collect(),
                 left: (square / (2.0 * trusted)).sqrt(),
             })
@@ -299,9 +304,9 @@ impl Judged<'_> {
         let found = match from {
             None => search.run(MOST_STEPS)?,
             Some(state) => {
-                let trading = if settled { 0 } else { TRADING };
-                let start = (state.place.clone(), state.trade.clone());
-                search.run_from(start, trading, MOST_STEPS)?
+                let adjusting = if settled { 0 } else { VARIANCE_STEPS };
+                let start = (state.place.clone(), state.variances.clone());
+                search.run_from(start, adjusting, MOST_STEPS)?
             }
         };
         work(found)
@@ -318,7 +323,7 @@ impl Judged<'_> {
         let mut place = place(&found);
         let NearestField {
             mut equations,
-            trade,
+            variances,
             ..
         } = found;
         equations.task.knowledge = &knowledge;
@@ -328,19 +333,22 @@ impl Judged<'_> {
             .splice(first..first, values.iter().copied());
         let linear = equations.linearise(&place)?;
         let normal = equations.with_regression((&place, true), &linear, |regression| {
-            regression.equations(&trade)
+            regression.equations(&variances)
         });
         let order = Order {
             first,
             law: values.len(),
             all: linear.design.ncols(),
         };
-        let target = difference.map(|own| equations.mesh_target(own, (&linear, &trade)));
-        let facts = knowledge.facts().iter();
-        let off = facts.map(|own| own.common_deviation * own.force / own.standard_deviation);
-        let off = linear.facts.0.tr_mul(&DVector::from_vec(off.collect()));
+        let target = difference.map(|own| equations.mesh_target(own, (&linear, &variances)));
+        let force_rows = knowledge.measured_forces().iter();
+        let off = force_rows.map(|own| own.common_deviation * own.force / own.standard_deviation);
+        let off = linear
+            .force_rows
+            .0
+            .tr_mul(&DVector::from_vec(off.collect()));
         let magnified = equations.magnified(&place.field);
-        let magnified = equations.target_of(&magnified, (&linear, &trade));
+        let magnified = equations.target_of(&magnified, (&linear, &variances));
         let common = [off, magnified * -knowledge.scale_deviation];
         Ok(AboutField {
             design: order.columns(&linear.design),
@@ -359,7 +367,7 @@ impl Judged<'_> {
             .chosen
             .iter()
             .zip(rows)
-            .zip(&found.trade.trust);
+            .zip(&found.variances.trust);
         let trusted = all.filter(|(_, trust)| **trust >= TRUSTED);
         trusted
             .map(|((index, r), _)| (self.ground.frame.markers[*index].number, [r[0], r[1]]))
@@ -376,7 +384,7 @@ fn place(found: &NearestField) -> Place {
 
 /// The mean correlation of what is left of the same markers in one frame and the next one of the same specimen; zero where there is
 /// none, or frames differ in their markers.
-pub fn common_noise(frames: &[&Judged], says: &[Say]) -> f64 {
+pub fn common_noise(frames: &[&Judged], says: &[FrameInformation]) -> f64 {
     let pairs = frames.windows(2).zip(says.windows(2));
     let same = pairs.filter(|(frames, _)| {
         std::ptr::eq(frames[0].ground.frame.mesh, frames[1].ground.frame.mesh)

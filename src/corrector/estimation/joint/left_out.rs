@@ -5,12 +5,12 @@ use rayon::prelude::*;
 
 use super::descent::{Course, Descent};
 use super::found::{ForcePrediction, FrameOutcome, JointSettings, Told};
-use super::frame::Say;
+use super::frame::FrameInformation;
 use crate::corrector::estimation::given::MeasuredForce;
 use crate::error::Error;
 
 /// The forces of a frame, and what is left of its markers in mm.
-type Foreign = (Vec<ForcePrediction>, f64);
+type CrossPrediction = (Vec<ForcePrediction>, f64);
 
 /// What was found of every frame: its share, and its forces with the law of the other groups of frames. What no other
 /// group can tell is left open.
@@ -20,13 +20,13 @@ type Foreign = (Vec<ForcePrediction>, f64);
 pub fn outcomes(
     descent: &Descent,
     course: &Course,
-    (says, inverse): (&[Say], &DMatrix<f64>),
+    (says, inverse): (&[FrameInformation], &DMatrix<f64>),
     settings: &JointSettings,
     told: Told,
 ) -> Result<Vec<FrameOutcome>, Error> {
     let count = course.states.len();
     let groups = settings.groups.clamp(1, count);
-    let mut foreign: Vec<Foreign> = Vec::with_capacity(count);
+    let mut foreign: Vec<CrossPrediction> = Vec::with_capacity(count);
     for group in 0..groups {
         let own = group * count / groups..(group + 1) * count / groups;
         told(&format!("frames left out, group {} of {groups}", group + 1));
@@ -35,7 +35,7 @@ pub fn outcomes(
             _ => descent.without(course, &own, told)?,
         };
         let values = others.as_ref().unwrap_or(&course.values);
-        let found: Result<Vec<Foreign>, Error> = own
+        let found: Result<Vec<CrossPrediction>, Error> = own
             .into_par_iter()
             .map(|index| {
                 let frame = descent.frames[index];
@@ -51,7 +51,7 @@ pub fn outcomes(
         foreign.extend(found?);
     }
     let parameters = course.values.len() as f64;
-    let outcome = |((forces, left), say): (Foreign, &Say)| FrameOutcome {
+    let outcome = |((forces, left), say): (CrossPrediction, &FrameInformation)| FrameOutcome {
         share: say.information.dot(inverse) / parameters,
         forces,
         left,

@@ -85,7 +85,7 @@ impl Reduced {
         };
         let follow = &mixed * &covariance;
         let of_edges = equations.target.rows(0, edges);
-        let force_misfit = equations.fact_misfit - of_edges.dot(&(covariance * of_edges));
+        let force_misfit = equations.force_misfit - of_edges.dot(&(covariance * of_edges));
         Ok(Self {
             information: part(edges, edges, (law, law)) - &follow * mixed.transpose(),
             score: score(&follow, &equations.target),

@@ -9,37 +9,37 @@
 use nalgebra::DMatrix;
 
 use crate::corrector::estimation::equations::nodal_areas;
-use crate::corrector::estimation::outcome::Freedom;
+use crate::corrector::estimation::outcome::Alternative;
 use crate::corrector::estimation::search::NearestField;
 use crate::corrector::estimation::uncertainty::MeshError;
 use crate::error::Error;
-use crate::material::sheet::{Gradient, Kinematics, cofactor};
+use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
 use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 
-/// A freedom with the displacements of the markers that its parameters make: two rows a marker.
-pub type Column = (Freedom, DMatrix<f64>);
+/// An alternative with the displacements of the markers that its parameters make: two rows a marker.
+pub type Column = (Alternative, DMatrix<f64>);
 
 impl NearestField<'_> {
-    /// The freedoms of forces, stiffness, law, picture and mesh, with all edges as they are.
-    pub(super) fn freedoms(&mut self, own: Option<&MeshError>) -> Result<Vec<Column>, Error> {
+    /// The alternatives of forces, stiffness, law, picture and mesh, with all edges as they are.
+    pub(super) fn alternatives(&mut self, own: Option<&MeshError>) -> Result<Vec<Column>, Error> {
         let mut all = Vec::new();
         if self.equations.body.is_none() {
-            all.push((Freedom::BodyForce, self.smooth_forces()));
+            all.push((Alternative::BodyForce, self.smooth_forces()));
         }
-        all.push((Freedom::Stiffness, self.varied_stiffness()));
-        all.push((Freedom::Law, self.other_laws()));
-        all.push((Freedom::Direction, self.directions()));
-        all.push((Freedom::Volume, self.volume_change()));
+        all.push((Alternative::Stiffness, self.varied_stiffness()));
+        all.push((Alternative::Law, self.other_laws()));
+        all.push((Alternative::Direction, self.directions()));
+        all.push((Alternative::Volume, self.volume_change()));
         let mut columns: Vec<Column> = Vec::new();
-        for (freedom, forces) in all {
-            columns.push((freedom, self.marker_changes(&forces)?));
+        for (alternative, forces) in all {
+            columns.push((alternative, self.marker_changes(&forces)?));
         }
         if self.equations.task.knowledge.scale_deviation == 0.0 {
-            columns.push((Freedom::Scale, self.magnification()));
+            columns.push((Alternative::Scale, self.magnification()));
         }
         if let Some(own) = own {
             let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
-            columns.push((Freedom::Mesh, error));
+            columns.push((Alternative::Mesh, error));
         }
         Ok(columns)
     }
@@ -95,11 +95,11 @@ impl NearestField<'_> {
     fn directions(&self) -> Vec<Vec<f64>> {
         self.stresses(3, &|_, kinematics| {
             let f = kinematics.deformation_gradient;
-            let [xx, xy, yy] = kinematics.stretch_change.map(|change| change / 2.0);
+            let [xx, xy, yy] = kinematics.twice_green_lagrange.map(|change| change / 2.0);
             vec![
-                Gradient::new(f[0] * xx, 0.0, f[2] * xx, 0.0),
-                Gradient::new(0.0, f[1] * yy, 0.0, f[3] * yy),
-                Gradient::new(f[1] * xy, f[0] * xy, f[3] * xy, f[2] * xy),
+                PlaneTensor::new(f[0] * xx, 0.0, f[2] * xx, 0.0),
+                PlaneTensor::new(0.0, f[1] * yy, 0.0, f[3] * yy),
+                PlaneTensor::new(f[1] * xy, f[0] * xy, f[3] * xy, f[2] * xy),
             ]
         })
     }
@@ -116,7 +116,7 @@ impl NearestField<'_> {
     fn stresses(
         &self,
         count: usize,
-        stresses: &dyn Fn([f64; 2], &Kinematics) -> Vec<Gradient>,
+        stresses: &dyn Fn([f64; 2], &Kinematics) -> Vec<PlaneTensor>,
     ) -> Vec<Vec<f64>> {
         let mesh = self.equations.task.specimen.mesh;
         let mut forces = vec![vec![0.0; self.field.len()]; count];

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::freedoms::Column;
+use super::alternatives::Column;
 use super::rows::Rows;
-use crate::corrector::estimation::outcome::{Freedom, Mend};
+use crate::corrector::estimation::outcome::{Alternative, Trial};
 use crate::corrector::estimation::search::{NearestField, Scored};
 use crate::corrector::estimation::uncertainty::MeshError;
 use crate::statistics::{
@@ -25,7 +25,7 @@ pub struct Model {
     slope: DVector<f64>,
 }
 
-/// The noise by which freedoms are tested.
+/// The noise by which alternatives are tested.
 pub struct Reference {
     whitening: Option<Whitening>,
     variance: f64,
@@ -42,7 +42,7 @@ impl Model {
             design: rows.scaled(&found.linear.design),
             residual: rows.residual.clone(),
             held: found.fit.held.clone(),
-            slope: found.slope(&found.linear.design, &found.fit.residual, &found.trade),
+            slope: found.slope(&found.linear.design, &found.fit.residual, &found.variances),
         }
     }
 
@@ -57,7 +57,11 @@ impl Model {
             design: rows.scaled(&scored.linear.design),
             residual: rows.scaled(&left).column(0).into_owned(),
             held: scored.fit.held.clone(),
-            slope: found.slope(&scored.linear.design, &scored.fit.residual, &scored.trade),
+            slope: found.slope(
+                &scored.linear.design,
+                &scored.fit.residual,
+                &scored.variances,
+            ),
         }
     }
 
@@ -116,7 +120,7 @@ impl Model {
 }
 
 impl Reference {
-    /// The noise that is left by the equations with all freedoms.
+    /// The noise that is left by the equations with all alternatives.
     pub fn new(
         rows: &Rows,
         noise: Option<&CorrelatedNoise>,
@@ -155,31 +159,31 @@ impl Reference {
     }
 
     /// How much a model takes from the misfit of the equations.
-    pub fn test(&self, freedom: Freedom, base: &Model, model: &Model) -> Mend {
+    pub fn test(&self, alternative: Alternative, base: &Model, model: &Model) -> Trial {
         let left = |model: &Model| {
             let white =
                 WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
             white.left(&model.held, &model.slope, self.variance)
         };
         let (Some((before, few)), Some((after, many))) = (left(base), left(model)) else {
-            return Mend::nothing(freedom);
+            return Trial::nothing(alternative);
         };
         let count = model.residual.len() as f64;
         let more = (many - few).max(1.0);
         let variance = after / (count - many).max(1.0) + self.mesh;
         let gain = (before - after).max(0.0) / variance;
-        Mend {
+        Trial {
             probability: f_tail([more, (self.values - many).max(3.0)], gain / more),
             gain: gain - 2.0 * more,
-            ..Mend::nothing(freedom)
+            ..Trial::nothing(alternative)
         }
     }
 }
 
-impl Mend {
-    fn nothing(freedom: Freedom) -> Self {
+impl Trial {
+    fn nothing(alternative: Alternative) -> Self {
         Self {
-            freedom,
+            alternative,
             left: f64::NAN,
             probability: 1.0,
             gain: 0.0,

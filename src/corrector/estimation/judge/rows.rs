@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::corrector::estimation::regression::{Fit, Trade, squares};
+use crate::corrector::estimation::regression::{Fit, VarianceComponents, squares};
 use crate::corrector::estimation::search::NearestField;
 use crate::corrector::estimation::uncertainty::MeshError;
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
@@ -53,7 +53,7 @@ impl Rows {
                 false => 1.0,
             };
             let weights = [0, 1].map(|axis| observations.weights[2 * marker + axis]);
-            weights.map(|weight| (weight * trust / found.trade.sound).sqrt())
+            weights.map(|weight| (weight * trust / found.variances.sound).sqrt())
         };
         let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
         let left = |row: usize| scales[row] * found.fit.residual[2 * chosen[row / 2] + row % 2];
@@ -108,16 +108,17 @@ impl Rows {
 /// noise would be in one of a thousand.
 ///
 /// Of a fit that lets edges go it tells gross errors from markers that a wrong condition leaves far off.
-pub fn soundness(weights: &[f64], fit: &Fit, trade: &Trade) -> Vec<f64> {
+pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> Vec<f64> {
     const TRUSTED: f64 = 0.5;
     const FALSE_ALARMS: f64 = 1e-3;
     let limit = chi_squared_limit(2.0, FALSE_ALARMS);
-    let rows = squares(&fit.residual, weights).zip(&trade.trust);
-    let trust =
-        |(square, trust): (f64, &f64)| match *trust >= TRUSTED && square / trade.sound <= limit {
-            true => *trust,
-            false => 0.0,
-        };
+    let rows = squares(&fit.residual, weights).zip(&variances.trust);
+    let trust = |(square, trust): (f64, &f64)| match *trust >= TRUSTED
+        && square / variances.sound <= limit
+    {
+        true => *trust,
+        false => 0.0,
+    };
     rows.map(trust).collect()
 }
 

@@ -44,7 +44,7 @@ impl NearestField<'_> {
             .collect();
         let z = |index: usize, axis: usize| {
             let row = 2 * rows[index] + axis;
-            (observations.weights[row] / self.trade.sound).sqrt() * self.fit.residual[row]
+            (observations.weights[row] / self.variances.sound).sqrt() * self.fit.residual[row]
         };
         let moran = |axes: &[usize]| {
             let product = |[i, j]: &[usize; 2]| -> f64 {
@@ -69,7 +69,7 @@ impl NearestField<'_> {
         let rows_of_markers = MarkerRows {
             design: &self.linear.design,
             weights: &self.equations.task.observations.weights,
-            trade: &self.trade,
+            variances: &self.variances,
         };
         let scaled = rows_of_markers.scaled();
         let covariance = &self.fit.covariance;

@@ -135,10 +135,10 @@ impl FieldEstimate {
 }
 
 /// The rule by which data and smoothness are traded.
-pub const TRADE: &str = "equilibrium holds exactly; the roughness of each edge of unknown motion is weighted by restricted maximum likelihood";
+pub const RULE: &str = "equilibrium holds exactly; the roughness of each edge of unknown motion is weighted by restricted maximum likelihood";
 
 /// The rule where the physics is weighted.
-pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the interior; these forces and the roughness of each edge of unknown motion are weighted by restricted maximum likelihood";
+pub const RULE_WITH_MODEL_ERROR: &str = "equilibrium holds up to smooth forces on the interior; these forces and the roughness of each edge of unknown motion are weighted by restricted maximum likelihood";
 
 /// The state in the middle of a cell.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]

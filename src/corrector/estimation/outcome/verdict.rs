@@ -36,17 +36,17 @@ pub struct Verdict {
     pub correlation: Option<NoiseCorrelation>,
     /// Why the data are not explained; empty where they are.
     pub reasons: Vec<Reason>,
-    /// What would mend it, the best first, where the data are not explained.
-    pub mends: Vec<Mend>,
+    /// Alternatives that explain the data better, the best first, where the data are not explained.
+    pub trials: Vec<Trial>,
     /// Where it is worst, where the data are not explained.
     pub worst: Option<Worst>,
 }
 
 impl Verdict {
-    /// Whether data are not explained because cells are too coarse for them: a finer mesh mends more than anything else.
+    /// Whether data are not explained because cells are too coarse for them: a finer mesh explains more than anything else.
     pub fn asks_for_finer_mesh(&self) -> bool {
-        let first = self.mends.first().map(|mend| &mend.freedom);
-        self.answer == Answer::NotExplained && first == Some(&Freedom::Mesh)
+        let first = self.trials.first().map(|trial| &trial.alternative);
+        self.answer == Answer::NotExplained && first == Some(&Alternative::Mesh)
     }
 }
 
@@ -66,8 +66,8 @@ pub struct NoiseCorrelation {
 /// Why data are not explained.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Reason {
-    /// A freedom takes more from the misfit than noise would let it: the probability of that by noise.
-    Freedom(f64),
+    /// An alternative takes more from the misfit than noise would let it: the probability of that by noise.
+    Alternative(f64),
     /// What is left correlates over so many mm that it cannot be told from a misfit.
     Long(f64),
     /// A measured force is off by so many standard errors.
@@ -80,7 +80,7 @@ impl Reason {
     /// The reason in words.
     pub fn words(self) -> String {
         match self {
-            Self::Freedom(probability) => format!(
+            Self::Alternative(probability) => format!(
                 "other equations take so much from the misfit as by noise in {} of cases",
                 small_probability(probability)
             ),
@@ -100,7 +100,7 @@ impl Reason {
 
 /// What would make the equations fit the data better.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub enum Freedom {
+pub enum Alternative {
     /// One edge moves in an unknown smooth way.
     Edge(String),
     /// All edges of which something is said do so.
@@ -130,7 +130,7 @@ pub enum Freedom {
     Factor(f64),
 }
 
-impl Freedom {
+impl Alternative {
     /// What it is in words.
     pub fn words(&self) -> String {
         match self {
@@ -168,11 +168,11 @@ fn roughly(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// What a freedom does, tried in one linearised step.
+/// What an alternative does, tried in one linearised step.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Mend {
-    /// The freedom.
-    pub freedom: Freedom,
+pub struct Trial {
+    /// The alternative.
+    pub alternative: Alternative,
     /// Root mean square of what would be left of each component of the markers in mm.
     pub left: f64,
     /// How probable it is that noise alone makes the misfit fall so much.

@@ -2,14 +2,14 @@
 
 use nalgebra::DMatrix;
 
-use super::penalised::Trade;
+use super::penalised::VarianceComponents;
 use crate::statistics::{CorrelatedNoise, Sites, Whitening};
 
 /// The derivatives of the markers, two rows each, with their weights.
 pub struct MarkerRows<'a> {
     pub design: &'a DMatrix<f64>,
     pub weights: &'a [f64],
-    pub trade: &'a Trade,
+    pub variances: &'a VarianceComponents,
 }
 
 impl MarkerRows<'_> {
@@ -32,8 +32,8 @@ impl MarkerRows<'_> {
     /// Ã.
     pub fn scaled(&self) -> DMatrix<f64> {
         let scale = |row: usize| {
-            let weight = self.trade.weight(self.weights, row);
-            (weight / self.trade.variance).sqrt()
+            let weight = self.variances.weight(self.weights, row);
+            (weight / self.variances.variance).sqrt()
         };
         DMatrix::from_fn(self.design.nrows(), self.design.ncols(), |row, column| {
             scale(row) * self.design[(row, column)]

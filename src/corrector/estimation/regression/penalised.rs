@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! data        r = A δ + noise,   variance v/wᵢ                                     n rows
-//! facts       g = G δ + noise,   variance 1                                        such as measured forces
+//! force_rows       g = G δ + noise,   variance 1                                        such as measured forces
 //! priors      ρⱼ + Bⱼ δ,         variance 1/λⱼ                                     rank qⱼ each
 //!
 //! M = AᵀWA/v + GᵀG + Σ λⱼ BⱼᵀBⱼ,   M δ = AᵀWr/v + Gᵀg − Σ λⱼ Bⱼᵀρⱼ,   Cov(δ) = M⁻¹
@@ -49,18 +49,18 @@ pub struct Regression<'a> {
     /// Whether the noise is known: v is 1.
     pub known_noise: bool,
     /// G and g.
-    pub facts: (&'a DMatrix<f64>, &'a DVector<f64>),
+    pub force_rows: (&'a DMatrix<f64>, &'a DVector<f64>),
     /// The priors.
     pub priors: &'a [Roughness],
     /// How markers that are far off are weighted.
     pub robust: Robust,
-    /// Whether the trade stays as it is.
+    /// Whether the variances stay as they are.
     pub settled: bool,
 }
 
 /// What goes on from one linearisation to the next.
 #[derive(Clone, Debug)]
-pub struct Trade {
+pub struct VarianceComponents {
     /// λ of each prior; empty before the first fit.
     pub smoothing: Vec<f64>,
     /// Factor in 0…1 of each marker's weight.
@@ -71,7 +71,7 @@ pub struct Trade {
     pub sound: f64,
 }
 
-impl Trade {
+impl VarianceComponents {
     /// What a row of the markers, of which each has two, weighs with the trust in its marker.
     pub fn weight(&self, weights: &[f64], row: usize) -> f64 {
         weights[row] * self.trust[row / 2]
@@ -96,7 +96,7 @@ pub struct Fit {
     pub freedom: Vec<f64>,
 }
 
-/// The equations of a step at a trade that stays.
+/// The equations of a step at variances that stay.
 pub struct NormalEquations {
     /// M.
     pub matrix: DMatrix<f64>,
@@ -105,7 +105,7 @@ pub struct NormalEquations {
     /// r'Wr/v + Σ λ ρ'ρ before the step.
     pub misfit: f64,
     /// g'g before the step.
-    pub fact_misfit: f64,
+    pub force_misfit: f64,
 }
 
 /// A system without a unique solution: the data do not determine the parameters.
@@ -124,43 +124,45 @@ const CLOSE: f64 = 1e-4;
 const STIFFEST: f64 = 1e7;
 
 impl Regression<'_> {
-    /// Fits, beginning at a trade.
+    /// Fits, beginning at some variances.
     ///
     /// # Errors
     /// [`Undetermined`].
-    pub fn fit(&self, trade: &mut Trade) -> Result<Fit, Undetermined> {
+    pub fn fit(&self, variances: &mut VarianceComponents) -> Result<Fit, Undetermined> {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
-        let mut normal = self.normal(trade);
-        let scales = self.scales(&normal.0, trade);
-        if trade.smoothing.is_empty() {
-            trade.smoothing.clone_from(&scales);
+        let mut normal = self.normal(variances);
+        let scales = self.scales(&normal.0, variances);
+        if variances.smoothing.is_empty() {
+            variances.smoothing.clone_from(&scales);
         }
         let mut last: Option<f64> = None;
         for iteration in 0.. {
-            let fit = self.solve(&normal, &forms, trade)?;
+            let fit = self.solve(&normal, &forms, variances)?;
             if self.settled {
                 return Ok(fit);
             }
-            let before = trade.variance;
-            let trusted = self.update(&fit, trade, &scales);
+            let before = variances.variance;
+            let trusted = self.update(&fit, variances, &scales);
             let settled = last.is_some_and(|last| (fit.effective - last).abs() < CLOSE)
-                && (trade.variance / before - 1.0).abs() < CLOSE
+                && (variances.variance / before - 1.0).abs() < CLOSE
                 && trusted;
             if settled || iteration == MOST_ITERATIONS {
                 return Ok(fit);
             }
             last = Some(fit.effective);
             if !trusted {
-                normal = self.normal(trade);
+                normal = self.normal(variances);
             }
         }
         unreachable!("the iterations end")
     }
 
     /// AᵀWA and AᵀWr.
-    fn normal(&self, trade: &Trade) -> (DMatrix<f64>, DVector<f64>) {
+    fn normal(&self, variances: &VarianceComponents) -> (DMatrix<f64>, DVector<f64>) {
         let mut weighted = self.design.clone();
-        let weights = DVector::from_fn(weighted.nrows(), |row, _| trade.weight(self.weights, row));
+        let weights = DVector::from_fn(weighted.nrows(), |row, _| {
+            variances.weight(self.weights, row)
+        });
         for mut column in weighted.column_iter_mut() {
             column.component_mul_assign(&weights);
         }
@@ -169,19 +171,19 @@ impl Regression<'_> {
     }
 
     /// λ at which each prior weighs as much as the data.
-    fn scales(&self, normal: &DMatrix<f64>, trade: &Trade) -> Vec<f64> {
-        let data = normal.trace() / trade.variance;
+    fn scales(&self, normal: &DMatrix<f64>, variances: &VarianceComponents) -> Vec<f64> {
+        let data = normal.trace() / variances.variance;
         let rough = |prior: &Roughness| prior.slopes.norm_squared().max(f64::MIN_POSITIVE);
         let priors = self.priors.iter();
         priors.map(|prior| data / rough(prior)).collect()
     }
 
-    /// M and Mδ at a trade that stays, and the misfit at δ = 0.
-    pub fn equations(&self, trade: &Trade) -> NormalEquations {
+    /// M and Mδ at variances that stay, and the misfit at δ = 0.
+    pub fn equations(&self, variances: &VarianceComponents) -> NormalEquations {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
-        let (matrix, target, _) = self.system(&self.normal(trade), &forms, trade);
-        let data = weighted_square(self.residual, self.weights, &trade.trust);
-        let rough = self.priors.iter().zip(&trade.smoothing);
+        let (matrix, target, _) = self.system(&self.normal(variances), &forms, variances);
+        let data = weighted_square(self.residual, self.weights, &variances.trust);
+        let rough = self.priors.iter().zip(&variances.smoothing);
         let rough = rough.map(|(prior, smoothing)| {
             let square: f64 = prior.values.iter().map(|value| value * value).sum();
             smoothing * square
@@ -189,8 +191,8 @@ impl Regression<'_> {
         NormalEquations {
             matrix,
             target,
-            misfit: data / trade.variance + rough.sum::<f64>(),
-            fact_misfit: self.facts.1.norm_squared(),
+            misfit: data / variances.variance + rough.sum::<f64>(),
+            force_misfit: self.force_rows.1.norm_squared(),
         }
     }
 
@@ -199,35 +201,35 @@ impl Regression<'_> {
         &self,
         (normal, right): &(DMatrix<f64>, DVector<f64>),
         forms: &[Form],
-        trade: &Trade,
+        variances: &VarianceComponents,
     ) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
-        let (facts, values) = self.facts;
-        let mut held = facts.tr_mul(facts);
-        let mut target = right / trade.variance + facts.tr_mul(values);
-        for (form, smoothing) in forms.iter().zip(&trade.smoothing) {
+        let (force_rows, values) = self.force_rows;
+        let mut held = force_rows.tr_mul(force_rows);
+        let mut target = right / variances.variance + force_rows.tr_mul(values);
+        for (form, smoothing) in forms.iter().zip(&variances.smoothing) {
             held += &form.square * *smoothing;
             target -= &form.slope * *smoothing;
         }
-        (normal / trade.variance + &held, target, held)
+        (normal / variances.variance + &held, target, held)
     }
 
     fn solve(
         &self,
         normal: &(DMatrix<f64>, DVector<f64>),
         forms: &[Form],
-        trade: &Trade,
+        variances: &VarianceComponents,
     ) -> Result<Fit, Undetermined> {
-        let (matrix, target, held) = self.system(normal, forms, trade);
+        let (matrix, target, held) = self.system(normal, forms, variances);
         let (normal, _) = normal;
         let covariance = inverse(&matrix, LEAST_PIVOT).ok_or(Undetermined)?;
         let step = &covariance * &target;
         let left = |(form, smoothing): (&Form, &f64)| {
             (form.rank - smoothing * form.square.dot(&covariance)).max(0.0)
         };
-        let priors = forms.iter().zip(&trade.smoothing);
+        let priors = forms.iter().zip(&variances.smoothing);
         Ok(Fit {
             residual: self.residual - self.design * &step,
-            effective: normal.dot(&covariance) / trade.variance,
+            effective: normal.dot(&covariance) / variances.variance,
             freedom: priors.map(left).collect(),
             length: step.dot(&target).max(0.0).sqrt(),
             covariance,
@@ -237,22 +239,22 @@ impl Regression<'_> {
     }
 
     /// New λ, v and trust; whether the trust stayed.
-    fn update(&self, fit: &Fit, trade: &mut Trade, scales: &[f64]) -> bool {
+    fn update(&self, fit: &Fit, variances: &mut VarianceComponents, scales: &[f64]) -> bool {
         for (index, prior) in self.priors.iter().enumerate() {
             let values = DVector::from_column_slice(&prior.values);
             let rough = (values + &prior.slopes * &fit.step).norm_squared();
             let most = STIFFEST * scales[index];
             let next = fit.freedom[index] / rough.max(f64::MIN_POSITIVE);
-            trade.smoothing[index] = next.clamp(scales[index] / STIFFEST, most);
+            variances.smoothing[index] = next.clamp(scales[index] / STIFFEST, most);
         }
         let distances = self.distances(fit);
         let noise = self
             .robust
             .noise(&distances, fit.effective, self.known_noise);
-        (trade.variance, trade.sound) = (noise.variance, noise.sound);
-        let change = noise.trust.iter().zip(&trade.trust);
+        (variances.variance, variances.sound) = (noise.variance, noise.sound);
+        let change = noise.trust.iter().zip(&variances.trust);
         let changed = change.fold(0.0, |most: f64, (new, old)| most.max((new - old).abs()));
-        trade.trust = noise.trust;
+        variances.trust = noise.trust;
         changed < 1e-3
     }
 

@@ -1,7 +1,7 @@
 //! Intervals place by place, where coverage on the average over a specimen says nothing.
 
 use super::*;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Mesh, Shape};
 
 const WHOLE: [f64; 2] = [100.0, 60.0];
@@ -38,7 +38,7 @@ fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
         let place = there(window.place(cell, window.shape(cell).centre()));
         let (cell, local) = whole.mesh.locate(place);
         let gradient = whole.mesh.gradient_at(whole.field(), cell, local);
-        let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
+        let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
         law().stress(&kinematics).1.into()
     };
     let knowledge = Knowledge {

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use crate::corrector::estimation::edges::Body;
 use crate::corrector::estimation::equations::{BodyForce, Equations, Linear};
 use crate::corrector::estimation::given::{Edge, EdgeCondition};
-use crate::corrector::estimation::regression::Trade;
+use crate::corrector::estimation::regression::VarianceComponents;
 use crate::corrector::estimation::search::NearestField;
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
@@ -124,7 +124,7 @@ impl NearestField<'_> {
         let found = self.mesh_difference(edges)?;
         let target = self
             .equations
-            .mesh_target(&found, (&self.linear, &self.trade));
+            .mesh_target(&found, (&self.linear, &self.variances));
         let change = &self.fit.covariance * target;
         let MeshDifference {
             fine,
@@ -235,15 +235,15 @@ impl Equations<'_> {
     pub fn mesh_target(
         &self,
         difference: &MeshDifference,
-        (linear, trade): (&Linear, &Trade),
+        (linear, variances): (&Linear, &VarianceComponents),
     ) -> DVector<f64> {
-        let mut target = self.target_of(&difference.markers, (linear, trade));
-        let measured = self.task.knowledge.facts().iter().enumerate();
+        let mut target = self.target_of(&difference.markers, (linear, variances));
+        let measured = self.task.knowledge.measured_forces().iter().enumerate();
         for (row, measured) in measured {
             let own = self.bodies.iter().zip(&difference.forces);
             let own = own.filter(|(body, _)| body.name == measured.edge);
             let off: f64 = own.map(|(_, force)| force[measured.axis]).sum();
-            let slopes = linear.facts.0.row(row).transpose();
+            let slopes = linear.force_rows.0.row(row).transpose();
             target -= slopes * (off / measured.standard_deviation);
         }
         target
@@ -253,11 +253,12 @@ impl Equations<'_> {
     pub fn target_of(
         &self,
         displacements: &[f64],
-        (linear, trade): (&Linear, &Trade),
+        (linear, variances): (&Linear, &VarianceComponents),
     ) -> DVector<f64> {
         let weights = &self.task.observations.weights;
         let weighted = displacements.iter().enumerate();
-        let weighted = weighted.map(|(row, d)| -trade.weight(weights, row) * d / trade.variance);
+        let weighted =
+            weighted.map(|(row, d)| -variances.weight(weights, row) * d / variances.variance);
         let weighted = DVector::from_iterator(displacements.len(), weighted);
         linear.design.tr_mul(&weighted)
     }

@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 use crate::corrector::estimation::given::Edge;
 use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 
 /// A free edge, or all of them, with the displacements of the markers per mm that it lies farther out: two rows a marker.
 pub type MovedEdge = (Option<String>, DMatrix<f64>);
@@ -60,7 +60,7 @@ impl NearestField<'_> {
             for share in [0.5 - HALF, 0.5 + HALF] {
                 let place = [0, 1].map(|axis| a[axis] + share * along[axis]);
                 let (cell, local) = mesh.locate(place);
-                let gradient = Gradient::from(mesh.gradient_at(&self.field, cell, local));
+                let gradient = PlaneTensor::from(mesh.gradient_at(&self.field, cell, local));
                 let Ok(kinematics) = Kinematics::new(&gradient) else {
                     continue;
                 };
@@ -84,7 +84,7 @@ impl NearestField<'_> {
 #[cfg(test)]
 mod tests {
     use crate::corrector::estimation::tests::{SIZE, Truth, specimen, with_grips};
-    use crate::corrector::estimation::{Answer, EdgeCondition, Freedom, estimate};
+    use crate::corrector::estimation::{Alternative, Answer, EdgeCondition, estimate};
     use crate::markers::Marker;
     use crate::mesh::{CellShape, Outline};
 
@@ -103,10 +103,10 @@ mod tests {
         let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
         let moved = found
             .verdict
-            .mends
+            .trials
             .into_iter()
-            .filter_map(|mend| match mend.freedom {
-                Freedom::MovedEdge { edge, outwards } => {
+            .filter_map(|trial| match trial.alternative {
+                Alternative::MovedEdge { edge, outwards } => {
                     Some((edge.unwrap_or_else(|| "all".to_owned()), outwards))
                 }
                 _ => None,

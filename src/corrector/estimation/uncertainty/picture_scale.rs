@@ -51,7 +51,7 @@ impl NearestField<'_> {
         let column = self.equations.magnified(&self.field);
         let target = self
             .equations
-            .target_of(&column, (&self.linear, &self.trade));
+            .target_of(&column, (&self.linear, &self.variances));
         -(&self.fit.covariance * target)
     }
 
@@ -83,7 +83,7 @@ impl NearestField<'_> {
 mod tests {
     use crate::corrector::estimation::tests::{SIZE, Truth, specimen, with_grips};
     use crate::corrector::estimation::{
-        Answer, EdgeCondition, FieldEstimate, Freedom, Knowledge, MeasuredForce, estimate,
+        Alternative, Answer, EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, estimate,
     };
     use crate::markers::Marker;
     use crate::mesh::{CellShape, Mesh};
@@ -179,10 +179,10 @@ mod tests {
         let found = seen(&Truth::new(), (0.05, 0.0), 1);
         assert_eq!(found.verdict.answer, Answer::NotExplained);
         assert_eq!(
-            found.verdict.mends[0].freedom,
-            Freedom::Scale,
+            found.verdict.trials[0].alternative,
+            Alternative::Scale,
             "{:?}",
-            found.verdict.mends
+            found.verdict.trials
         );
     }
 }

@@ -25,7 +25,7 @@ impl NearestField<'_> {
     pub(in crate::corrector::estimation) fn smoothed_away(&self) -> DMatrix<f64> {
         let size = self.parameters.len();
         let priors = self.equations.priors(&self.parameters);
-        let eased = priors.iter().map(Form::new).zip(&self.trade.smoothing);
+        let eased = priors.iter().map(Form::new).zip(&self.variances.smoothing);
         let changes = eased.filter_map(|(form, weight)| self.eased(&form, (1.0 - EASED) * weight));
         changes.fold(DMatrix::zeros(size, size), |sum, change| {
             sum + &change * change.transpose()

@@ -64,8 +64,15 @@ impl NearestField<'_> {
         let at_markers = observations.interpolation.multiply(change);
         let mut target = self
             .equations
-            .target_of(&at_markers, (&self.linear, &self.trade));
-        for (row, measured) in self.equations.task.knowledge.facts().iter().enumerate() {
+            .target_of(&at_markers, (&self.linear, &self.variances));
+        for (row, measured) in self
+            .equations
+            .task
+            .knowledge
+            .measured_forces()
+            .iter()
+            .enumerate()
+        {
             let own = self
                 .equations
                 .bodies
@@ -77,7 +84,7 @@ impl NearestField<'_> {
                 .collect();
             let grip = self.equations.grip(&shares, measured.axis, &self.field)?;
             let off = dot(&grip.pull, change) + dot(&grip.marks, strip);
-            let slopes = self.linear.facts.0.row(row).transpose();
+            let slopes = self.linear.force_rows.0.row(row).transpose();
             target -= slopes * (off / measured.standard_deviation);
         }
         Ok(target)
@@ -111,7 +118,7 @@ mod tests {
     use crate::corrector::estimation::tests::{SIZE, Truth, law, specimen, with_grips};
     use crate::corrector::estimation::{Answer, EdgeCondition, FieldEstimate, Knowledge, estimate};
     use crate::markers::Marker;
-    use crate::material::sheet::{Gradient, Kinematics};
+    use crate::material::sheet::{Kinematics, PlaneTensor};
     use crate::mesh::{CellShape, Mesh, Outline};
 
     const GAP: f64 = 2.0;
@@ -148,7 +155,7 @@ mod tests {
             }
             let (there, local) = truth.mesh.locate(place);
             let gradient = truth.mesh.gradient_at(truth.field(), there, local);
-            let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
+            let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
             let off = own.first_piola_kirchhoff_stress[0] - law().stress(&kinematics).1[0];
             inside += u32::from(off.abs() <= 1.96 * own.stress_error[0]);
             all += 1;

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::report::{self, ForceRow};
 use super::{CorrectedSpecimen, JointResults, JointStudy, card};
 use crate::corrector::estimation::{ForceScatter, JointEstimate};
+use crate::document::write_records;
 use crate::results::{
     Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Scale, Stroke,
 };
@@ -185,23 +186,31 @@ fn problem(
 }
 
 fn table(rows: &[ForceRow]) -> String {
-    let mut text = String::from(
-        "specimen,frame,edge,axis,measured_force [N],standard_deviation [N],predicted_by_others [N]\n",
-    );
-    for (name, frame, force) in rows {
-        let predicted = force
-            .predicted
-            .map_or(String::new(), |there| there.to_string());
+    let head = [
+        "specimen",
+        "frame",
+        "edge",
+        "axis",
+        "measured_force [N]",
+        "standard_deviation [N]",
+        "predicted_by_others [N]",
+    ];
+    let line = |(name, frame, force): &ForceRow| {
         let measured = &force.measured;
-        text += &format!(
-            "{name},{frame},{},{},{},{},{predicted}\n",
-            measured.edge,
-            ["x", "y"][measured.axis],
-            measured.force,
-            measured.standard_deviation
-        );
-    }
-    text
+        vec![
+            (*name).to_owned(),
+            frame.to_string(),
+            measured.edge.clone(),
+            ["x", "y"][measured.axis].to_owned(),
+            measured.force.to_string(),
+            measured.standard_deviation.to_string(),
+            force
+                .predicted
+                .map_or(String::new(), |there| there.to_string()),
+        ]
+    };
+    let head = head.map(str::to_owned).to_vec();
+    write_records(std::iter::once(head).chain(rows.iter().map(line)))
 }
 
 /// Predicted over measured forces; `None` where none was predicted.

@@ -97,7 +97,9 @@ fn estimates(plate: &ClampedPlate, finest: &ReferenceMesh) -> Vec<Option<ErrorEs
     }
     let recovery = Recovery::new(&finest.model.mesh);
     let found = finest.model.estimates(plate, states, &recovery);
-    found.into_iter().map(Result::ok).collect()
+    let complete =
+        |found: Result<ErrorEstimate, _>| found.ok().filter(|own| own.energy.is_complete);
+    found.into_iter().map(complete).collect()
 }
 
 /// One model of a study alone.

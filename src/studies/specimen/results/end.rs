@@ -4,7 +4,7 @@ use super::measured::Measured;
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, Model};
-use crate::results::{Block, Grid, GridSeries, Outcome};
+use crate::results::{Block, Grid, GridSeries, Outcome, decimals};
 use crate::solve::{PathEnd, State};
 use crate::studies::specimen::problem::Specimen;
 
@@ -105,7 +105,7 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
             end.model,
             format!("{:.4}", last.state.factor),
             end.fault.to_string(),
-            format!("{:.5}", measured.of(&last.groups)),
+            decimals(measured.of(&last.groups), 5),
             file,
         ]);
         if last.between {

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::measured::Measured;
+use crate::compare::judgement::Judgement;
 use crate::compare::percent_at_all_nodes;
 use crate::finite_element::convergence::{
     LOWEST_ORDER, at_most_of_order, corner_exponent, of_distances, richardson,
@@ -50,7 +51,7 @@ pub struct Round {
     pub cells: usize,
     /// Its nodes.
     pub nodes: usize,
-    /// Estimated error of the field in the energy norm in %.
+    /// Estimated error of the field in the energy norm in %; not a number where it is not known of all load factors.
     pub energy_percent: f64,
     /// Estimated error of what is measured in %.
     pub measured_percent: f64,
@@ -315,13 +316,11 @@ impl Reference {
         }
         let wanted = Wanted::AtMost(goal.error_percent);
         let source = "the study's goal";
-        Some(Check::new(
-            quantity,
-            "%",
-            wanted,
-            source,
-            last.energy_percent,
-        ))
+        let check = Check::new(quantity, "%", wanted, source, last.energy_percent);
+        Some(match last.energy_percent.is_nan() {
+            true => check.judged(unknown_energy(), f64::NAN),
+            false => check,
+        })
     }
 
     /// The outline's share of the error, and the rounds of local refinement.
@@ -342,8 +341,8 @@ impl Reference {
                 number.to_string(),
                 round.cells.to_string(),
                 round.nodes.to_string(),
-                format!("{:.4}", round.energy_percent),
-                format!("{:.5}", round.measured_percent),
+                figure(round.energy_percent, 4),
+                figure(round.measured_percent, 5),
             ]
         };
         let text = "Local refinement: in every round the cells with half of the squared error are cut into four. Errors \
@@ -351,6 +350,24 @@ impl Reference {
         let rounds = self.rounds.iter().enumerate().map(row);
         let history = [Block::Paragraph(text.into()), Block::table(&head, rounds)];
         outline.into_iter().chain(history).collect()
+    }
+}
+
+/// What an error that recovery does not tell comes to.
+fn unknown_energy() -> Judgement {
+    Judgement::CannotBeJudged {
+        reason: "recovery tells no error: no load factor is reached, or between the points of the cells' rule the field folds or lies beyond \
+                 the limit of the law"
+            .into(),
+        remedy: "take smaller load factors, or allow more cells".into(),
+    }
+}
+
+/// A figure with some decimals; a dash for one that is not known.
+fn figure(value: f64, decimals: usize) -> String {
+    match value.is_finite() {
+        true => format!("{value:.decimals$}"),
+        false => "–".to_owned(),
     }
 }
 

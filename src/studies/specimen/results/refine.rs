@@ -11,6 +11,7 @@ use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, 
 use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
+use crate::statistics::larger;
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{Refinement, Specimen};
 
@@ -57,7 +58,7 @@ impl Reference {
         let mut reference = Self {
             displacement: Vec::new(),
             of_all_nodes: Vec::new(),
-            estimates: estimates(specimen, &finest, &measured)?,
+            estimates: complete(estimates(specimen, &finest, &measured)?),
             outline: outline_changes(specimen, &measured, once_halved, progress)?,
             all_halved,
             coarser: meshes.split_off(meshes.len().saturating_sub(2)),
@@ -224,7 +225,8 @@ fn on_mesh(
 
 impl Round {
     fn of(solution: &Solution, measured: &Measured, estimates: &[Option<ErrorEstimate>]) -> Self {
-        let worst = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let worst =
+            |values: &mut dyn Iterator<Item = f64>| values.reduce(larger).unwrap_or(f64::NAN);
         let known = || estimates.iter().enumerate();
         let known = || known().filter_map(|(step, estimate)| Some((step, estimate.as_ref()?)));
         let mut errors = known().filter_map(|(step, estimate)| {
@@ -294,6 +296,12 @@ fn indicators(cells: usize, estimates: &[Option<ErrorEstimate>]) -> Vec<f64> {
         }
     }
     sums
+}
+
+/// The estimates that lack no point.
+fn complete(estimates: Vec<Option<ErrorEstimate>>) -> Vec<Option<ErrorEstimate>> {
+    let complete = |one: Option<ErrorEstimate>| one.filter(|own| own.energy.is_complete);
+    estimates.into_iter().map(complete).collect()
 }
 
 /// The estimated errors of a solution at each load factor; `None` where the tangent of that state gives none.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::bodies;
 use crate::corrector::estimation::given::{EdgeCondition, segments};
 use crate::material::Card;
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::Assembly;
@@ -75,7 +75,7 @@ fn forces_of_edges_that_meet_are_those_of_a_uniform_stress() {
             let energy = SheetEnergy::of_mesh(Arc::clone(&law), mesh, THICKNESS);
             let mut reactions = vec![0.0; field.len()];
             Assembly::residual(&energy, &field, &mut reactions).unwrap();
-            let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
+            let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
             let stress: [f64; 4] = law.stress(&kinematics).1.into();
             let parts = segments(mesh, &SIDES).unwrap();
             let held = parts.iter().map(|part| (part, EdgeCondition::Unknown));
