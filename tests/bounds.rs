@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 mod common;
 
-use common::{gelbench, root, words};
+use common::{gelbench, one_line, root};
 
 /// A study of the examples with some keys changed.
 fn study(name: &str, changes: &[(&str, &str)]) -> String {
@@ -35,9 +35,7 @@ fn told(file: (&str, &str), arguments: &[&str], code: i32) -> String {
     let done = gelbench(folder.path(), arguments).code(code);
     assert!(start.elapsed() < Duration::from_secs(30), "{arguments:?}");
     let output = done.get_output();
-    // Messages are broken where lines end.
-    let said = words(&output.stderr) + &words(&output.stdout);
-    said.split_whitespace().collect::<Vec<_>>().join(" ")
+    one_line(&output.stderr) + " " + &one_line(&output.stdout)
 }
 
 #[test]
@@ -292,8 +290,7 @@ fn what_is_no_file_is_refused_by_every_reader() {
     commands.extend(fields.map(|field| [&["correct", field], &sheet[..]].concat()));
     for command in commands {
         let done = gelbench(folder.path(), &command).code(2);
-        let said = words(&done.get_output().stderr);
-        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = one_line(&done.get_output().stderr);
         assert!(
             said.contains("it is no file; save what it gives"),
             "{command:?}: {said}"

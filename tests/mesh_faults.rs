@@ -14,7 +14,7 @@ use gelbench::validation::{case_of, read_as};
 mod common;
 
 use common::mesh_files::{KINDS, MeshFile};
-use common::{folder_with, gelbench, words};
+use common::{folder_with, gelbench, one_line, words};
 
 /// A study of a strip from a file, with more keys of its specimen.
 fn study(more: &str) -> String {
@@ -33,12 +33,7 @@ fn told(file: &MeshFile, more: &str, arguments: &[&str], code: i32) -> String {
     let folder = folder_with(&study(more));
     fs::write(folder.path().join("strip.msh"), file.msh()).unwrap();
     let done = gelbench(folder.path(), arguments).code(code);
-    let found = words(&done.get_output().stderr);
-    let found: Vec<&str> = found
-        .split_whitespace()
-        .filter(|word| *word != "│")
-        .collect();
-    found.join(" ")
+    one_line(&done.get_output().stderr)
 }
 
 const CHECK: [&str; 2] = ["check", "small.toml"];

@@ -7,13 +7,12 @@ use tempfile::TempDir;
 
 mod common;
 
-use common::{SMALL, gelbench, root, words};
+use common::{SMALL, gelbench, one_line, root};
 
 /// What a command that fails prints, without line breaks.
 fn told(folder: &Path, arguments: &[&str], code: i32) -> String {
     let done = gelbench(folder, arguments).code(code);
-    let printed = words(&done.get_output().stderr);
-    printed.split_whitespace().collect::<Vec<_>>().join(" ")
+    one_line(&done.get_output().stderr)
 }
 
 fn contains(told: &str, expected: &[&str]) {

@@ -7,7 +7,7 @@ use std::fs;
 mod common;
 
 use common::exports::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
-use common::{SMALL, folder_with, gelbench, number, words};
+use common::{SMALL, folder_with, gelbench, number, one_line, words};
 use gelbench::mesh::import_field;
 
 /// The mesh that goes out is the one that the other models are compared with.
@@ -95,8 +95,7 @@ fn what_cannot_be_exported_is_refused_before_anything_is_written() {
         let folder = folder_with(study);
         let export = [vec!["export", "small.toml"], arguments].concat();
         let done = gelbench(folder.path(), &export).code(2);
-        let found = words(&done.get_output().stderr);
-        let found = found.split_whitespace().collect::<Vec<_>>().join(" ");
+        let found = one_line(&done.get_output().stderr);
         assert!(found.contains(told), "{told}: {found}");
         assert!(!folder.path().join("output").exists());
     }

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 mod common;
 
-use common::{SMALL, gelbench, machine_report, words};
+use common::{SMALL, gelbench, machine_report, one_line, words};
 
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -247,8 +247,7 @@ fn what_cannot_change_its_volume_is_told() {
         let text = fs::read_to_string(&path).unwrap();
         fs::write(&path, text.replace(replace[0], replace[1])).unwrap();
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-        let printed = words(&done.get_output().stderr);
-        printed.split_whitespace().collect::<Vec<_>>().join(" ")
+        one_line(&done.get_output().stderr)
     };
     let none = told("plane-strain", "", ["[volume]", ""]);
     assert!(

@@ -10,6 +10,7 @@ use crate::material::softened_law::check_memory;
 use crate::mesh::MeshData;
 use crate::problem::Solution;
 use crate::results::Outcome;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::studies::{Computation, Kind, Progress};
 
 mod files;
@@ -124,9 +125,9 @@ pub fn fields(
     };
     Ok(ModelFields {
         fields: [
-            field("finite elements", &models.reference.finest),
-            field("mass-spring", &models.on_lattice.uncorrected),
-            field("corrected", &models.on_lattice.corrected),
+            field(FINITE_ELEMENTS.name, &models.reference.finest),
+            field(MASS_SPRING.name, &models.on_lattice.uncorrected),
+            field(CORRECTED.name, &models.on_lattice.corrected),
         ],
         own_percent,
     })

@@ -25,6 +25,13 @@ pub fn words(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// Text that was printed, in one line: messages are broken where a terminal's lines end.
+pub fn one_line(printed: &[u8]) -> String {
+    let text = words(printed);
+    let of_text = text.split_whitespace().filter(|word| *word != "│");
+    of_text.collect::<Vec<_>>().join(" ")
+}
+
 pub fn folder_with(study: &str) -> TempDir {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("small.toml"), study).unwrap();

@@ -83,8 +83,7 @@ pub fn shell(folder: &Path, script: &str) -> Output {
 }
 
 pub fn told(output: &Output) -> String {
-    let text = String::from_utf8_lossy(&output.stderr);
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    super::one_line(&output.stderr)
 }
 
 #[track_caller]

@@ -1,6 +1,6 @@
 //! What is said of a study that cannot be run.
 
-use super::common::{folder_with, gelbench, words};
+use super::common::{folder_with, gelbench, one_line, words};
 use super::{PULLED, STRIP, specimen};
 
 #[test]
@@ -52,8 +52,7 @@ fn faults_of_a_specimen_are_told_with_their_place() {
     ] {
         let folder = folder_with(&specimen(shape, &rest));
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-        let found = words(&done.get_output().stderr);
-        let found = found.split_whitespace().collect::<Vec<_>>().join(" ");
+        let found = one_line(&done.get_output().stderr);
         assert!(found.contains(told), "{told}: {found}");
     }
 }

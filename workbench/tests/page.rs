@@ -1,7 +1,8 @@
 //! The page in a browser without a display: it loads, the grip is pulled, files are dropped, and the figures are those of the
-//! desktop. It needs Chromium and the page in `target/page` (`workbench/page/build`); where one of them is missing the test
-//! says so and is skipped. With `GELBENCH_SCREENSHOTS=FOLDER` it leaves pictures of all views there.
+//! desktop. It needs Chromium and the page in `target/page` (`workbench/page/build`); where one of them is missing every test
+//! is listed as ignored, with the reason. With `GELBENCH_SCREENSHOTS=FOLDER` it leaves pictures of all views there.
 
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use gelbench_workbench::logic::background::Worker;
@@ -9,10 +10,55 @@ use gelbench_workbench::logic::engine::{Engine, Task};
 use gelbench_workbench::logic::field::{Edge, FieldCorrector, FieldQuestion};
 use gelbench_workbench::logic::material::{FitQuestion, Fitter, TestFile};
 use gelbench_workbench::logic::scene::{CardFile, Model, Scene};
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use serde_json::{Value, json};
 
 mod browser;
 use browser::Browser;
+
+const TESTS: [(&str, fn()); 5] = [
+    (
+        "the_page_loads_follows_the_hand_and_finds_what_the_desktop_finds",
+        the_page_loads_follows_the_hand_and_finds_what_the_desktop_finds,
+    ),
+    (
+        "a_finger_pulls_the_grip_where_pixels_are_small",
+        a_finger_pulls_the_grip_where_pixels_are_small,
+    ),
+    (
+        "a_link_restores_the_sheet_with_a_card_of_its_own",
+        a_link_restores_the_sheet_with_a_card_of_its_own,
+    ),
+    (
+        "the_sheet_is_let_go_and_held_again_in_the_browser",
+        the_sheet_is_let_go_and_held_again_in_the_browser,
+    ),
+    (
+        "pictures_tables_and_fields_go_out_of_the_browser",
+        pictures_tables_and_fields_go_out_of_the_browser,
+    ),
+];
+
+/// What takes minutes, and is there to be looked at: times of frames, and pictures. `-- --ignored` runs it.
+const LOOKS: [(&str, fn()); 2] = [
+    ("frames_are_timed", frames_are_timed),
+    ("the_first_two_minutes", the_first_two_minutes),
+];
+
+fn main() -> ExitCode {
+    let trial = |(name, test): (&str, fn())| {
+        Trial::ignorable_test(name, move || -> Result<Completion, Failed> {
+            if let Some(reason) = Browser::missing() {
+                return Ok(Completion::ignored_with(reason));
+            }
+            test();
+            Ok(Completion::Completed)
+        })
+    };
+    let tests = TESTS.map(trial).into_iter();
+    let looks = LOOKS.map(trial).map(|look| look.with_ignored_flag(true));
+    libtest_mimic::run(&Arguments::from_args(), tests.chain(looks).collect()).exit_code()
+}
 
 /// How far figures may differ between the browser and the desktop, relative to themselves.
 const SAME: f64 = 1e-9;
@@ -47,11 +93,8 @@ fn settled(told: &Value) -> bool {
     told["settled"] == json!(true)
 }
 
-#[test]
 fn the_page_loads_follows_the_hand_and_finds_what_the_desktop_finds() {
-    let Some(mut page) = Browser::open([1400, 900]) else {
-        return;
-    };
+    let mut page = Browser::open([1400, 900]);
     let loaded = page.loaded();
     let told = page.until(settled);
     println!(
@@ -165,15 +208,12 @@ fn every_view_is_seen_in_every_size_and_light(page: &mut Browser) {
     }
 }
 
-#[test]
 fn a_finger_pulls_the_grip_where_pixels_are_small() {
     let scene = Scene {
         cells: [24, 8],
         ..Scene::default()
     };
-    let Some(mut page) = Browser::open_fine([800, 700], 2.0, &scene.study()) else {
-        return;
-    };
+    let mut page = Browser::open_fine([800, 700], 2.0, &scene.study());
     let told = page.until(settled);
     let number = |value: &Value| value.as_f64().unwrap();
     assert_eq!(number(&told["pixels_per_point"]), 2.0);
@@ -190,17 +230,13 @@ fn a_finger_pulls_the_grip_where_pixels_are_small() {
     page.picture("sheet_touched_800_fine");
 }
 
-#[test]
-#[ignore = "minutes: frame times of three sizes"]
 fn frames_are_timed() {
     for cells in [[54, 18], [118, 40], [172, 58], [346, 116]] {
         let scene = Scene {
             cells,
             ..Scene::default()
         };
-        let Some(mut page) = Browser::open_with([1200, 800], &scene.study(), 600) else {
-            return;
-        };
+        let mut page = Browser::open_with([1200, 800], &scene.study(), 600);
         let begun = Instant::now();
         let told = page.until_within(Duration::from_secs(240), |told| told["frames"].is_string());
         println!(
@@ -213,7 +249,6 @@ fn frames_are_timed() {
     }
 }
 
-#[test]
 fn a_link_restores_the_sheet_with_a_card_of_its_own() {
     let mut scene = Scene {
         cells: [24, 8],
@@ -227,9 +262,7 @@ fn a_link_restores_the_sheet_with_a_card_of_its_own() {
     scene.card = moved.unwrap();
     scene.grip.displacement = [30.0, 6.0];
     scene.grip.angle = 0.1;
-    let Some(mut page) = Browser::open_with([1000, 700], &scene.study(), 0) else {
-        return;
-    };
+    let mut page = Browser::open_with([1000, 700], &scene.study(), 0);
     let told = page.until(settled);
     let study = told["study"].as_str().unwrap();
     let restored = Scene::open("link.toml".as_ref(), study, &[]).unwrap();
@@ -239,11 +272,8 @@ fn a_link_restores_the_sheet_with_a_card_of_its_own() {
     compare_forces(&told);
 }
 
-#[test]
 fn the_sheet_is_let_go_and_held_again_in_the_browser() {
-    let Some(mut page) = Browser::open([1000, 700]) else {
-        return;
-    };
+    let mut page = Browser::open([1000, 700]);
     page.until(settled);
     page.press("l");
     page.until(|told| told["moving"][0].as_f64().is_some_and(|clock| clock > 0.02));
@@ -252,11 +282,8 @@ fn the_sheet_is_let_go_and_held_again_in_the_browser() {
     page.until(|told| told["moving"].is_null());
 }
 
-#[test]
 fn pictures_tables_and_fields_go_out_of_the_browser() {
-    let Some(mut page) = Browser::open([1400, 900]) else {
-        return;
-    };
+    let mut page = Browser::open([1400, 900]);
     page.until(settled);
     let folder = page.downloads();
     for (offer, file, begin) in [
@@ -289,12 +316,8 @@ fn pictures_tables_and_fields_go_out_of_the_browser() {
     }
 }
 
-#[test]
-#[ignore = "a minute: pictures for people to look at"]
 fn the_first_two_minutes() {
-    let Some(mut page) = Browser::open([1400, 900]) else {
-        return;
-    };
+    let mut page = Browser::open([1400, 900]);
     page.picture("newcomer_0_at_once");
     let told = page.until(settled);
     page.picture("newcomer_1_settled");

@@ -2,6 +2,7 @@
 
 use crate::compare::{Deviation, StepComparison};
 use crate::problem::ClampedPlate;
+use crate::results::models::{CORRECTED, MASS_SPRING};
 use crate::results::{Block, Outcome, pictures, work_blocks};
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
@@ -106,8 +107,8 @@ fn deviations(study: &Study, results: &Results) -> Vec<Block> {
     let rows = |step: &StepComparison| {
         let correction = step.correction_percent(|deviation| deviation.departure_percent);
         let models = [
-            ("mass-spring", &step.mass_spring, None),
-            ("corrected", &step.corrected, correction),
+            (MASS_SPRING.name, &step.mass_spring, None),
+            (CORRECTED.name, &step.corrected, correction),
         ];
         models.map(|(model, deviation, correction)| {
             let correction = figure(correction, 2);

@@ -4,6 +4,7 @@ use super::problem::Study;
 use super::results::Results;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, EQUILIBRIUM, FREE_EDGES, GRIPS};
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Array, Grid, GridSeries, Sheet};
 use crate::solve::State;
 
@@ -60,10 +61,10 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
         GridSeries::numbered(name, 3, grids)
     };
     let mut all = vec![
-        series("mass_spring", mass_spring.collect()),
+        series(MASS_SPRING.key, mass_spring.collect()),
         series("springs", bars.collect()),
-        series("corrected", corrected.collect()),
-        series("finite_element", elements.collect()),
+        series(CORRECTED.key, corrected.collect()),
+        series(FINITE_ELEMENTS.key, elements.collect()),
     ];
     all.retain(|series| !series.grids.is_empty());
     all

@@ -5,7 +5,7 @@ use super::results::measured::Quantity;
 use super::results::models::Models;
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, Solution};
-use crate::results::models::MODELS;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, MODELS};
 use crate::results::{
     Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
     Stroke, mesh_outlines, sheet_figures,
@@ -226,14 +226,14 @@ pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec
         let state = &uncorrected.states[step];
         Grid::springs(&on_lattice.springs, &state.displacement, &state.history)
     });
-    let elements = series("finite_element", reference.reached(), &|step| {
+    let elements = series(FINITE_ELEMENTS.key, reference.reached(), &|step| {
         let error = reference.estimates[step].as_ref();
         let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
         field(&reference.finest, step).with_in_cells(error)
     });
     let all = [
-        on_lattice_of("mass_spring", uncorrected),
-        on_lattice_of("corrected", corrected),
+        on_lattice_of(MASS_SPRING.key, uncorrected),
+        on_lattice_of(CORRECTED.key, corrected),
         springs,
         elements,
     ];

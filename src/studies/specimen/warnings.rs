@@ -5,6 +5,7 @@ use super::results::models::Models;
 use crate::mass_spring;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
+use crate::results::models::FINITE_ELEMENTS;
 use crate::results::{
     is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
 };
@@ -40,7 +41,7 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(several(models));
     all.extend(strained::warnings(
         &specimen.card,
-        ("finite elements", mesh),
+        (FINITE_ELEMENTS.name, mesh),
         0.0,
         loads(),
     ));

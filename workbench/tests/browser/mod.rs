@@ -62,28 +62,32 @@ fn chromium() -> Option<PathBuf> {
 }
 
 impl Browser {
-    /// The page in a window of a size in points, in the dark; nothing where it cannot be had, which is said.
-    pub fn open(size: [u32; 2]) -> Option<Self> {
+    /// What is missing for the page to be seen; `None` where nothing is.
+    pub fn missing() -> Option<&'static str> {
+        match (chromium(), page_folder().join("index.html").is_file()) {
+            (None, _) => Some("Chromium is not installed"),
+            (_, false) => Some("there is no page: `workbench/page/build` makes it"),
+            _ => None,
+        }
+    }
+
+    /// The page in a window of a size in points, in the dark; where it can be had (see [`Self::missing`]).
+    pub fn open(size: [u32; 2]) -> Self {
         Self::start(size, 1.0, "")
     }
 
     /// The page with a study on its table, on a screen that has so many pixels for a point.
-    pub fn open_fine(size: [u32; 2], scale: f64, study: &str) -> Option<Self> {
+    pub fn open_fine(size: [u32; 2], scale: f64, study: &str) -> Self {
         Self::start(size, scale, &format!("#{}", escaped(study)))
     }
 
     /// The page with a study on its table, pulling by itself for so many frames.
-    pub fn open_with(size: [u32; 2], study: &str, frames: usize) -> Option<Self> {
+    pub fn open_with(size: [u32; 2], study: &str, frames: usize) -> Self {
         Self::start(size, 1.0, &format!("?frames={frames}#{}", escaped(study)))
     }
 
-    fn start(size: [u32; 2], scale: f64, rest: &str) -> Option<Self> {
-        let (Some(program), true) = (chromium(), page_folder().join("index.html").is_file()) else {
-            eprintln!(
-                "skipped: there is no Chromium, or no page; `workbench/page/build` makes the page"
-            );
-            return None;
-        };
+    fn start(size: [u32; 2], scale: f64, rest: &str) -> Self {
+        let program = chromium().expect("Chromium");
         let port = serve(page_folder());
         let folder =
             std::env::temp_dir().join(format!("gelbench-page-{}-{port}", std::process::id()));
@@ -114,7 +118,7 @@ impl Browser {
         );
         browser.until(|told| told.is_object());
         (browser.loaded, browser.loaded_at) = (begun.elapsed(), Instant::now());
-        Some(browser)
+        browser
     }
 
     fn set(&mut self, size: [u32; 2], light: bool) {

@@ -19,6 +19,7 @@ use crate::mass_spring::MassSpring;
 use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::problem::{ClampedPlate, Measures, Model, Solution};
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::solve::{NewtonSettings, State};
 use crate::studies::plate::problem::Study;
 use crate::studies::{ModelKind, OneModel, Progress};
@@ -40,7 +41,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let mut run = Run::new(study, progress);
     let plate = &study.problem;
     let springs = MassSpring::new(plate, study.cells, study.lattice);
-    let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
+    let uncorrected = run.solve(MASS_SPRING.name, &springs.model(plate), study.mass_spring);
     let corrected_mesh = study.corrected_mesh();
     let corrected = run.timed("corrector", |run| {
         run.correct(&uncorrected, &corrected_mesh)
@@ -114,7 +115,7 @@ pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel
         return of_solution(finest.solution, ends.into_iter().collect());
     }
     let springs = MassSpring::new(plate, study.cells, study.lattice);
-    let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
+    let uncorrected = run.solve(MASS_SPRING.name, &springs.model(plate), study.mass_spring);
     if kind == ModelKind::MassSpring {
         return of_solution(uncorrected, run.ends);
     }
@@ -326,9 +327,9 @@ pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<Mode
     let own = results.comparison[last].reference;
     Ok(ModelFields {
         fields: [
-            field("finite elements", finest, elements),
-            field("mass-spring", lattice, springs),
-            field("corrected", &cells, corrected),
+            field(FINITE_ELEMENTS.name, finest, elements),
+            field(MASS_SPRING.name, lattice, springs),
+            field(CORRECTED.name, &cells, corrected),
         ],
         own_percent: own.map(|own| own.displacement_percent),
     })

@@ -8,6 +8,7 @@ use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::{Model, Solution};
+use crate::results::models::{CORRECTED, MASS_SPRING};
 use crate::solve::vector::difference;
 use crate::solve::{Assembly, Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
 use crate::studies::Progress;
@@ -96,13 +97,13 @@ pub fn solve_springs(
     progress: Progress,
 ) -> Result<(MassSpring, Solution), Error> {
     let problem = &specimen.problem;
-    progress.tell("mass-spring");
+    progress.tell(MASS_SPRING.name);
     let lattice = specimen.outline.lattice();
     let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
     let model = specimen.on(&springs.mesh, springs.potential())?;
-    let model = model.named("mass-spring");
+    let model = model.named(MASS_SPRING.name);
     let model = model.describing(|element| springs.describe_element(element));
-    let uncorrected = solve(specimen, &model, "mass_spring", ends, progress);
+    let uncorrected = solve(specimen, &model, MASS_SPRING.key, ends, progress);
     drop(model);
     Ok((springs, uncorrected))
 }
@@ -185,7 +186,7 @@ pub fn solve_corrected(
     let springs = solve_springs(specimen, ends, progress)?;
     let found = OnLattice::correct(specimen, springs, climbs, ends, progress)?;
     // Where the springs end early the correction goes on.
-    ends.retain(|end| !end.is_of("mass-spring"));
+    ends.retain(|end| !end.is_of(MASS_SPRING.name));
     Ok(found.corrected)
 }
 
@@ -281,7 +282,7 @@ impl<'a> Corrections<'a> {
             Err(end) => match end.states.get(step) {
                 Some(state) => state,
                 None => {
-                    let end = End::of_path(specimen, model, "corrected", end);
+                    let end = End::of_path(specimen, model, CORRECTED.key, end);
                     return Err(Box::new(end));
                 }
             },

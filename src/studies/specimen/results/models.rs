@@ -37,7 +37,7 @@ impl Models {
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        progress.tell("finite elements");
+        progress.tell(FINITE_ELEMENTS.name);
         let reference = Reference::solve(specimen, ends, progress)?;
         let on_lattice = OnLattice::solve(specimen, ends, progress)?;
         Ok(Self {

@@ -11,6 +11,7 @@ use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, 
 use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
+use crate::results::models::FINITE_ELEMENTS;
 use crate::statistics::larger;
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{Refinement, Specimen};
@@ -23,7 +24,7 @@ const MOST_CELLS: usize = 30_000;
 
 /// Begin of the names of the files of the meshes, from coarse to fine.
 const FILES: [&str; 3] = ["finite_element_coarse", "finite_element_middle", FILE];
-const FILE: &str = "finite_element";
+const FILE: &str = FINITE_ELEMENTS.key;
 
 impl Reference {
     /// Solves the specimen on three meshes, or on as many as the goal of local refinement takes.
