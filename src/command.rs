@@ -19,6 +19,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::budget::Budget;
 use crate::document::inputs;
 use crate::error::Diagnostic;
+use crate::kinds;
 use crate::output;
 use crate::output::ResultFolder;
 use crate::results::{Check, End, Results};
@@ -271,7 +272,7 @@ fn perform(command: Command) -> u8 {
 
 /// Computes a study of any kind and writes what it finds.
 fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
-    let mut ready = validation::read(path, budget)?;
+    let mut ready = kinds::read(path, budget)?;
     let usual = || Path::new("output").join(name(path));
     let folder = folder.or_else(|| ready.folder.clone());
     let folder = folder.unwrap_or_else(usual);
@@ -308,11 +309,11 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
 }
 
 fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
-    let chosen = validation::choose(names, quick)?;
+    let chosen = kinds::choose(names, quick)?;
     // A part never takes the place of the whole report.
     let part = match &*chosen {
-        [case] => case.kind,
-        all if all.len() == validation::CASES.len() => "",
+        [case] => case.name,
+        all if all.len() == kinds::KINDS.len() => "",
         _ => "several",
     };
     let usual = || Path::new("output/validation").join(part);
@@ -322,10 +323,10 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let progress = Progress::of(chosen.len() as u64);
     let mut cases = Vec::new();
     for case in chosen {
-        let told = |what: &str| progress.tell(&format!("{}: {what}", case.kind));
+        let told = |what: &str| progress.tell(&format!("{}: {what}", case.name));
         told("begins");
         let told = studies::Progress::to(&told);
-        cases.push(validation::compute_or_fail(case, told)?);
+        cases.push(kinds::compute_or_fail(case, told)?);
         progress.advance();
     }
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
@@ -377,7 +378,7 @@ fn conclude(results: &[Results], written: &str) -> Outcome {
 }
 
 fn check(path: &Path, budget: Budget) -> Outcome {
-    let ready = validation::read(path, budget)?;
+    let ready = kinds::read(path, budget)?;
     warn(&ready.warnings);
     print(&format!("{}: no faults; {}\n", path.display(), ready.about))?;
     let taken: Vec<&str> = ready.physical_defaults().collect();

@@ -53,10 +53,11 @@
 //! | correct a field with conditions of your own; correct a plate; estimate a field from markers | [`corrector`], [`corrector::climb`], [`corrector::estimation`] |
 //! | fit a law to test data; find springs and dashpots in a recording | [`calibration`], [`identification`] |
 //! | compare two fields, with the reference's own error | [`compare`] |
-//! | run a study file as the command does | [`studies`], [`results`] |
+//! | solve, compare and report what a study asks for | [`studies`], [`results`] |
 //! | write reports, pictures, VTK files, or the input of another code | [`output`] |
-//! | run a study many times, some of its keys changed | [`sweep`] |
 //! | recompute what proves gelbench right | [`validation`] |
+//! | read a study file of any kind, and compute it as the command does | [`kinds`] |
+//! | run a study many times, some of its keys changed | [`sweep`] |
 //! | call the command itself | [`command`] |
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
@@ -73,6 +74,7 @@ pub mod error;
 pub mod finite_element;
 pub mod guide;
 pub mod identification;
+pub mod kinds;
 pub mod markers;
 pub mod mass_spring;
 pub mod material;

@@ -89,6 +89,9 @@ pub struct PreparedStudy {
     pub progress_steps: usize,
 }
 
+/// Faults are told before anything is computed.
+const SOUND: &str = "a study without faults";
+
 /// The computation of a study.
 pub type Computation = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
 
@@ -97,8 +100,8 @@ pub type Prepare = fn(&Section, &Path) -> Computation;
 
 /// A kind of study: what there is to know of it without what computes it.
 pub struct Kind {
-    /// The `kind` of its studies.
-    pub kind: &'static str,
+    /// What its studies state as `kind`.
+    pub name: &'static str,
     /// The study that comes along; its keys are the defaults.
     pub study: &'static str,
     /// Where that study stands.
@@ -107,11 +110,11 @@ pub struct Kind {
     pub slow: bool,
 }
 
-/// What studies without a title are called before the title of their card, by their kind; the others are called as their case.
+/// What studies without a title are called before the title of their card, by their kind; the others are called as their kind.
 const UNTITLED: [(&str, &str); 2] = [("specimen", "Specimen"), ("motion", "Moving plate")];
 
 impl Kind {
-    /// Reads a study of this case by `prepare`, which may ask for so much.
+    /// Reads a study of this kind by `prepare`, which may ask for so much.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault.
@@ -126,14 +129,14 @@ impl Kind {
         Ok(PreparedStudy {
             name: name(file),
             title: read.title,
-            kind: self.kind,
+            kind: self.name,
             text: text.to_owned(),
             defaults: read.defaults,
             computation: read.made,
             warnings: read.warnings,
             folder: None,
             report: true,
-            about: format!("a study of the kind {}", self.kind),
+            about: format!("a study of the kind {}", self.name),
             progress_steps: 0,
         })
     }
@@ -147,7 +150,7 @@ impl Kind {
         read: impl FnOnce(&Section, &Path) -> Option<T>,
     ) -> Result<(String, T, Vec<Diagnostic>), Error> {
         let read = self.read_with(file, text, budget, read)?;
-        let made = read.made.expect("a study without faults can be computed");
+        let made = read.made.expect(SOUND);
         Ok((read.title, made, read.warnings))
     }
 
@@ -165,7 +168,7 @@ impl Kind {
 
     /// What the study is called: a specimen or a motion without a title after its material, the others as their case.
     fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
-        let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.kind) else {
+        let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.name) else {
             return root.heading("title");
         };
         root.own_heading("title").unwrap_or_else(|| {
@@ -179,7 +182,7 @@ impl Kind {
         })
     }
 
-    /// What `read` makes of a study of this case.
+    /// What `read` makes of a study of this kind.
     fn read_with<T>(
         &self,
         file: &Path,

@@ -4,12 +4,12 @@ use std::fs;
 use std::sync::Arc;
 
 use gelbench::budget::Budget;
+use gelbench::kinds::{kind_of, read_as};
 use gelbench::material::NeoHooke;
 use gelbench::mesh::{CellShape, Mesh, MeshReading, Shape, import};
 use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
 use gelbench::studies::Progress;
-use gelbench::validation::{case_of, read_as};
 
 mod common;
 
@@ -357,7 +357,7 @@ fn within(cells: f64) -> (String, Vec<String>) {
     )
     .unwrap();
     let text = study("");
-    let case = case_of("small.toml", &text).unwrap().unwrap();
+    let case = kind_of("small.toml", &text).unwrap().unwrap();
     let budget = Budget {
         cells,
         ..Budget::USUAL

@@ -3,19 +3,19 @@
 use std::path::Path;
 
 use gelbench::budget::Budget;
+use gelbench::kinds::kind_of;
 use gelbench::material::Card;
 use gelbench::results::Outcome;
 use gelbench::studies::{Progress, motion, specimen};
-use gelbench::validation::case_of;
 
 mod common;
 
 /// A study with a card by its name, and with another card put in its place.
 fn computed(text: &str, own: Option<Card>) -> Outcome {
     let file = Path::new("study.toml");
-    let case = case_of("study.toml", text).unwrap().unwrap();
+    let case = kind_of("study.toml", text).unwrap().unwrap();
     let budget = Budget::default();
-    if case.kind == specimen::KIND {
+    if case.name == specimen::KIND {
         let (_, strip, _) = specimen::load(case, file, text, budget).unwrap();
         let strip = match own {
             Some(card) => strip.with_card(card),

@@ -8,9 +8,9 @@ use std::thread;
 use std::time::Duration;
 
 use gelbench::budget::Budget;
+use gelbench::kinds;
 use gelbench::solve::{Journal, Milestone};
 use gelbench::studies::Progress;
-use gelbench::validation;
 
 mod common;
 
@@ -45,7 +45,7 @@ fn computed(study: &Path, before: &[(usize, Milestone)]) -> (String, Vec<(usize,
         before: RefCell::new(before.to_vec()),
         ..Notes::default()
     };
-    let ready = validation::read(study, Budget::default()).unwrap();
+    let ready = kinds::read(study, Budget::default()).unwrap();
     let mut outcome = ready
         .compute(Progress::silent().kept_by(&notes))
         .unwrap()

@@ -5,10 +5,10 @@ use std::path::Path;
 use gelbench::budget::Budget;
 use gelbench::calibration::{FitSettings, TestData, fit};
 use gelbench::document::Statements;
+use gelbench::kinds::{KINDS, kind_of, read_as};
 use gelbench::material::Card;
 use gelbench::material::registry::{CARDS, DATA, Law};
 use gelbench::studies::plate::{DEFAULT, Study};
-use gelbench::validation::{CASES, case_of, read_as};
 use proptest::prelude::*;
 
 /// `text` with a piece replaced.
@@ -34,10 +34,10 @@ proptest! {
     }
 
     #[test]
-    fn cases(case in 0..CASES.len(), at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}") {
-        let text = damaged(CASES[case].study, at, length, &piece);
-        let _ = read_as(&CASES[case], Path::new("name.toml"), &text, Budget::USUAL);
-        let _ = case_of("name.toml", &text);
+    fn cases(case in 0..KINDS.len(), at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}") {
+        let text = damaged(KINDS[case].study, at, length, &piece);
+        let _ = read_as(&KINDS[case], Path::new("name.toml"), &text, Budget::USUAL);
+        let _ = kind_of("name.toml", &text);
     }
 
     #[test]

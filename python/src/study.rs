@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use gelbench::budget::Budget;
 use gelbench::document::with_files;
 use gelbench::error::{Diagnostic, Error};
+use gelbench::kinds::{self, KINDS};
 use gelbench::material::softened_law::check_memory;
 use gelbench::mesh::{CellShape, MeshData};
 use gelbench::studies::plate::results::run::one_model;
@@ -15,7 +16,6 @@ use gelbench::studies::plate::{self, Study};
 use gelbench::studies::specimen::Specimen;
 use gelbench::studies::{Kind, ModelKind, Progress, specimen};
 use gelbench::units::{self, Dimension};
-use gelbench::validation;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -225,8 +225,8 @@ fn shape(kind: u8) -> Result<CellShape, Error> {
 }
 
 fn specimen_kind() -> &'static Kind {
-    let mut kinds = validation::CASES.iter();
-    let found = kinds.find(|kind| kind.kind == specimen::KIND);
+    let mut kinds = KINDS.iter();
+    let found = kinds.find(|kind| kind.name == specimen::KIND);
     found.expect("specimens are a kind of studies")
 }
 
@@ -277,7 +277,7 @@ pub fn run(
     allow_large: bool,
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
-        let ready = validation::read(&path, budget(allow_large))?;
+        let ready = kinds::read(&path, budget(allow_large))?;
         let (folder, with_report) = (ready.folder.clone(), ready.report);
         let told = |what: &str| watch.tell(what);
         let results = ready.compute(Progress::to(&told))?;
@@ -304,7 +304,7 @@ pub fn quantity(py: Python<'_>, text: &str, unit: &str) -> PyResult<f64> {
 #[pyo3(signature = (path, allow_large=false))]
 pub fn check(py: Python<'_>, path: PathBuf, allow_large: bool) -> PyResult<(String, Vec<String>)> {
     let found = py.detach(|| {
-        let ready = validation::read(&path, budget(allow_large))?;
+        let ready = kinds::read(&path, budget(allow_large))?;
         let warnings = ready.warnings.iter().map(ToString::to_string).collect();
         Ok((ready.about, warnings))
     });

@@ -15,6 +15,7 @@ use crate::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, ModelFields, Sites,
 };
 use crate::error::{Diagnostic, Error};
+use crate::kinds;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, ResultFolder};
@@ -24,7 +25,6 @@ use crate::studies::plate::results::run;
 use crate::studies::sections;
 use crate::studies::{self, Kind, specimen};
 use crate::units::{self, Dimension};
-use crate::validation;
 
 /// What the command line says about a comparison.
 #[derive(Args)]
@@ -160,9 +160,9 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     let progress = Progress::of(0);
     let told = |what: &str| progress.tell(what);
     let told = studies::Progress::to(&told);
-    let compared = match validation::case_of(&path.display().to_string(), &text)? {
+    let compared = match kinds::kind_of(&path.display().to_string(), &text)? {
         None => plate(options, text, told)?,
-        Some(case) if case.kind == specimen::KIND => shape(options, case, &text, told)?,
+        Some(case) if case.name == specimen::KIND => shape(options, case, &text, told)?,
         Some(case) => return Err(not_for_other_codes(case)),
     };
     Ok(compared)

@@ -8,6 +8,7 @@ use super::choice::one_of;
 use super::large::Large;
 use super::terminal::{Outcome, print, save, warn};
 use crate::error::{Diagnostic, Error};
+use crate::kinds;
 use crate::material::Code;
 use crate::output;
 use crate::output::export::{Export, InputFile};
@@ -15,7 +16,6 @@ use crate::studies::plate::Study;
 use crate::studies::sections;
 use crate::studies::specimen::Specimen;
 use crate::studies::{Kind, specimen};
-use crate::validation;
 
 /// Which of the three finite-element meshes of a study goes out.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -60,9 +60,9 @@ pub fn run(options: &Options) -> Outcome {
     }
     let path = &options.study;
     let text = sections::read_text(path)?;
-    let written = match validation::case_of(&path.display().to_string(), &text)? {
+    let written = match kinds::kind_of(&path.display().to_string(), &text)? {
         None => plate(path, text, options)?,
-        Some(case) if case.kind == specimen::KIND => {
+        Some(case) if case.name == specimen::KIND => {
             let (title, specimen, warnings) =
                 specimen::load(case, path, &text, options.large.budget())?;
             warn(&warnings);
@@ -90,7 +90,7 @@ pub fn not_for_other_codes(case: &Kind) -> Error {
     Error::input(
         format!(
             "a study of the kind `{}` is no boundary value problem of one sheet",
-            case.kind
+            case.name
         ),
         "take a plate study or one of the kind `specimen`",
     )

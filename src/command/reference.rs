@@ -8,12 +8,12 @@ use clap::ValueEnum;
 use super::terminal::{Outcome, print};
 use crate::document::{Bound, FoundKey, Key, Presence, Takes, comments, explore};
 use crate::error::Error;
+use crate::kinds::{self, KINDS};
 use crate::material::Card;
 use crate::output;
 use crate::results::limit;
 use crate::studies::{Kind, markers, plate};
 use crate::units::Dimension;
-use crate::validation::{self, CASES};
 
 /// Kinds of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -46,7 +46,7 @@ impl FileKind {
             Self::Motion => "motion",
             _ => return None,
         };
-        CASES.iter().find(|case| case.kind == kind)
+        KINDS.iter().find(|case| case.name == kind)
     }
 
     /// The file that comes along, with remarks.
@@ -84,7 +84,7 @@ impl FileKind {
     pub fn keys(self) -> Vec<FoundKey> {
         let read = |text: &str| -> Vec<Key> {
             match (self, self.case()) {
-                (_, Some(case)) => validation::keys(case, text),
+                (_, Some(case)) => kinds::keys(case, text),
                 (Self::Markers, _) => markers::keys(text),
                 (Self::Card, _) => Card::keys(text),
                 _ => plate::keys(text),

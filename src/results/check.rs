@@ -216,6 +216,33 @@ pub fn requirements(checks: &[Check]) -> Block {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::number;
+
+    #[test]
+    fn checks_pass_and_fail_as_they_should() {
+        let check = |wanted, computed| Check::new("x", "mm", wanted, "a book", computed);
+        assert!(check(Wanted::Equal(2.0, 1.0), 2.01).passed());
+        assert!(!check(Wanted::Equal(2.0, 1.0), 2.03).passed());
+        assert!(
+            check(Wanted::AtMost(1.0), 1.0).passed() && !check(Wanted::AtMost(1.0), 1.1).passed()
+        );
+        assert!(check(Wanted::AtLeast(1.0), 1.0).passed());
+        for wanted in [
+            Wanted::Equal(2.0, 1.0),
+            Wanted::AtMost(1.0),
+            Wanted::AtLeast(1.0),
+        ] {
+            assert!(!check(wanted, f64::NAN).passed());
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_with_five_digits() {
+        assert_eq!(number(0.012_345_67), "0.012346");
+        assert_eq!(number(-123.456_78), "-123.46");
+        assert_eq!(number(1.234_56e-7), "1.23e-7");
+        assert_eq!((limit(80.0), limit(1e-9)), ("80".into(), "1e-9".into()));
+    }
 
     #[test]
     fn a_path_that_ended_has_neither_a_value_nor_a_limit() {

@@ -11,7 +11,7 @@ use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::softened_law::check_memory;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Outcome, number};
-use crate::studies::{Computation, Kind, Progress};
+use crate::studies::{Computation, Kind, Progress, SOUND};
 
 mod between;
 mod corrected;
@@ -49,9 +49,7 @@ pub fn load(
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let plate = read::read(root, folder);
-    Box::new(move |progress| {
-        plate.map_or(Ok(Outcome::default()), |plate| compute(&plate, progress))
-    })
+    Box::new(move |progress| compute(&plate.expect(SOUND), progress))
 }
 
 /// Moves the plate by springs and finite elements, and corrects the springs; its material may be that of

@@ -11,7 +11,7 @@ use crate::mesh::MeshData;
 use crate::problem::Solution;
 use crate::results::Outcome;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::studies::{Computation, Kind, Progress};
+use crate::studies::{Computation, Kind, Progress, SOUND};
 
 mod files;
 mod forces;
@@ -63,9 +63,7 @@ pub fn load_on(
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let specimen = read::read(root, folder);
-    Box::new(move |progress| {
-        specimen.map_or(Ok(Outcome::default()), |read| compute(&read, progress))
-    })
+    Box::new(move |progress| compute(&specimen.expect(SOUND), progress))
 }
 
 /// Solves the three models of a specimen; its material may be that of [`Specimen::with_card`].
@@ -75,10 +73,10 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let mut ends = Vec::new();
     let models = solved(specimen, &mut ends, progress)?;
-    if models.reached() == 0 && ends.iter().all(End::is_empty) {
-        // Not even an equilibrium on the way to the first load factor.
-        let first = ends.first().map(End::error);
-        return first.map_or(Ok(Outcome::default()), Err);
+    // Not even an equilibrium on the way to the first load factor.
+    let is_nothing = models.reached() == 0 && ends.iter().all(End::is_empty);
+    if let Some(first) = ends.first().filter(|_| is_nothing) {
+        return Err(first.error());
     }
     let mut outcome = outcome::outcome(specimen, &models);
     tell(specimen, &models.reference.measured, ends, &mut outcome);

@@ -6,9 +6,9 @@ use super::variable::Setting;
 use crate::budget::Budget;
 use crate::document::{EditedDocument, NewValue, with_files};
 use crate::error::{Diagnostic, Error, suggestion};
+use crate::kinds;
 use crate::material::Card;
 use crate::studies::{PreparedStudy, motion, specimen};
-use crate::validation;
 
 /// The card of a run stands beside the study's own under this name, in memory.
 const CARD: &str = "gelbench-sweep-card.toml";
@@ -35,8 +35,8 @@ pub struct BaseStudy {
 impl BaseStudy {
     /// What its steps run along, as an axis is called.
     pub fn steps_run_along(&self) -> &'static str {
-        let case = validation::case_of(&self.path.display().to_string(), &self.text);
-        match case.ok().flatten().map(|case| case.kind) {
+        let case = kinds::kind_of(&self.path.display().to_string(), &self.text);
+        match case.ok().flatten().map(|case| case.name) {
             None => "stretch [–]",
             Some(specimen::KIND) => "load factor [–]",
             Some(motion::KIND) => "time [s]",
@@ -51,9 +51,7 @@ impl BaseStudy {
     pub fn with(&self, keys: &[String], settings: &[Setting]) -> Result<PreparedStudy, Error> {
         let (study, card) = with_files(self.files.clone(), || self.edited(keys, settings))?;
         let files = self.files.iter().cloned().chain(card);
-        with_files(files, || {
-            validation::read_given(&self.path, study, self.budget)
-        })
+        with_files(files, || kinds::read_given(&self.path, study, self.budget))
     }
 
     /// The study as it is.
@@ -62,7 +60,7 @@ impl BaseStudy {
     /// [`Error::Input`] with every fault.
     pub fn read(&self) -> Result<PreparedStudy, Error> {
         with_files(self.files.clone(), || {
-            validation::read_given(&self.path, self.text.clone(), self.budget)
+            kinds::read_given(&self.path, self.text.clone(), self.budget)
         })
     }
 

@@ -23,6 +23,7 @@ const FLOORS: &[&[&str]] = &[
     &["studies"],
     &["output"],
     &["validation"],
+    &["kinds"],
     &["sweep"],
     &["command"],
     &["guide"],

@@ -7,12 +7,12 @@ use gelbench::corrector::condition::Linear;
 use gelbench::corrector::{Corrector, CorrectorSettings, Solver, retained};
 use gelbench::document::{Statements, Table};
 use gelbench::identification::Recording;
+use gelbench::kinds::{kind_of, read_as};
 use gelbench::markers::{ReadSettings, read, read_lines};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, MeshReading, Outline, import, import_series};
 use gelbench::solve::SparseRows;
 use gelbench::studies::plate::Study;
-use gelbench::validation::{case_of, read_as};
 
 use super::{Became, with_file};
 
@@ -27,7 +27,7 @@ pub fn study(bytes: &[u8]) -> Became {
         return Became::Refused;
     };
     let file = Path::new("study.toml");
-    let read = match case_of("study.toml", text) {
+    let read = match kind_of("study.toml", text) {
         Ok(Some(case)) => read_as(case, file, text, Budget::USUAL).is_ok(),
         Ok(None) => Study::of_file(file, text.to_owned(), Budget::USUAL).is_ok(),
         Err(_) => false,

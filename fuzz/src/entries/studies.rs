@@ -5,9 +5,9 @@ use std::path::Path;
 
 use gelbench::budget::Budget;
 use gelbench::error::Error;
+use gelbench::kinds::{kind_of, read_as};
 use gelbench::material::registry::CARDS;
 use gelbench::studies::{Progress, plate};
-use gelbench::validation::{case_of, read_as};
 
 use super::Became;
 use super::choices::Choices;
@@ -35,7 +35,7 @@ fn compute(text: &str) -> Became {
     if std::env::var_os("GELBENCH_FUZZ_SHOW").is_some() {
         eprintln!("{text}");
     }
-    let read = match case_of("study.toml", text) {
+    let read = match kind_of("study.toml", text) {
         Ok(Some(case)) => read_as(case, file, text, SMALL),
         Ok(None) => plate::prepare(file, text.to_owned(), SMALL),
         Err(fault) => Err(fault),

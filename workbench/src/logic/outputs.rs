@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use gelbench::budget::Budget;
 use gelbench::document::with_files;
 use gelbench::error::Error;
+use gelbench::kinds;
 use gelbench::output::{self, vtk};
 use gelbench::results::{
     Drawing, FieldFigure, Grid, LineChart, Panel, PictureFormat, PictureStyle, Sheet,
 };
 use gelbench::studies::Progress;
-use gelbench::validation;
 
 use super::background::Worker;
 use super::engine::{Bodies, Fault};
@@ -234,7 +234,7 @@ fn figure(mut bodies: Bodies, scene: &Scene, fields: &[ShownField]) -> Result<Fi
 /// Everything that the command writes for a study.
 fn study(question: &StudyQuestion) -> Result<Vec<NamedFile>, Error> {
     with_files(paths(&question.files), || {
-        let study = validation::read(Path::new(&question.study), Budget::USUAL)?;
+        let study = kinds::read(Path::new(&question.study), Budget::USUAL)?;
         let results = study.compute(Progress::silent())?;
         let mut files = Vec::new();
         output::write(&results, true, &mut files)?;

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use gelbench::budget::Budget;
 use gelbench::document::with_files;
+use gelbench::kinds;
 use gelbench::studies::Progress;
-use gelbench::validation;
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -36,7 +36,7 @@ impl Worker for Runner {
 
     fn answer(&mut self, question: &StudyQuestion) -> Result<Report, Fault> {
         with_files(paths(&question.files), || {
-            let study = validation::read(Path::new(&question.study), Budget::USUAL)?;
+            let study = kinds::read(Path::new(&question.study), Budget::USUAL)?;
             study.compute(Progress::silent()).map(Report::from)
         })
         .map_err(Fault::from)

@@ -8,12 +8,12 @@ use std::path::Path;
 
 use gelbench::budget::Budget;
 use gelbench::error::Error;
+use gelbench::kinds::kind_of;
 use gelbench::material::Card;
 use gelbench::mesh::Shape;
 use gelbench::problem::Support;
 use gelbench::studies::{Kind, plate, specimen};
 use gelbench::units::Linear;
-use gelbench::validation::case_of;
 
 use super::scene::{CardFile, Grip, Look, Outline, Scene};
 
@@ -106,14 +106,14 @@ impl Scene {
         let (text, own) = with_known_card(text, &cards);
         let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
         let look = shown.and_then(|look| serde_json::from_str(look).ok());
-        let scene = match case_of(&file.display().to_string(), &text)? {
+        let scene = match kind_of(&file.display().to_string(), &text)? {
             None => of_plate(file, text)?,
-            Some(kind) if kind.kind == specimen::KIND => of_specimen(kind, file, &text)?,
+            Some(kind) if kind.name == specimen::KIND => of_specimen(kind, file, &text)?,
             Some(kind) => {
                 return Err(Error::input(
                     format!(
                         "a study of the kind `{}` is no sheet between two grips",
-                        kind.kind
+                        kind.name
                     ),
                     "run it in the view Study, or with `gelbench run`",
                 ));

@@ -2,8 +2,8 @@
 
 use eframe::egui::{Button, CollapsingHeader, RichText, ScrollArea, TextEdit, Ui};
 
+use gelbench::kinds::KINDS;
 use gelbench::studies::plate;
-use gelbench::validation::CASES;
 
 use super::exports::{self, Offer};
 use super::{figures, files, report};
@@ -119,14 +119,14 @@ impl Studies {
                 if ui.button("plate").clicked() {
                     self.put("plate.toml", plate::DEFAULT.to_owned());
                 }
-                for case in CASES {
+                for case in KINDS {
                     let name = if case.slow {
-                        format!("{} (minutes)", case.kind)
+                        format!("{} (minutes)", case.name)
                     } else {
-                        case.kind.to_owned()
+                        case.name.to_owned()
                     };
                     if ui.button(name).clicked() {
-                        self.put(&format!("{}.toml", case.kind), case.study.to_owned());
+                        self.put(&format!("{}.toml", case.name), case.study.to_owned());
                     }
                 }
             });

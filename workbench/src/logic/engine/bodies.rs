@@ -6,6 +6,7 @@ use std::sync::Arc;
 use gelbench::budget::Budget;
 use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
+use gelbench::kinds::KINDS;
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
 use gelbench::material::softened_law::check_memory;
 use gelbench::material::{Card, HyperelasticLaw};
@@ -14,7 +15,6 @@ use gelbench::problem::sheet_energy::SheetEnergy;
 use gelbench::problem::{BoundaryProblem, ClampedPlate, Model as Problem, Support};
 use gelbench::solve::{Assembly, Remembering};
 use gelbench::studies::{plate, specimen};
-use gelbench::validation::CASES;
 
 use super::path;
 use super::plate::Quick;
@@ -82,7 +82,7 @@ pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
         let [_, _, elements] = study.finite_elements();
         return Ok([lattice, elements.mesh]);
     }
-    let kind = CASES.iter().find(|case| case.kind == specimen::KIND);
+    let kind = KINDS.iter().find(|case| case.name == specimen::KIND);
     let kind = kind.expect("specimens are a kind of study");
     let (_, read, _) = specimen::load(kind, file, &text, Budget::USUAL)?;
     // Quadratic cells as many as the lattice has: twice as fine as its equations.

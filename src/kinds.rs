@@ -1,0 +1,225 @@
+//! The kinds of studies, and what reads a study of any of them.
+//!
+//! Every kind comes along with a study: its keys are the defaults, and `gelbench validate` computes it as a kind. A plate study, which needs
+//! no `kind`, is read as well, and is none of the table.
+
+use std::path::Path;
+
+use crate::budget::Budget;
+use crate::document::{Document, Faults, Key};
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::results::{Check, Outcome, Results};
+use crate::studies::plate as plate_study;
+use crate::studies::sections::read_text;
+use crate::studies::{Kind, Prepare, PreparedStudy, Progress, motion, other_files, specimen};
+use crate::validation::{
+    REAL_MEASUREMENTS, correction_matrix, cost, finite_elements, fit_coverage, flagship,
+    interval_coverage, motion_correction, nonlinear_spring, other_codes, plate_ablation,
+    real_measurements, smoothing, spring_identification, vibrating_plate, vibrating_spring,
+};
+
+/// A table of kinds: name, the study that comes along, `quick` or `slow`, and what reads it.
+macro_rules! kinds {
+    (@slow quick) => { false };
+    (@slow slow) => { true };
+    ($($kind:expr, $file:literal, $speed:ident, $prepare:path;)*) => {
+        /// All kinds, in the order of the report.
+        pub const KINDS: &[Kind] = &[$(Kind {
+            name: $kind,
+            study: include_str!(concat!("../", $file)),
+            file: $file,
+            slow: kinds!(@slow $speed),
+        }),*];
+
+        /// What reads them: apart from them, so that a program that computes none has no solver in it.
+        const READERS: &[(&str, Prepare)] = &[$(($kind, $prepare)),*];
+    };
+}
+
+kinds! {
+    "nonlinear-spring", "examples/nonlinear_spring.toml", quick, nonlinear_spring::prepare;
+    "plate-ablation", "examples/plate_ablation.toml", quick, plate_ablation::prepare;
+    "flagship", "validation/cases/flagship.toml", slow, flagship::prepare;
+    "vibrating-spring", "examples/vibrating_spring.toml", quick, vibrating_spring::prepare;
+    "spring-identification", "examples/spring_identification.toml", slow, spring_identification::prepare;
+    "smoothing", "examples/smoothing.toml", slow, smoothing::prepare;
+    "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
+    "interval-coverage", "validation/cases/interval_coverage.toml", slow, interval_coverage::coverage::prepare;
+    "joint-parameters", "validation/cases/joint_parameters.toml", slow, interval_coverage::together::prepare;
+    REAL_MEASUREMENTS, "validation/cases/real_measurements.toml", slow, real_measurements::prepare;
+    "test-curves", "validation/cases/test_curves.toml", slow, fit_coverage::prepare;
+    specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
+    motion::KIND, "examples/released_plate.toml", slow, motion::prepare;
+    "cost", "examples/cost.toml", slow, cost::prepare;
+    "correction-matrix", "validation/correction_matrix.toml", quick, correction_matrix::prepare;
+    "other-codes", "validation/other_codes.toml", slow, other_codes::prepare;
+    "patch-tests", "validation/cases/patch_tests.toml", quick, finite_elements::patch::prepare;
+    "manufactured-solution", "validation/cases/manufactured_solution.toml", quick, finite_elements::manufactured::prepare;
+    "hole", "validation/cases/hole.toml", quick, finite_elements::hole::prepare;
+    "ring", "validation/cases/ring.toml", quick, finite_elements::ring::prepare;
+    "curved-meshes", "validation/cases/curved_meshes.toml", slow, finite_elements::curved_meshes::prepare;
+    "cantilever", "validation/cases/cantilever.toml", quick, finite_elements::cantilever::prepare;
+    "cook", "validation/cases/cook.toml", slow, finite_elements::cook::prepare;
+    "motion-correction", "validation/cases/motion_correction.toml", slow, motion_correction::prepare;
+    "vibrating-plate", "validation/cases/vibrating_plate.toml", quick, vibrating_plate::prepare;
+    "own-error", "validation/cases/own_error.toml", slow, finite_elements::own_error::prepare;
+}
+
+/// The cases of some kinds, or all; without the slow ones where `quick` is wanted and none is named.
+///
+/// # Errors
+/// [`Error::Input`] with every unknown name.
+pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Kind>, Error> {
+    if names.is_empty() {
+        return Ok(KINDS.iter().filter(|kind| !(quick && kind.slow)).collect());
+    }
+    let known = || KINDS.iter().map(|kind| kind.name);
+    let unknown = names
+        .iter()
+        .filter(|name| !known().any(|kind| kind == name.as_str()));
+    let faults: Vec<Diagnostic> = unknown
+        .map(|name| {
+            let fault = Diagnostic::error("", format!("there is no case `{name}`"));
+            fault.hint(suggestion(name, &known().collect::<Vec<_>>(), "cases:"))
+        })
+        .collect();
+    if !faults.is_empty() {
+        return Err(Error::Input(faults));
+    }
+    let chosen = KINDS
+        .iter()
+        .filter(|kind| names.iter().any(|name| name == kind.name));
+    Ok(chosen.collect())
+}
+
+/// What reads the studies of a kind.
+fn reader(kind: &Kind) -> Prepare {
+    let found = READERS.iter().find(|(name, _)| *name == kind.name);
+    found.expect("a kind of the table").1
+}
+
+/// Reads a study of a kind, which may ask for so much.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn read_as(
+    kind: &Kind,
+    file: &Path,
+    text: &str,
+    budget: Budget,
+) -> Result<PreparedStudy, Error> {
+    kind.read(reader(kind), file, text, budget)
+}
+
+/// The keys that are asked for when a text is read as a study of a kind.
+pub fn keys(kind: &Kind, text: &str) -> Vec<Key> {
+    kind.keys(reader(kind), text)
+}
+
+/// The kind that a study's text states; `None` for a plate study.
+///
+/// # Errors
+/// [`Error::Input`] when the kind is unknown.
+pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
+    let faults = Faults::default();
+    let found = {
+        let document = Document::parse(file, text, &faults);
+        let root = document.root(None, &faults);
+        if !root.has("kind") {
+            return match other_files::recognised(&root, file) {
+                Some((what, hint)) => Err(Error::input(format!("{file} {what}"), hint)),
+                None => Ok(None),
+            };
+        }
+        let others = KINDS.iter().map(|kind| (kind.name, Some(kind)));
+        let kinds: Vec<_> = std::iter::once(("plate", None)).chain(others).collect();
+        root.choice("kind", &kinds)
+    };
+    match found {
+        // Other faults are told when the whole study is read.
+        Some(kind) => Ok(kind),
+        None => faults.finish().map(|_| None),
+    }
+}
+
+/// Reads a study of any kind, which may ask for so much.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn read(path: &Path, budget: Budget) -> Result<PreparedStudy, Error> {
+    let text = read_text(path)?;
+    read_given(path, text, budget)
+}
+
+/// Reads a study of any kind from its text; the files that it names are relative to `path`.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn read_given(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
+    match kind_of(&path.display().to_string(), &text)? {
+        Some(kind) => read_as(kind, path, &text, budget),
+        None => plate_study::prepare(path, text, budget),
+    }
+}
+
+/// Computes the study that comes along; a model without a solution is a check that failed.
+///
+/// # Errors
+/// [`Error::Input`] or [`Error::Write`].
+pub fn compute_or_fail(kind: &Kind, progress: Progress) -> Result<Results, Error> {
+    let ready = read_as(kind, Path::new(kind.file), kind.study, Budget::USUAL)?;
+    match ready.compute(progress) {
+        Err(fault @ Error::Solve { .. }) => {
+            let check = Check::fault(fault.to_string(), "no fault");
+            Ok(Results {
+                name: kind.name.to_owned(),
+                title: kind.name.to_owned(),
+                kind: kind.name,
+                text: kind.study.to_owned(),
+                defaults: Vec::new(),
+                read_warnings: Vec::new(),
+                outcome: Outcome {
+                    checks: vec![check],
+                    ..Outcome::default()
+                },
+                seconds: 0.0,
+            })
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_reads_its_own_study_and_tells_faults() {
+        for kind in KINDS {
+            let own = read_as(kind, Path::new(kind.file), kind.study, Budget::USUAL);
+            assert!(own.is_ok());
+            let found = kind_of(kind.file, kind.study).unwrap().unwrap();
+            assert_eq!(found.name, kind.name);
+            let text = "kind = \"x\"
+misspelt = 1
+";
+            let told = read_as(kind, Path::new("x.toml"), text, Budget::USUAL)
+                .map(|_| ())
+                .unwrap_err();
+            assert!(told.to_string().contains("misspelt: unknown key"), "{told}");
+        }
+        assert!(kind_of("x.toml", "kind = \"plate\"").unwrap().is_none());
+        let fault = kind_of("x.toml", "kind = \"smoothin\"")
+            .map(|_| ())
+            .unwrap_err();
+        assert!(
+            fault.to_string().contains("did you mean \"smoothing\""),
+            "{fault}"
+        );
+        let fault = choose(&["smoothin".into()], false).map(|_| ()).unwrap_err();
+        assert!(
+            fault.to_string().contains("did you mean `smoothing`"),
+            "{fault}"
+        );
+    }
+}
