@@ -101,7 +101,8 @@ impl FiniteElements {
         format!("{}, {}", self.element.name(), self.mesh.describe())
     }
 
-    /// The estimated error of a state, by the recovery on this mesh; of a first loading, where the material softens.
+    /// The estimated error of a state, by the recovery on this mesh, which knows no history: where the material softens, that of a first
+    /// loading.
     ///
     /// # Errors
     /// A [`SolveFault`] when the tangent at the state cannot be factorised.
