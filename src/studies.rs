@@ -141,17 +141,21 @@ impl Kind {
         })
     }
 
-    /// What `read` makes of a study without faults, with its title and what deserves attention.
+    /// What `read` makes of a study without faults.
     fn load<T>(
         &self,
         file: &Path,
         text: &str,
         budget: Budget,
         read: impl FnOnce(&Section, &Path) -> Option<T>,
-    ) -> Result<(String, T, Vec<Diagnostic>), Error> {
+    ) -> Result<Loaded<T>, Error> {
         let read = self.read_with(file, text, budget, read)?;
-        let made = read.made.expect(SOUND);
-        Ok((read.title, made, read.warnings))
+        Ok(Loaded {
+            title: read.title,
+            made: read.made.expect(SOUND),
+            defaults: read.defaults,
+            warnings: read.warnings,
+        })
     }
 
     /// The keys that are asked for when a text is read.
@@ -189,7 +193,7 @@ impl Kind {
         text: &str,
         budget: Budget,
         read: impl FnOnce(&Section, &Path) -> T,
-    ) -> Result<Read<T>, Error> {
+    ) -> Result<Loaded<T>, Error> {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::within(budget);
@@ -205,7 +209,7 @@ impl Kind {
         };
         let defaults = faults.defaults();
         let warnings = faults.finish()?;
-        Ok(Read {
+        Ok(Loaded {
             title,
             made,
             defaults,
@@ -221,12 +225,15 @@ pub fn name(file: &Path) -> String {
 }
 
 /// What was read of a study.
-struct Read<T> {
-    title: String,
-    made: T,
-    /// The keys that it does not hold, with the defaults that they took.
-    defaults: Vec<String>,
-    warnings: Vec<Diagnostic>,
+pub struct Loaded<T> {
+    /// What it is called.
+    pub title: String,
+    /// What it describes.
+    pub made: T,
+    /// The keys that it does not state, with the defaults that they took.
+    pub defaults: Vec<String>,
+    /// What deserves attention.
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl PreparedStudy {

@@ -16,14 +16,14 @@ fn computed(text: &str, own: Option<Card>) -> Outcome {
     let case = kind_of("study.toml", text).unwrap().unwrap();
     let budget = Budget::default();
     if case.name == specimen::KIND {
-        let (_, strip, _) = specimen::load(case, file, text, budget).unwrap();
+        let strip = specimen::load(case, file, text, budget).unwrap().made;
         let strip = match own {
             Some(card) => strip.with_card(card),
             None => strip,
         };
         return specimen::compute(&strip, Progress::silent()).unwrap();
     }
-    let (_, plate, _) = motion::load(case, file, text, budget).unwrap();
+    let plate = motion::load(case, file, text, budget).unwrap().made;
     let plate = match own {
         Some(card) => plate.with_card(card),
         None => plate,

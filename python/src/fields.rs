@@ -1,6 +1,6 @@
 //! Meshes and arrays as Python has them.
 
-use gelbench::mesh::{CellShape, Mesh};
+use gelbench::mesh::Mesh;
 use gelbench::results::{Array, Components, Grid, GridCell};
 use numpy::{IxDyn, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -43,13 +43,7 @@ fn vtk_number(cell: GridCell) -> u8 {
     match cell {
         GridCell::Vertex => 1,
         GridCell::Line => 3,
-        GridCell::Mesh(shape) => match shape {
-            CellShape::Triangle3 => 5,
-            CellShape::Quad4 => 9,
-            CellShape::Triangle6 => 22,
-            CellShape::Quad8 => 23,
-            CellShape::Quad9 => 28,
-        },
+        GridCell::Mesh(shape) => shape.vtk_number(),
     }
 }
 

@@ -14,7 +14,7 @@ use gelbench::mesh::{CellShape, MeshData};
 use gelbench::studies::plate::results::run::one_model;
 use gelbench::studies::plate::{self, Study};
 use gelbench::studies::specimen::Specimen;
-use gelbench::studies::{Kind, ModelKind, Progress, specimen};
+use gelbench::studies::{Kind, Loaded, ModelKind, Progress, specimen};
 use gelbench::units::{self, Dimension};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -125,18 +125,19 @@ pub fn run_specimen(
     allow_large: bool,
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
-        let (title, read, warnings) = read_specimen(&study, files, mesh, allow_large)?;
+        let read = read_specimen(&study, files, mesh, allow_large)?;
         let start = Instant::now();
         let progress = |what: &str| watch.tell(what);
-        let card = watched(material.in_study(&read.card), watch);
-        let outcome = specimen::compute(&read.with_card(card), Progress::to(&progress))?;
+        let specimen = read.made;
+        let card = watched(material.in_study(&specimen.card), watch);
+        let outcome = specimen::compute(&specimen.with_card(card), Progress::to(&progress))?;
         let results = gelbench::results::Results {
             name: "specimen".into(),
-            title,
+            title: read.title,
             kind: specimen::KIND,
             text: study,
-            defaults: Vec::new(),
-            read_warnings: told(&warnings),
+            defaults: read.defaults,
+            read_warnings: told(&read.warnings),
             outcome,
             seconds: start.elapsed().as_secs_f64(),
         };
@@ -149,7 +150,7 @@ fn read_specimen(
     files: Files,
     mesh: Option<&GivenMesh>,
     allow_large: bool,
-) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+) -> Result<Loaded<Specimen>, Error> {
     let (case, file, budget) = (specimen_kind(), Path::new("specimen"), budget(allow_large));
     with_files(files, || match mesh {
         Some(GivenMesh(mesh)) => specimen::load_on(mesh, case, file, study, budget),
@@ -210,17 +211,11 @@ impl GivenMesh {
 
 /// The kind of a cell by VTK's number.
 fn shape(kind: u8) -> Result<CellShape, Error> {
-    Ok(match kind {
-        5 => CellShape::Triangle3,
-        9 => CellShape::Quad4,
-        22 => CellShape::Triangle6,
-        23 => CellShape::Quad8,
-        28 => CellShape::Quad9,
-        other => {
-            let message = format!("cells of VTK's kind {other} are not known");
-            let hint = "take triangles of 3 or 6 nodes (5, 22) and quadrilaterals of 4, 8 or 9 (9, 23, 28)";
-            return Err(input(message, hint));
-        }
+    CellShape::of_vtk_number(kind).ok_or_else(|| {
+        let message = format!("cells of VTK's kind {kind} are not known");
+        let hint =
+            "take triangles of 3 or 6 nodes (5, 22) and quadrilaterals of 4, 8 or 9 (9, 23, 28)";
+        input(message, hint)
     })
 }
 
@@ -246,7 +241,11 @@ pub fn solve_specimen(
 ) -> PyResult<Solution> {
     let kind = model_kind(model).map_err(|error| exception(py, &error))?;
     let work = |watch: &Arc<Watch>| {
-        let (_, read, warnings) = read_specimen(study, files, mesh, allow_large)?;
+        let Loaded {
+            made: read,
+            warnings,
+            ..
+        } = read_specimen(study, files, mesh, allow_large)?;
         let card = material.in_study(&read.card);
         let mut sheet = Sheet {
             law: Arc::clone(&card.law),

@@ -198,9 +198,9 @@ fn shape(
     text: &str,
     told: studies::Progress,
 ) -> Result<Comparison, Error> {
-    let (title, specimen, warnings) =
-        specimen::load(case, &options.study, text, options.large.budget())?;
-    warn(&warnings);
+    let read = specimen::load(case, &options.study, text, options.large.budget())?;
+    warn(&read.warnings);
+    let (title, specimen) = (read.title, read.made);
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);
     if factor < 0.0 {

@@ -63,10 +63,9 @@ pub fn run(options: &Options) -> Outcome {
     let written = match kinds::kind_of(&path.display().to_string(), &text)? {
         None => plate(path, text, options)?,
         Some(case) if case.name == specimen::KIND => {
-            let (title, specimen, warnings) =
-                specimen::load(case, path, &text, options.large.budget())?;
-            warn(&warnings);
-            shape(&title, &specimen, options)?
+            let read = specimen::load(case, path, &text, options.large.budget())?;
+            warn(&read.warnings);
+            shape(&read.title, &read.made, options)?
         }
         Some(case) => return Err(not_for_other_codes(case)),
     };

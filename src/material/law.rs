@@ -134,8 +134,8 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// How the material softens by its largest load; `None` where it remembers nothing. Energy, stress and tangent are those of the
-    /// first loading, from which those after it follow.
+    /// How the material softens by its largest load; `None` where it remembers nothing. Energy, stress and tangent of a law of a card are
+    /// those of the first loading, from which those after it follow.
     fn softening(&self) -> Option<Softening> {
         None
     }

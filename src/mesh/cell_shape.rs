@@ -64,6 +64,27 @@ impl CellShape {
         ("Q2 serendipity", Self::Quad8),
     ];
 
+    /// The numbers that VTK has for them.
+    const VTK: [(u8, Self); 5] = [
+        (5, Self::Triangle3),
+        (9, Self::Quad4),
+        (22, Self::Triangle6),
+        (23, Self::Quad8),
+        (28, Self::Quad9),
+    ];
+
+    /// VTK's number.
+    pub fn vtk_number(self) -> u8 {
+        let found = Self::VTK.iter().find(|(_, own)| *own == self);
+        found.expect("a kind of the table").0
+    }
+
+    /// The kind of a number of VTK; `None` where gelbench has none.
+    pub fn of_vtk_number(number: u8) -> Option<Self> {
+        let found = Self::VTK.iter().find(|(own, _)| *own == number);
+        found.map(|(_, kind)| *kind)
+    }
+
     /// Nodes of a cell.
     pub fn nodes(self) -> usize {
         match self {

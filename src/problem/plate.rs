@@ -22,8 +22,8 @@ pub struct ClampedPlate {
     pub thickness: f64,
     /// The material.
     pub law: Arc<dyn HyperelasticLaw>,
-    /// Grip displacements divided by the length, all of one sign, from small to large: 0.5 is a stretch to 150 %, −0.1 a
-    /// compression to 90 %.
+    /// λ − 1 of the plate, the displacement of the right grip over the length, in the order in which they are reached: 0.5 is a stretch to
+    /// 150 %, −0.1 a compression to 90 %. Where the material has no memory, of one sign and from small to large.
     pub stretches: Vec<f64>,
 }
 

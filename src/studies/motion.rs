@@ -5,13 +5,13 @@ use std::path::Path;
 use crate::budget::Budget;
 use crate::document::Section;
 use crate::dynamics::{Dashpots, SheetViscosity, TimeSettings, Viscosity};
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::softened_law::check_memory;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Outcome, number};
-use crate::studies::{Computation, Kind, Progress, SOUND};
+use crate::studies::{Computation, Kind, Loaded, Progress, SOUND};
 
 mod between;
 mod corrected;
@@ -42,7 +42,7 @@ pub fn load(
     file: &Path,
     text: &str,
     budget: Budget,
-) -> Result<(String, MovingPlate, Vec<Diagnostic>), Error> {
+) -> Result<Loaded<MovingPlate>, Error> {
     case.load(file, text, budget, read::read)
 }
 

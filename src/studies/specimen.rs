@@ -5,13 +5,13 @@ use std::path::Path;
 use crate::budget::Budget;
 use crate::compare::imported::{ModelField, ModelFields};
 use crate::document::Section;
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::material::softened_law::check_memory;
 use crate::mesh::MeshData;
 use crate::problem::Solution;
 use crate::results::Outcome;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::studies::{Computation, Kind, Progress, SOUND};
+use crate::studies::{Computation, Kind, Loaded, Progress, SOUND};
 
 mod files;
 mod forces;
@@ -31,7 +31,7 @@ pub use results::{finest_mesh, force_with_error, one_model};
 /// The `kind` of these studies.
 pub const KIND: &str = "specimen";
 
-/// A specimen's study: its title, the specimen, and what deserves attention.
+/// A specimen's study.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
@@ -40,7 +40,7 @@ pub fn load(
     file: &Path,
     text: &str,
     budget: Budget,
-) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+) -> Result<Loaded<Specimen>, Error> {
     case.load(file, text, budget, read::read)
 }
 
@@ -54,7 +54,7 @@ pub fn load_on(
     file: &Path,
     text: &str,
     budget: Budget,
-) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+) -> Result<Loaded<Specimen>, Error> {
     case.load(file, text, budget, |root, folder| {
         read::read_with(root, folder, &|_, reading| mesh.read(reading))
     })

@@ -60,12 +60,13 @@ impl UnstructuredGrid {
 
 /// The kind of a face by VTK's number.
 fn shape(kind: u8, nodes: usize) -> Result<CellShape, Unreadable> {
-    let shape = match (kind, nodes) {
-        (5, _) | (69, 3) => CellShape::Triangle3,
-        (22, _) | (69, 6) => CellShape::Triangle6,
-        (9, _) | (70, 4) => CellShape::Quad4,
-        (23, _) => CellShape::Quad8,
-        (28, _) | (70, 9) => CellShape::Quad9,
+    let shape = match (CellShape::of_vtk_number(kind), kind, nodes) {
+        (Some(shape), ..) => shape,
+        // Lagrange's triangles and quadrilaterals.
+        (_, 69, 3) => CellShape::Triangle3,
+        (_, 69, 6) => CellShape::Triangle6,
+        (_, 70, 4) => CellShape::Quad4,
+        (_, 70, 9) => CellShape::Quad9,
         _ => {
             return Err(format!(
                 "has cells of VTK's kind {kind} with {nodes} nodes; triangles of three and six nodes and \

@@ -215,7 +215,7 @@ fn of_plate(file: &Path, text: String) -> Result<Scene, Error> {
 }
 
 fn of_specimen(kind: &Kind, file: &Path, text: &str) -> Result<Scene, Error> {
-    let (_, read, _) = specimen::load(kind, file, text, Budget::USUAL)?;
+    let read = specimen::load(kind, file, text, Budget::USUAL)?.made;
     let other = |what: &str| Error::input(what, "run it in the view Study, or with `gelbench run`");
     let specimen::Outline::Shape { shape, cells, .. } = read.outline else {
         return Err(other("the specimen is a mesh of a file"));

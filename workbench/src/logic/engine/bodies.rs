@@ -84,7 +84,7 @@ pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
     }
     let kind = KINDS.iter().find(|case| case.name == specimen::KIND);
     let kind = kind.expect("specimens are a kind of study");
-    let (_, read, _) = specimen::load(kind, file, &text, Budget::USUAL)?;
+    let read = specimen::load(kind, file, &text, Budget::USUAL)?.made;
     // Quadratic cells as many as the lattice has: twice as fine as its equations.
     Ok([read.outline.lattice(), read.outline.reference_mesh(1)])
 }
