@@ -201,12 +201,18 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// Distance of two fields on a mesh in relative L2, weighted by area, in %.
+/// Distance of two fields on the mesh of a plate in relative L2, weighted by area, in %.
+///
+/// # Panics
+/// When the mesh is no plate's.
 pub fn displacement_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
     percent(&mesh.nodal_areas(), field, reference)
 }
 
-/// Distance of two fields on a mesh over the size of what the reference departs from `affine`, in %.
+/// Distance of two fields on the mesh of a plate over the size of what the reference departs from `affine`, in %.
+///
+/// # Panics
+/// When the mesh is no plate's.
 pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: &[f64]) -> f64 {
     let areas = mesh.nodal_areas();
     let departure = reference.weighted_distance(affine, &areas);

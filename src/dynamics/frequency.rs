@@ -9,6 +9,7 @@ use crate::error::SolveFault;
 use crate::solve::krylov::{irregular, largest_eigenvalue};
 use crate::solve::vector::{gather, spread};
 use crate::solve::{Assembly, Cholesky, SymmetricPattern};
+use crate::statistics::larger;
 
 /// A free vibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +107,7 @@ pub fn slowest(
             .iter()
             .zip(&last)
             .map(|(now, last)| (last / now - 1.0).abs());
-        if changes.fold(0.0, f64::max) < TOLERANCE {
+        if changes.fold(0.0, larger) < TOLERANCE {
             let shapes = basis * &ritz.eigenvectors;
             let mode = |(value, shape): (&f64, DVectorView<f64>)| {
                 let own = shape.component_div(&roots);

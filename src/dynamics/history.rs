@@ -1,5 +1,7 @@
 //! A motion as it was computed: instants and where the energy is.
 
+use crate::statistics::larger;
+
 /// Where the energy is, in mJ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
@@ -89,6 +91,6 @@ impl History {
         let energies = || self.instants.iter().map(|instant| instant.energy);
         let largest = energies().fold(0.0, |most: f64, energy| most.max(energy.largest()));
         let strays = energies().map(|energy| (energy.total() - first.energy.total()).abs());
-        strays.fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE)
+        strays.fold(0.0, larger) / largest.max(f64::MIN_POSITIVE)
     }
 }

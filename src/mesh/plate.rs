@@ -78,11 +78,17 @@ impl Mesh {
     }
 
     /// Length and width of a cell of a plate in mm.
+    ///
+    /// # Panics
+    /// As [`Self::grid`].
     pub fn cell_size(&self, cell: usize) -> [f64; 2] {
         self.grid().cell_size(cell)
     }
 
     /// The area in mm² that belongs to each node of a plate: from half way to its neighbours to half way to them.
+    ///
+    /// # Panics
+    /// As [`Self::grid`].
     pub fn nodal_areas(&self) -> Vec<f64> {
         let grid = self.grid();
         let degree = self.shape(0).degree();
@@ -103,16 +109,25 @@ impl Mesh {
     }
 
     /// Whether a node lies on a side of the plate.
+    ///
+    /// # Panics
+    /// As [`Self::grid`].
     pub fn on(&self, side: Side, node: usize) -> bool {
         self.grid().is_on(side, self.nodes[node])
     }
 
     /// Whether a node lies on a grip of the plate: the left or the right side.
+    ///
+    /// # Panics
+    /// As [`Self::grid`].
     pub fn on_grip(&self, node: usize) -> bool {
         self.on(Side::Left, node) || self.on(Side::Right, node)
     }
 
     /// Width of the deformed plate at mid length in mm.
+    ///
+    /// # Panics
+    /// As [`Self::grid`].
     pub fn mid_width(&self, displacement: &[f64]) -> f64 {
         let [length, width] = self.grid().size;
         let lateral = |y: f64| self.displacement_at(displacement, [length / 2.0, y])[1];

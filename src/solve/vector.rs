@@ -1,5 +1,7 @@
 //! Arithmetic of plain vectors; all sums from the first entry to the last.
 
+use crate::statistics::larger;
+
 /// a · b.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -10,9 +12,9 @@ pub fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The largest magnitude.
+/// The largest magnitude; NaN where an entry is none.
 pub fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
+    x.iter().fold(0.0, |most, x| larger(most, x.abs()))
 }
 
 /// a − b.

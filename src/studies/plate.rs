@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::budget::Budget;
 use crate::error::Error;
 use crate::results::{Material, Outcome};
+use crate::statistics::larger;
 use crate::studies::{PreparedStudy, Progress};
 
 mod figures;
@@ -76,7 +77,7 @@ fn outcome(study: &Study, results: &Results) -> Outcome {
         summary,
         warnings,
         ends: results.ends.iter().map(Into::into).collect(),
-        balance: results.worst_balances().reduce(f64::max),
+        balance: results.worst_balances().reduce(larger),
         balances: json::balances(results),
         times: times
             .map(|(what, seconds)| ((*what).to_owned(), *seconds))

@@ -8,7 +8,7 @@ use crate::document::Section;
 use crate::mesh::Mesh;
 use crate::results::Wanted;
 use crate::results::{Line, Stroke, mesh_outlines};
-use crate::statistics::median;
+use crate::statistics::{larger, median};
 
 pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit, number};
 pub use crate::studies::{Computation, Progress};
@@ -108,10 +108,10 @@ pub fn removed_percent(before: f64, after: f64) -> f64 {
     100.0 * (1.0 - after / before)
 }
 
-/// Largest absolute value.
+/// Largest absolute value; NaN where one of them is none, so that no check passes by it.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let values = values.into_iter();
-    values.fold(0.0, |most, value| most.max(value.abs()))
+    values.fold(0.0, |most, value| larger(most, value.abs()))
 }
 
 /// Mean value.
@@ -144,7 +144,7 @@ impl Spread {
         let values: Vec<f64> = values.into_iter().collect();
         Self {
             least: values.iter().copied().fold(f64::INFINITY, f64::min),
-            most: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            most: values.iter().copied().fold(f64::NEG_INFINITY, larger),
             median: median(values),
         }
     }

@@ -17,6 +17,7 @@ use crate::material::samples;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::ClampedPlate;
 use crate::solve::State;
+use crate::statistics::larger;
 use crate::units::Dimension;
 
 /// Reads a study of this case.
@@ -171,7 +172,7 @@ fn worst_share<'a>(found: impl Iterator<Item = &'a Found>) -> f64 {
     let shares = found
         .map(|found| found.share)
         .filter(|share| !share.is_nan());
-    shares.reduce(f64::max).unwrap_or(f64::NAN)
+    shares.reduce(larger).unwrap_or(f64::NAN)
 }
 
 /// A row for each law: how often each start led to the field, and the largest share.

@@ -9,6 +9,7 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::markers::ReadSettings;
 use crate::mesh::{CellShape, MeshReading};
+use crate::statistics::larger;
 use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
 use crate::units::Dimension;
 
@@ -140,7 +141,7 @@ impl Estimated {
             .filter(|found| found.verdict.answer == expected)
             .count() as f64;
         let imbalance = self.estimates.iter().map(|found| found.imbalance);
-        let imbalance = imbalance.fold(0.0, f64::max);
+        let imbalance = imbalance.fold(0.0, larger);
         [
             check(
                 format!("{name}: frames that are {}", expected.words()),

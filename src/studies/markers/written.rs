@@ -15,6 +15,7 @@ use crate::markers::Frame;
 use crate::results::{
     Array, Content, Grid, GridSeries, Material, NamedGrid, Outcome, Results, Sheet,
 };
+use crate::statistics::larger;
 use crate::studies::markers::MarkerStudy;
 use crate::studies::pictures::Pictures;
 
@@ -65,10 +66,7 @@ pub fn results_with(
             Content::Text(tables::forces(field, estimates)),
         )],
         doubts: doubts.iter().map(ToString::to_string).collect(),
-        balance: estimates
-            .iter()
-            .map(|found| found.imbalance)
-            .reduce(f64::max),
+        balance: estimates.iter().map(|found| found.imbalance).reduce(larger),
         summary: report::summary(field, estimates),
         ..Outcome::default()
     };

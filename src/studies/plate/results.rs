@@ -10,6 +10,7 @@ use crate::mesh::Mesh;
 use crate::problem::{Measures, Solution, Work};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::solve::State;
+use crate::statistics::larger;
 
 mod requirement;
 pub mod run;
@@ -160,7 +161,7 @@ impl Results {
             Some(largest / self.measures(step)[model]?.force.abs())
         };
         let steps = 0..self.comparison.len();
-        steps.filter_map(of_step).reduce(f64::max)
+        steps.filter_map(of_step).reduce(larger)
     }
 
     /// The last stretch at which one of the models has a solution.

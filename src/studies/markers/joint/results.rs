@@ -9,7 +9,7 @@ use crate::document::write_records;
 use crate::results::{
     Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Scale, Stroke,
 };
-use crate::statistics::extremes;
+use crate::statistics::{extremes, larger};
 
 /// The `kind` of these results.
 pub const KIND: &str = "parameters";
@@ -49,7 +49,7 @@ pub fn results(
             ("forces.csv".to_owned(), Content::Text(table(&rows))),
         ],
         doubts: doubts.collect(),
-        balance: estimates.map(|found| found.imbalance).reduce(f64::max),
+        balance: estimates.map(|found| found.imbalance).reduce(larger),
         summary: report::summary(study, found, specimens),
         ..Outcome::default()
     };

@@ -124,7 +124,7 @@ impl Reference {
     pub fn measured_percent(&self, step: usize) -> Option<f64> {
         let by_meshes = self.three_meshes_percent(step);
         let known = by_meshes.into_iter().chain(self.recovered_percent(step));
-        let own = known.reduce(f64::max)?;
+        let own = known.reduce(larger)?;
         match self.outline {
             Some(_) => Some(own + self.outline_percent(step)?),
             None => Some(own),
@@ -162,7 +162,7 @@ impl Reference {
     fn outline_told(&self) -> Option<Block> {
         let steps = 0..self.outline.as_ref()?.len();
         let percents = steps.filter_map(|step| self.outline_percent(step));
-        let most = percents.reduce(f64::max)?;
+        let most = percents.reduce(larger)?;
         Some(Block::Paragraph(format!(
             "The outline: finite elements on meshes of the file have its edges, chords or parabolas. With the smooth \
              curves that these stand for the {} would change by about {most:.2e} %; this is part of its own error.",
