@@ -10,9 +10,10 @@
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
 
 use super::model::{Constraint, Model};
-use super::text::{ascii, number};
+use super::text::{ALL_NODES, FACTORS, FIBRES, MATERIAL, SPECIMEN, ascii, number};
 use crate::material::{Card, Code, CodeLaw, Softening};
 use crate::mesh::CellShape;
+use crate::problem::Support;
 
 /// Lines of an input file.
 #[derive(Default)]
@@ -46,17 +47,42 @@ pub fn write(model: &Model) -> String {
     material(model, &mut deck);
     let orientation = orientation(&model.law, &mut deck);
     deck.line(&format!(
-        "*SOLID SECTION, ELSET=SPECIMEN, MATERIAL=MATERIAL_1{orientation}"
+        "*SOLID SECTION, ELSET={SPECIMEN}, MATERIAL={MATERIAL}{orientation}"
     ));
     deck.line(&number(given.problem.thickness));
+    if is_one_step(model) {
+        one_step(model, &mut deck);
+        return deck.0;
+    }
     let mut before = 0.0;
     for factor in given.factors {
         for factor in model.on_the_way(before, *factor) {
-            step(model, before, factor, &mut deck);
+            let times = [(factor - before).abs() / 5.0, (factor - before).abs()];
+            step(model, times, factor, &mut deck);
             before = factor;
         }
     }
     deck.0
+}
+
+/// Whether all load factors can be of one step, because everything grows with the load factor. CalculiX finds no equilibrium in a second
+/// step that moves supports and changes loads.
+fn is_one_step(model: &Model) -> bool {
+    let factors = model.given.factors;
+    let grow = factors[0] > 0.0 && factors.windows(2).all(|pair| pair[0] < pair[1]);
+    let turns = |held: &Constraint| matches!(held.support, Support::Rotation { .. });
+    model.code == Code::CalculiX && factors.len() > 1 && grow && !model.held.iter().any(turns)
+}
+
+/// All load factors in one step, each a time at which results are written.
+fn one_step(model: &Model, deck: &mut Deck) {
+    let factors = model.given.factors;
+    deck.line(&format!("*TIME POINTS, NAME={FACTORS}"));
+    for factor in factors {
+        deck.line(&number(*factor));
+    }
+    let last = factors[factors.len() - 1];
+    step(model, [factors[0] / 5.0, last], last, deck);
 }
 
 fn mesh(model: &Model, deck: &mut Deck) {
@@ -65,7 +91,7 @@ fn mesh(model: &Model, deck: &mut Deck) {
         Code::CalculiX => "CPS8R",
         _ => "CPS8",
     };
-    deck.line("*NODE, NSET=ALL_NODES");
+    deck.line(&format!("*NODE, NSET={ALL_NODES}"));
     for node in &model.nodes {
         let [x, y] = model.given.mesh.nodes[*node].map(number);
         deck.line(&format!("{}, {x}, {y}", node + 1));
@@ -79,7 +105,7 @@ fn mesh(model: &Model, deck: &mut Deck) {
         let cells = model.cells.iter().enumerate();
         let mut cells = cells.filter(|(_, (own, _))| *own == shape).peekable();
         if cells.peek().is_some() {
-            deck.line(&format!("*ELEMENT, TYPE={name}, ELSET=SPECIMEN"));
+            deck.line(&format!("*ELEMENT, TYPE={name}, ELSET={SPECIMEN}"));
         }
         for (cell, (_, nodes)) in cells {
             let nodes: Vec<_> = nodes.iter().map(|node| (node + 1).to_string()).collect();
@@ -117,13 +143,12 @@ fn ties(model: &Model, deck: &mut Deck) {
     }
 }
 
-/// One load factor.
-fn step(model: &Model, before: f64, factor: f64, deck: &mut Deck) {
-    let period = (factor - before).abs();
+/// One step up to a load factor, with its first increment and its length in time.
+fn step(model: &Model, [first, period]: [f64; 2], factor: f64, deck: &mut Deck) {
     deck.line(&format!("** load factor {factor}"));
     deck.line("*STEP, NLGEOM, INC=1000");
     deck.line("*STATIC");
-    let times = [period / 5.0, period, period * 1e-6, period];
+    let times = [first, period, period * 1e-6, period];
     deck.line(&times.map(number).join(", "));
     if !model.held.is_empty() {
         deck.line("*BOUNDARY");
@@ -202,32 +227,30 @@ fn output(model: &Model, deck: &mut Deck) {
         }
         return;
     }
-    for line in [
-        "*NODE FILE, OUTPUT=2D, FREQUENCY=1000",
-        "U",
-        "*EL FILE, OUTPUT=2D, FREQUENCY=1000",
-        "S",
-    ] {
-        deck.line(line);
-    }
+    let at = match is_one_step(model) {
+        true => format!("TIME POINTS={FACTORS}"),
+        false => "FREQUENCY=1000".to_owned(),
+    };
+    deck.line(&format!("*NODE FILE, OUTPUT=2D, {at}"));
+    deck.line("U");
+    deck.line(&format!("*EL FILE, OUTPUT=2D, {at}"));
+    deck.line("S");
     for set in sets {
-        deck.line(&format!(
-            "*NODE PRINT, NSET={set}, TOTALS=ONLY, FREQUENCY=1000"
-        ));
+        deck.line(&format!("*NODE PRINT, NSET={set}, TOTALS=ONLY, {at}"));
         deck.line("RF");
     }
 }
 
 /// Names the directions of fibres and returns what the section says about them.
-fn orientation(law: &CodeLaw, deck: &mut Deck) -> &'static str {
+fn orientation(law: &CodeLaw, deck: &mut Deck) -> String {
     let CodeLaw::Named { directions, .. } = law else {
-        return "";
+        return String::new();
     };
     if directions.is_empty() {
-        return "";
+        return String::new();
     }
     deck.line(&format!(
-        "*ORIENTATION, NAME=FIBRES, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={}",
+        "*ORIENTATION, NAME={FIBRES}, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={}",
         directions.len()
     ));
     deck.line("1., 0., 0., 0., 1., 0.");
@@ -235,12 +258,12 @@ fn orientation(law: &CodeLaw, deck: &mut Deck) -> &'static str {
     for [x, y] in directions {
         deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
     }
-    ", ORIENTATION=FIBRES"
+    format!(", ORIENTATION={FIBRES}")
 }
 
 /// The material's keyword and data.
 fn material(model: &Model, deck: &mut Deck) {
-    deck.line("*MATERIAL, NAME=MATERIAL_1");
+    deck.line(&format!("*MATERIAL, NAME={MATERIAL}"));
     match &model.law {
         CodeLaw::Named {
             keyword,

@@ -10,7 +10,7 @@
 use std::collections::BTreeSet;
 
 use super::model::{Constraint, Model};
-use super::text::{ascii, number};
+use super::text::{FORCE, MID_PLANE, TURNED, ascii, number};
 use crate::material::CodeLaw;
 use crate::mesh::CellShape;
 
@@ -175,18 +175,16 @@ fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
     }
 }
 
-const MID_PLANE: &str = "MIDDLE_OF_THE_SHEET";
-
 fn turned<'a>(model: &'a Model) -> impl Iterator<Item = &'a Constraint> {
     model.held.iter().filter(|held| held.uniform().is_none())
 }
 
 fn turned_set(node: usize) -> String {
-    format!("TURNED_{}", node + 1)
+    format!("{TURNED}{}", node + 1)
 }
 
 fn force_set(number: usize) -> String {
-    format!("FORCE_{}", number + 1)
+    format!("{FORCE}{}", number + 1)
 }
 
 /// Dead forces in N on the half sheet: node of the sheet, place in its column, force.

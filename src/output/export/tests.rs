@@ -149,6 +149,45 @@ fn linear_displacements_go_out_with_the_value_of_every_node() {
     }
 }
 
+/// CalculiX gets one step whose load factors are times, where nothing turns; sets of groups are none of the writers' own.
+#[test]
+fn what_grows_with_the_load_factor_goes_out_in_one_step_to_calculix() {
+    let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+    let mut mesh = Shape::Strip { size: [4.0, 2.0] }.mesh(2, CellShape::Quad4);
+    mesh.name_boundary("all_nodes", |[x, _]| x == 4.0);
+    mesh.name_boundary("force_1", |[x, _]| x == 0.0);
+    let mut problem = problem(&card);
+    problem.supports[1].1 = Support::Displacement([Some(1.0), Some(0.0)]);
+    let export = |factors: &'static [f64]| Export {
+        title: "strip",
+        problem: &problem,
+        card: &card,
+        mesh: &mesh,
+        factors,
+        bulk_ratio: 100.0,
+    };
+    let text = |factors, code| export(factors).input_file(code).unwrap().text;
+    let growing = text(&[0.5, 2.0], Code::CalculiX);
+    for expected in [
+        "*TIME POINTS, NAME=FACTORS\n0.5\n2\n",
+        "*STATIC\n0.1, 2, 0.000002, 2\n",
+        "*NODE FILE, OUTPUT=2D, TIME POINTS=FACTORS\n",
+        "RIGHT, 1, 1, 2\n",
+        "*NSET, NSET=G_ALL_NODES\n",
+    ] {
+        assert!(growing.contains(expected), "{expected}: {growing}");
+    }
+    assert_eq!(growing.matches("*STEP,").count(), 1);
+    assert_eq!(growing.matches("NSET=ALL_NODES").count(), 1);
+    assert!(text(&[1.0], Code::FeBio).contains("name=\"G_FORCE_1\""));
+    for several in [
+        text(&[0.5, 2.0, 1.0], Code::CalculiX),
+        text(&[0.5, 1.0, 2.0], Code::Abaqus),
+    ] {
+        assert_eq!(several.matches("*STEP,").count(), 3);
+    }
+}
+
 /// Codes that take displacements along straight lines take a large turn in several steps, whose ends lie on the arc.
 #[test]
 fn turns_go_out_in_steps() {

@@ -2,6 +2,20 @@
 
 use std::collections::BTreeSet;
 
+/// Names that the writers give themselves: codes unite sets of one name.
+pub const ALL_NODES: &str = "ALL_NODES";
+pub const SPECIMEN: &str = "SPECIMEN";
+pub const MATERIAL: &str = "MATERIAL_1";
+pub const FIBRES: &str = "FIBRES";
+pub const FACTORS: &str = "FACTORS";
+pub const MID_PLANE: &str = "MIDDLE_OF_THE_SHEET";
+const OWN: [&str; 6] = [ALL_NODES, SPECIMEN, MATERIAL, FIBRES, FACTORS, MID_PLANE];
+
+/// What numbered names of theirs begin with.
+pub const TURNED: &str = "TURNED_";
+pub const FORCE: &str = "FORCE_";
+const OWN_NUMBERED: [&str; 2] = [TURNED, FORCE];
+
 /// Names that every code understands: letters, digits and underscores, in capitals, each given once.
 #[derive(Default)]
 pub struct Names(BTreeSet<String>);
@@ -19,8 +33,10 @@ impl Names {
             })
             .take(60)
             .collect();
+        let is_own =
+            OWN.contains(&&*plain) || OWN_NUMBERED.iter().any(|own| plain.starts_with(own));
         let plain = match plain.chars().next() {
-            Some('A'..='Z') => plain,
+            Some('A'..='Z') if !is_own => plain,
             _ => format!("G_{plain}"),
         };
         let numbered = (2..).map(|number| format!("{plain}_{number}"));
