@@ -56,20 +56,19 @@ mod terminal;
 mod test_reading;
 mod workbench;
 
-const SAMPLES: &str = "\
-Samples:
+const SAMPLES: &str = "Samples:
   gelbench new my_plate                      write my_plate.toml, a commented study
   gelbench keys specimen                     every key of a kind of studies
-  gelbench check my_plate.toml               read it and tell every fault
+  gelbench check my_plate.toml               read it and report every fault
   gelbench run my_plate.toml                 compute it and write output/my_plate/
   gelbench export my_plate.toml --to abaqus  write it as the input file of another code
   gelbench compare my_plate.toml abaqus.vtu  compare its models with a field of another program
   gelbench identify spring.csv               spring and dashpot functions from recorded force and motion
   gelbench correct markers.csv …             make measured displacements satisfy the physics
-  gelbench sweep my_plate.toml --vary …      compute it many times, some of its keys changed
-  gelbench workbench my_plate.toml           open it in the window, where it is installed
-  gelbench validate                          redo the publication's claims, write output/validation/REPORT.md
-  gelbench materials list                    the cards that come along
+  gelbench sweep my_plate.toml --vary …      compute it many times with some keys changed
+  gelbench workbench my_plate.toml           open it in the window, if that is installed
+  gelbench validate                          reproduce the publication's claims, write output/validation/REPORT.md
+  gelbench materials list                    the cards that are included
   gelbench materials show pva-10             one card with its moduli and its source
   gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
 
@@ -384,7 +383,7 @@ fn check(path: &Path, budget: Budget) -> Outcome {
     let taken: Vec<&str> = ready.physical_defaults().collect();
     if !taken.is_empty() {
         print(&format!(
-            "taken where the study says nothing: {}\n",
+            "defaults where the study states nothing: {}\n",
             taken.join(", ")
         ))?;
     }

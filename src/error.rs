@@ -109,7 +109,7 @@ impl std::error::Error for Diagnostic {}
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveFault {
     /// An element has turned inside out or shrunk to nothing.
-    #[error("{element} inverts or collapses, and no shorter step avoids it")]
+    #[error("{element} inverts or collapses, even with shorter steps")]
     Inverted {
         /// The element, named with its place, as in `cell 80 near (150.0, 0.0) mm`.
         element: String,
@@ -119,7 +119,7 @@ pub enum SolveFault {
     NotPositiveDefinite,
     /// A body that has a direction of negative stiffness before anything is done to it.
     #[error(
-        "not stable at rest: a mode that moves most at {place} has a negative stiffness before any load acts"
+        "unstable at rest: before any load acts, a mode that is largest at {place} has a negative stiffness"
     )]
     UnstableAtRest {
         /// Where the mode is largest.
@@ -135,7 +135,7 @@ pub enum SolveFault {
     },
     /// A motion that the loads drive has lost its stiffness: the load has its maximum, or a part snaps through.
     #[error(
-        "no equilibrium follows load factor {factor:.4} under a growing load: a motion that the load drives and that is largest at {place} has lost its stiffness, so that the load has a maximum there or a part snaps through"
+        "no equilibrium beyond load factor {factor:.4}: limit point, the load has reached a maximum, or a part of the body snaps through; the motion is largest at {place}"
     )]
     LoadMaximum {
         /// The last load factor with an equilibrium.
@@ -145,7 +145,7 @@ pub enum SolveFault {
     },
     /// A direction of no stiffness that the loads do not push along: the sheet buckles, wrinkles or necks.
     #[error(
-        "the tangent stiffness is not positive definite: a buckling or wrinkling mode, or a neck, which moves most at {place}"
+        "the tangent stiffness is not positive definite: buckling, wrinkling or necking; the mode is largest at {place}"
     )]
     Buckling {
         /// The unknown that moves most, named with its place.
@@ -155,11 +155,11 @@ pub enum SolveFault {
     #[error("{0}")]
     FreeMotion(String),
     /// The machine has not enough memory for a factor.
-    #[error("the memory is not enough for the factor of the system of equations")]
+    #[error("not enough memory to factorise the system of equations")]
     OutOfMemory,
     /// The tangent cannot be factorised at all.
     #[error(
-        "the system of equations is singular: the supports leave a free motion, or conditions depend on each other"
+        "the system of equations is singular: the supports leave a rigid-body motion free, or conditions depend on each other"
     )]
     Singular,
     /// Conditions that cannot be imposed together.
@@ -179,7 +179,7 @@ pub enum SolveFault {
     },
     /// The iteration ended without reaching its tolerance.
     #[error(
-        "no convergence in {iterations} iterations: the residual is {residual:.2e} of its scale, wanted {tolerance:.0e}"
+        "no convergence in {iterations} iterations: the relative residual is {residual:.2e}, the tolerance {tolerance:.0e}"
     )]
     Stalled {
         /// Iterations done.
@@ -190,7 +190,9 @@ pub enum SolveFault {
         tolerance: f64,
     },
     /// A motion whose steps are so short that they are too many.
-    #[error("about {needed:.1e} steps of at most {longest:.1e} s, and {allowed:.1e} are allowed")]
+    #[error(
+        "about {needed:.1e} steps of at most {longest:.1e} s are needed, and {allowed:.1e} are allowed"
+    )]
     TooManySteps {
         /// Steps to the end.
         needed: f64,
@@ -201,7 +203,7 @@ pub enum SolveFault {
     },
     /// A motion that gains energy from nowhere, however short its steps.
     #[error(
-        "the motion explodes after {time:.6} s, and steps down to {step:.1e} s do not avoid it"
+        "the time integration is unstable after {time:.6} s, even with steps down to {step:.1e} s"
     )]
     Explodes {
         /// The last time in s at which all was well.
@@ -238,31 +240,33 @@ impl SolveFault {
                 "look at the card's stable range with `gelbench materials show`, or take smaller steps of load or time"
             }
             Self::UnstableAtRest { .. } => {
-                "take cells of better shape: springs of skewed cells may need negative constants to have the material's stiffness"
+                "take less distorted cells: in skewed cells, springs may need negative constants to reproduce the material's stiffness"
             }
             Self::MaterialUnstable { .. } => {
                 "look at the card's stable range with `gelbench materials show`, or take a law that is stable there"
             }
-            Self::LoadMaximum { .. } => "control the displacement instead of the force or pressure",
+            Self::LoadMaximum { .. } => {
+                "prescribe the displacement instead of the force or pressure"
+            }
             Self::Buckling { .. } => {
-                "end the path before it: beyond, the sheet leaves its plane, folds, or strains in one place only"
+                "end the path before this point: beyond it the sheet leaves its plane, folds, or localises its strain"
             }
             Self::Dependent { .. } => "leave out one of the conditions named",
             Self::FreeMotion(_) => "add a support",
             Self::OutOfMemory => "take fewer cells, or a machine with more memory",
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
-                "take smaller steps before it (stretches, load factors, or the interval of a motion), or raise the iteration limit"
+                "take smaller steps up to this point (stretches, load factors, or the interval of a motion), or raise the iteration limit"
             }
             Self::Explodes { .. } => {
-                "look at the supports and loads at that time; take shorter steps or generalised-α, and `spectral_radius = 1` where that is what fails"
+                "look at the supports and loads at that time; take shorter steps or generalised-α, and if generalised-α fails, `spectral_radius = 1`"
             }
             Self::TooManySteps { .. } => {
                 "take a shorter duration, longer steps, softer springs or less damping, or say --allow-large"
             }
             Self::OfMeasured(_) => {
-                "look whether the markers tell of the whole mesh (else say what is known of its edges, or give a mesh that ends where they do), whether they \
-                 are on the right body, and whether places are those of the frame (--places frame)"
+                "check that the markers cover the whole mesh (else state what is known of its edges, or give a mesh that ends where the markers do), \
+                 that they are on the right body, and whether their places are those in the frame (--places frame)"
             }
             Self::NotFinite(_) => "look at the material's parameters and the load",
         }

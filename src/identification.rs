@@ -78,7 +78,7 @@ pub fn identify(
 ) -> Result<Identification, Error> {
     for (form, shape) in settings.forms.iter().zip(settings.shapes) {
         if shape != Shape::Free && !matches!(form, Form::Spline(_)) {
-            let message = "only splines can be held to rise or to fall";
+            let message = "only splines can be constrained to rise or to fall";
             return Err(Error::input(
                 message,
                 "leave out the shape, or take the form `spline`",
@@ -209,7 +209,7 @@ impl Fit<'_> {
             merit = next;
         }
         Err(Error::input(
-            "the steps towards K(·) and D(·) do not settle",
+            "the iteration for K(·) and D(·) does not converge",
             "look at the mass and the length at rest, or take constants or polynomials",
         ))
     }

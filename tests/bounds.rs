@@ -131,7 +131,7 @@ fn more_markers_than_memory_holds_are_refused_with_estimate_and_remedy() {
     for part in [
         "a field of ",
         " markers needs about 2,",
-        "take every other marker",
+        "use every other marker",
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }
@@ -187,7 +187,10 @@ fn sizes_lie_between_a_nanometre_and_a_kilometre() {
     assert!(said.contains("specimen.thickness"), "{said}");
     let text = study("strip_with_hole.toml", &[("hole_diameter", "\"2 nm\"")]);
     let said = told(("s.toml", &text), &["check", "s.toml"], 2);
-    assert!(said.contains("differ by more than 100,000 times"), "{said}");
+    assert!(
+        said.contains("differ by a factor of more than 100,000"),
+        "{said}"
+    );
 }
 
 /// A grid of markers on a strip, its lengths times a factor.
@@ -214,14 +217,20 @@ fn markers_and_outlines_measure_what_specimens_do() {
             &[&["correct", "m.csv"], &usual[..]].concat(),
             2,
         );
-        assert!(said.contains("from 1 nm to 1 km"), "{factor}: {said}");
+        assert!(
+            said.contains("must measure 1 nm to 1 km"),
+            "{factor}: {said}"
+        );
     }
     for corners in ["0,0\n1e12,0\n1e12,1e-3\n", "0,0\n1e-50,0\n0,1e-50\n"] {
         let field = root().join("examples/measured_plate.csv");
         let outline = format!("x [mm],y [mm]\n{corners}");
         let more = ["correct", field.to_str().unwrap(), "--outline", "o.csv"];
         let said = told(("o.csv", &outline), &[&more[..], &usual].concat(), 2);
-        assert!(said.contains("from 1 nm to 1 km"), "{corners}: {said}");
+        assert!(
+            said.contains("must measure 1 nm to 1 km"),
+            "{corners}: {said}"
+        );
     }
     let many = [&["correct", "m.csv", "--cell-size", "50 um"], &usual[..]].concat();
     let said = told(("m.csv", &grid("")), &many, 2);

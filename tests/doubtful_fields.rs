@@ -97,8 +97,8 @@ fn markers_that_end_inside_the_edge_leave_the_force_open() {
     // The outermost markers are no grips then: that they moved as rigid ones is contradicted.
     let (printed, found) = corrected(&inner, &[], NOT_EXPLAINED);
     assert!(
-        printed.contains("the data contradict what is said of right, left")
-            || printed.contains("the data contradict what is said of left, right"),
+        printed.contains("the data contradict the stated condition on right, left")
+            || printed.contains("the data contradict the stated condition on left, right"),
         "{printed}"
     );
     assert!(
@@ -147,11 +147,11 @@ fn half_a_subset_lies_between_the_outermost_markers_and_the_edge() {
          COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,MATCH\n{rows}"
     );
     let (printed, found) = corrected(&dice, &["--unit", "1 mm", "--cell-size", "10 mm"], 0);
-    let told = "taken to lie 5.0000 mm outside of the outermost markers, half a subset";
+    let told = "assumed to lie 5.0000 mm outside the outermost markers, half a subset";
     assert!(printed.contains(told), "{printed}");
     let origin = found["problem"]["mesh"]["origin"].as_str().unwrap();
     assert!(
-        origin.contains("5.0000 mm farther out: half a subset (subset 10 and step 5 pixels by the head of plate.csv)"),
+        origin.contains("widened by 5.0000 mm, half a subset (subset 10 and step 5 pixels according to the header of plate.csv)"),
         "{origin}"
     );
     let [force, low, high] = right_force(&found);
@@ -207,13 +207,13 @@ fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
         (
             &whole,
             vec!["--noise", "0.0005 mm"],
-            "times as much as their stated noise, more than chance allows: it is scaled",
+            "times as much as their stated noise, more than chance allows: the stated noise is rescaled",
             1,
         ),
         (
             &cut,
             vec![],
-            "the data contradict what is said of",
+            "the data contradict the stated condition on",
             NOT_EXPLAINED,
         ),
     ] {
@@ -279,7 +279,7 @@ fn noise_that_correlates_is_told_and_held_by_the_intervals() {
 fn noise_of_which_few_independent_values_are_left_is_not_explained() {
     let (printed, _) = corrected(&with_smooth_noise(4), &["--edge-gap", "0 mm"], 5);
     assert!(
-        printed.contains("too far to be told from a misfit"),
+        printed.contains("too far to be distinguished from a misfit"),
         "{printed}"
     );
 }
@@ -331,11 +331,11 @@ fn a_gap_is_a_hole_whether_its_points_have_rows_or_not() {
     };
     let with_rows: String = second_frame(|_| true).lines().map(emptied).collect();
     let (printed, left_out) = corrected(&without_rows, &[], NOT_EXPLAINED);
-    assert!(printed.contains("taken for holes: 1"), "{printed}");
+    assert!(printed.contains("treated as holes: 1"), "{printed}");
     let (printed, empty) = corrected(&with_rows, &[], NOT_EXPLAINED);
     // A marker beside the 25 was lost.
     assert!(
-        printed.contains("taken for holes: 1, with 26 points in them"),
+        printed.contains("treated as holes: 1, with 26 points in them"),
         "{printed}"
     );
     let forces = |report: &Value| report["steps"][0]["corrected"]["forces"].clone();

@@ -134,12 +134,12 @@ fn an_interrupt_ends_with_130_and_leaves_nothing_of_the_run() {
         child.wait_with_output().unwrap()
     };
     let ended = interrupted("run b.toml --output o", &|| partial(output));
-    assert_ends(&ended, 130, "nothing of this run is left");
+    assert_ends(&ended, 130, "nothing of this run is kept");
     assert!(!output.exists(), "{:?}", files(output).keys());
     run(folder, "run a.toml --output o");
     let before = files(output);
     let ended = interrupted("run b.toml --output o", &|| partial(output));
-    assert_ends(&ended, 130, "results of earlier runs are as they were");
+    assert_ends(&ended, 130, "results of earlier runs are unchanged");
     assert_eq!(files(output), before);
     assert!(!partial(output));
 }

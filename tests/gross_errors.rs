@@ -1,4 +1,4 @@
-//! Markers that are farther off than noise can be, where nothing is said of their weights.
+//! Markers that are farther off than noise can explain, where nothing is said of their weights.
 
 use std::fs;
 
@@ -42,7 +42,7 @@ fn corrected(markers: &str, options: &[&str]) -> (String, Value) {
 
 #[test]
 fn gross_errors_have_no_say_unless_it_is_said_that_they_have() {
-    const TOLD: &str = "farther off than noise can be";
+    const TOLD: &str = "farther off than noise can explain";
     let weighted = |weights: &[&str]| corrected(&markers(), &[&EDGES, weights].concat());
     let (text, found) = weighted(&[]);
     assert_eq!(found["weights"], "tukey");
@@ -100,7 +100,7 @@ fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
     // The median of all, of which two thirds have noise alone, lies at the three quarters of these: 1.41 times as far.
     assert!((1.0..1.7).contains(&(noise / NOISE)), "{noise}");
     assert!(
-        text.contains("markers are outliers, which is no noise"),
+        text.contains("markers are outliers, more than noise explains"),
         "{text}"
     );
     // Without weights their size is taken for noise, and told.
@@ -151,9 +151,9 @@ fn a_frame_that_cannot_be_corrected_leaves_the_others_theirs() {
     let arguments = [&usual[..], &more, &EDGES].concat();
     let done = gelbench(folder.path(), &arguments).code(1);
     let told = words(&done.get_output().stderr);
-    assert!(told.contains("in the frame 3 no marker moves"), "{told}");
+    assert!(told.contains("no marker moves in frame 3"), "{told}");
     assert!(
-        told.contains("frame 4: 2 of 2 markers lie on the mesh, and three are the fewest"),
+        told.contains("frame 4: 2 of 2 markers lie on the mesh, and at least three are needed"),
         "{told}"
     );
     assert!(told.matches("the frame is left out").count() == 2, "{told}");

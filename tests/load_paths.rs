@@ -202,7 +202,7 @@ fn grips_and_rollers_that_cannot_be_are_refused() {
     for (supports, told) in [
         (
             vec![("end", Support::Roller)],
-            "no straight line parallel to an axis",
+            "not a straight line parallel to an axis",
         ),
         (vec![("start", clamp), ("inside", grip)], "another support"),
         (vec![("inside", grip), ("start", clamp)], "another support"),

@@ -31,7 +31,7 @@ fn a_law_is_fitted_and_its_card_is_used() {
     assert!(figures["parameters"][0]["standard_error"].is_null());
     let card = fs::read_to_string(folder.path().join("pva.toml")).unwrap();
     assert_eq!(card.matches("# no interval").count(), 3);
-    assert!(card.contains("; left over: systematic, a smooth pattern"));
+    assert!(card.contains("; residuals: systematic, a smooth pattern"));
     assert!(
         fs::read(folder.path().join("pva.png"))
             .unwrap()

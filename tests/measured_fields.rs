@@ -263,7 +263,7 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         (
             &["lost.csv"],
             "no point of the field has a displacement",
-            "look at the columns",
+            "check the columns",
         ),
         (
             &["text.csv"],
@@ -272,7 +272,7 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         ),
         (
             &["lifted.csv"],
-            "leave their plane: `uz`",
+            "do not stay in a plane: `uz`",
             "--ignore-columns uz",
         ),
         (
@@ -287,8 +287,8 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         ),
         (
             &["plain.msh"],
-            "holds no vectors at its points",
-            "a field stands in",
+            "contains no vectors at its points",
+            "give a field as",
         ),
         (
             &["plate.csv", "--mesh", "metres.msh"],
@@ -303,12 +303,12 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         (
             &["plate.csv", "--mesh", "solid.msh"],
             "is not flat",
-            "a mesh stands in",
+            "a mesh file is",
         ),
         (
             &["plate.csv", "--mesh", "tetrahedra.msh"],
             "Gmsh's type 4",
-            "a mesh stands in",
+            "a mesh file is",
         ),
         (
             &["plate.csv", "--outline", "bow.csv"],
@@ -430,7 +430,7 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let done = gelbench(folder.path(), &told).code(0);
     let told = words(&done.get_output().stderr);
     assert!(
-        told.contains("what is said of scale_error has no part in it"),
+        told.contains("without noise; ignored: scale_error"),
         "{told}"
     );
 }
@@ -443,7 +443,7 @@ fn a_field_in_metres_labelled_mm_is_told() {
     let done = gelbench(folder.path(), &arguments).code(1);
     let told = words(&done.get_output().stderr);
     assert!(
-        told.contains("no thin sheet") && told.contains("--unit"),
+        told.contains("assumes a thin sheet") && told.contains("--unit"),
         "{told}"
     );
 }

@@ -112,20 +112,20 @@ fn faulty() -> Vec<(&'static str, MeshFile, [&'static str; 2])> {
         (
             "cell without area",
             with(&|file| file.cells.push(vec![0, 1, 2])),
-            ["one cell has no area, near (0, 1) mm", "take the cell out"],
+            ["one cell has no area, near (0, 1) mm", "remove the cell"],
         ),
         (
             "inverted cell",
             with(&|file| file.cells[5] = vec![7, 10, 8, 11]),
             [
                 "one cell is turned inside out",
-                "must follow each other around it",
+                "must be in order around it",
             ],
         ),
         (
             "three cells at a side",
             with(&|file| file.cells.push(vec![6, 9, 10])),
-            ["overlap: two on the same side", "take one of the cells out"],
+            ["overlap: two on the same side", "remove one of the cells"],
         ),
         (
             "overlapping cells",
@@ -135,7 +135,7 @@ fn faulty() -> Vec<(&'static str, MeshFile, [&'static str; 2])> {
             }),
             [
                 "one place is covered by two cells, which overlap, near (3.7, 0.7) mm",
-                "take out what lies on other cells",
+                "remove cells that lie on other cells",
             ],
         ),
     ]
@@ -375,13 +375,13 @@ fn a_mesh_that_cannot_be_halved_twice_is_halved_less_and_that_is_told() {
     let (report, warnings) = within(127.0);
     assert!(report.contains("on 32 cells, the finer of two meshes"));
     assert!(
-        warnings[0].contains("needs about 128 cells, and 127 are allowed: they are on two meshes"),
+        warnings[0].contains("needs about 128 cells, and 127 are allowed: the finite elements are computed on two meshes"),
         "{warnings:?}"
     );
     let (report, warnings) = within(8.0);
     assert!(report.contains("on 8 cells") && !report.contains("meshes,"));
     assert!(
-        warnings[0].contains("they are on this mesh alone"),
+        warnings[0].contains("computed on this mesh alone"),
         "{warnings:?}"
     );
 }

@@ -58,7 +58,7 @@ fn files_that_are_no_studies_are_told_with_the_command_that_takes_them() {
     ] {
         for command in ["run", "check"] {
             let told = told(root(), &[command, file], 2);
-            contains(&told, &[file, "no study", expected]);
+            contains(&told, &[file, "not a study", expected]);
             assert_eq!(told.matches('×').count(), 1, "one message: {told}");
         }
     }

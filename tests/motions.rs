@@ -125,7 +125,7 @@ fn the_report_of_a_motion_says_plate_material_and_grips() {
     let (report, json) = (read("report.md"), read("report.json"));
     for said in [
         "30 × 10 × 1 mm at rest",
-        "held at 10.0000 % stretch; let go at 0 s",
+        "held at 10.0000 % stretch; released at 0 s",
         "1020.0 kg/m³",
         "marlow-exponential",
         "0.0611 MPa",
@@ -210,17 +210,20 @@ fn steps_that_do_not_follow_a_swing_are_refused_and_what_does_nothing_is_told() 
     };
     let refused = told(&format!("{start}{swing}{time}"));
     assert!(
-        refused.contains("time.step") && refused.contains("in which the grip swings once"),
+        refused.contains("time.step") && refused.contains("of the grip's period"),
         "{refused}"
     );
     let fine = told(&format!(
         "{start}{swing}{}",
         time.replace("10 ms", "0.4 ms")
     ));
-    assert!(!fine.contains("swings"), "{fine}");
+    assert!(!fine.contains("the grip's period"), "{fine}");
     let late = "[grip]\nmotion = \"ramp\"\nbegin = \"5 s\"\nend = \"6 s\"\nto = \"10 %\"\n";
     let idle = told(&format!("{start}{late}{TIME}"));
-    assert!(idle.contains("does not begin in the time"), "{idle}");
+    assert!(
+        idle.contains("does not begin within the computed time"),
+        "{idle}"
+    );
 }
 
 /// Viscous forces take energy whatever high frequencies the integrator damps: 3 η ∫ (λ'/λ)² V dt, and some at the clamps.
@@ -351,7 +354,7 @@ fn a_driven_plate_has_the_corrected_force_of_its_grip_and_may_go_without() {
     );
     let (corrected, _, report, _) = files("[corrector]\nenabled = false\n", 0);
     assert!(corrected.is_none());
-    assert!(report.contains("The study says that the motion is not corrected"));
+    assert!(report.contains("The study disables the correction of the motion"));
     let (_, _, _, told) = files("force = \"0.001 %\"\n", 1);
     assert!(told.contains("force of the right grip"), "{told}");
 }

@@ -89,7 +89,7 @@ fn what_cannot_be_exported_is_refused_before_anything_is_written() {
         (
             "kind = \"smoothing\"",
             vec!["--to", "febio"],
-            "no boundary value problem",
+            "not a boundary value problem",
         ),
     ] {
         let folder = folder_with(study);

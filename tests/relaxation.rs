@@ -212,13 +212,13 @@ fn a_record_becomes_a_card_that_motions_and_pictures_take() {
     let warned = words(&done.get_output().stderr);
     for message in [
         "the relaxation was measured over 20 s",
-        "the grip moves at 1.0000 1/s",
+        "the stretch rate of the grip is 1.0000 1/s",
     ] {
         assert!(warned.contains(message), "{warned}");
     }
     for (arguments, message) in [
-        (["--relaxation", "many"], "no number of terms"),
-        (["--relaxation", "7"], "no number of terms"),
+        (["--relaxation", "many"], "not a number of terms"),
+        (["--relaxation", "7"], "not a number of terms"),
     ] {
         let refused = ["materials", "fit", "hold.csv", "--law", "yeoh"];
         let refused: Vec<&str> = refused.into_iter().chain(arguments).collect();

@@ -134,14 +134,14 @@ fn a_run_goes_on_where_it_was_broken_off() {
         if interrupt {
             send(&child, Signal::SIGINT);
             let ended = child.wait_with_output().unwrap();
-            assert_ends(&ended, 130, "the same command goes on from here");
+            assert_ends(&ended, 130, "the same command continues from here");
         } else {
             child.kill().unwrap();
             child.wait().unwrap();
         }
         assert!(kept());
         let ended = run(folder, command);
-        assert!(told(&ended).contains("goes on from"), "{}", told(&ended));
+        assert!(told(&ended).contains("continues from"), "{}", told(&ended));
         assert_eq!(results(output), whole);
         assert!(!partial(output));
     }
@@ -151,7 +151,7 @@ fn a_run_goes_on_where_it_was_broken_off() {
     child.wait().unwrap();
     fs::write(folder.join("long.toml"), LONG.replace("30 %", "31 %")).unwrap();
     let ended = run(folder, command);
-    assert!(!told(&ended).contains("goes on from"), "{}", told(&ended));
+    assert!(!told(&ended).contains("continues from"), "{}", told(&ended));
     assert_ne!(results(output), whole);
 }
 
@@ -199,7 +199,7 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
     assert_ends(
         &child.wait_with_output().unwrap(),
         130,
-        "the same command goes on from here",
+        "the same command continues from here",
     );
     assert!(is_done("1"));
 }

@@ -72,7 +72,7 @@ fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
     );
 
     let missing = run(folder, &format!("sweep {VARIED} --join 3"));
-    assert_ends(&missing, 2, "parts of 3 that are not there: 1, 2, 3");
+    assert_ends(&missing, 2, "missing parts of 3: 1, 2, 3");
     for part in 1..=3 {
         let done = run(folder, &format!("sweep {VARIED} --shard {part}/3"));
         let printed = String::from_utf8_lossy(&done.stdout);
@@ -217,7 +217,7 @@ fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
         "s.toml --vary material.c10=0.05+-0.045MPa --vary load.stretches.1=15..25% --samples 16";
     let done = run(place.path(), &format!("sweep {varied}"));
     // Some have no solution.
-    assert_ends(&done, 1, "beyond what a study may hold");
+    assert_ends(&done, 1, "outside the admissible range of a study");
     let file = |name: &str| fs::read(place.path().join("output/s_sweep").join(name)).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&file("sweep.json")).unwrap();
     let failed = report["failed"].as_u64().unwrap();
@@ -228,7 +228,10 @@ fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
         .find(|line| line.contains("corrected.force_N@the last step"));
     let row = row.unwrap_or_else(|| panic!("{text}"));
     assert!(row.contains(&format!("| {} |", 16 - failed)), "{row}");
-    assert!(text.contains("beyond what a study may hold"), "{text}");
+    assert!(
+        text.contains("outside the admissible range of a study"),
+        "{text}"
+    );
     // More than a few are a mistake.
     let done = run(
         place.path(),
@@ -259,7 +262,7 @@ fn what_cannot_be_varied_is_told_before_anything_is_computed() {
             "s.toml --vary plate.width=45..50mm --samples 0",
             "above zero",
         ),
-        ("s.toml --points s.toml", "is no table"),
+        ("s.toml --points s.toml", "is not a comma-separated table"),
         ("none.toml --vary plate.width=45mm,50mm", "none.toml"),
     ] {
         let done = run(place.path(), &format!("sweep {arguments}"));

@@ -101,7 +101,7 @@ def test_meshes_of_meshio_and_pyvista_pass_straight_in():
         (lambda points, cells: (points, {"quad": cells * 1.0}), "numbers of nodes"),
         (lambda points, cells: (points, {"quad": cells[:, :3]}), "wrong number of nodes"),
         (lambda points, cells: (points, {"hexahedron": cells}), "hexahedron"),
-        (lambda points, cells: (np.where(points == 60.0, np.nan, points), {"quad": cells}), "no number"),
+        (lambda points, cells: (np.where(points == 60.0, np.nan, points), {"quad": cells}), "not a number"),
         (lambda points, cells: (points, {"quad": cells}, {"end": [[1, 2, 3]]}), "end"),
         (lambda points, cells: ("mesh.msh",), "no mesh"),
     ],

@@ -142,7 +142,7 @@ def test_parts_by_themselves_and_in_a_folder_are_the_whole(study, table):
     with pytest.raises(gb.InputError, match="not those of this sweep"):
         plan.join(parts[1:])
     folder = study.parent / "parts"
-    with pytest.raises(gb.InputError, match="not there: 1, 2"):
+    with pytest.raises(gb.InputError, match="missing parts of 2: 1, 2"):
         plan.run(output=folder, join=2)
     for part in (1, 2):
         gb.sweep(study, VARIED, samples=12, output=folder, shard=(part, 2))

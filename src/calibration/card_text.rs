@@ -166,7 +166,7 @@ fn parameters(text: &mut String, fit: &Fit) {
 /// The standard error of a parameter in words.
 fn error(fit: &Fit, index: usize) -> String {
     match fit.quality.estimates[index].standard_error {
-        error if !error.is_finite() => "held by a bound".to_owned(),
+        error if !error.is_finite() => "at a bound".to_owned(),
         _ if !fit.quality.has_intervals() => "no interval".to_owned(),
         error => format!("standard error {error:.2e}"),
     }
@@ -240,14 +240,14 @@ fn note(fit: &Fit, tests: &[TestData]) -> String {
         let terms = relaxed.material.relaxation.len();
         let _ = write!(
             note,
-            "; the law is that of long times, {terms} terms of a Prony series"
+            "; the law is the long-term one, with {terms} terms of a Prony series"
         );
     }
     if fit.softened.is_some() {
-        note += "; the law is that of the first loading, softened after Ogden and Roxburgh";
+        note += "; the law describes the first loading, softened after Ogden and Roxburgh";
     }
     if let Some(verdict) = &quality.verdict {
-        note += "; left over: ";
+        note += "; residuals: ";
         note += &verdict.sentence();
     }
     for remark in tests.iter().flat_map(|test| &test.remarks) {

@@ -149,9 +149,9 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
     let misfit = Misfit::new(law, tests, settings.weighting);
     if law.name == SWELLING {
         let message = format!(
-            "{SWELLING} is not fitted: tests do not tell how far the gel was swollen when its network was made"
+            "{SWELLING} is not fitted: tests do not determine how far the gel was swollen when its network was made"
         );
-        let hint = "fit neo-hooke, whose stresses are the same at a given swelling, and put the card together by hand; see `gelbench guide materials`";
+        let hint = "fit neo-hooke, whose stresses are the same at a given swelling, and write the card by hand; see `gelbench guide materials`";
         return Err(Error::input(message, hint));
     }
     if law.name == MARLOW_TABLE {
@@ -160,7 +160,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
     let (unknown, entries) = misfit.build(&[]);
     if unknown.bulk_modulus().is_some() && tests[0].stress_measure == StressMeasure::Cauchy {
         let message = format!(
-            "{}: the area of a body that changes its volume does not follow from its stretch",
+            "{}: the deformed area of a compressible body does not follow from its stretch",
             law.name
         );
         let hint = "give nominal stress: force over the area at rest";
@@ -291,7 +291,7 @@ pub fn check_measures(tests: &[TestData]) -> Result<(), Error> {
         other.name,
         other.stress_measure.name()
     );
-    let hint = "turn one of them with `gelbench materials convert`";
+    let hint = "convert one of them with `gelbench materials convert`";
     Err(Error::input(message, hint))
 }
 

@@ -99,8 +99,8 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         .bulk_modulus()
         .is_some()
     {
-        let message = format!("{} changes its volume", law.name);
-        let hint = "relaxation is that of sheets that keep their volume: choose another law";
+        let message = format!("{} is compressible", law.name);
+        let hint = "relaxation is fitted to incompressible laws only: choose another law";
         return Err(Error::input(message, hint));
     }
     let own =
@@ -305,8 +305,7 @@ impl Whole<'_> {
             .collect();
         if !held.is_empty() {
             found.push(format!(
-                "{} at the end of what the data resolve, {low:.4} to {high:.4} s: faster or slower relaxation is not told apart \
-                 from it",
+                "{} at the limit of what the data resolve, {low:.4} to {high:.4} s: faster or slower relaxation cannot be distinguished from it",
                 held.join(", ")
             ));
         }
@@ -324,12 +323,12 @@ impl Whole<'_> {
             let _ = match data.rise > 0.0 {
                 true => write!(
                     text,
-                    "the rise is taken as even over the {} s before",
+                    "a linear rise over the {} s before is assumed",
                     data.rise
                 ),
                 false => write!(
                     text,
-                    "the rise is taken as sudden; `--ramp` says how long it took"
+                    "a sudden rise is assumed; state with `--ramp` how long it took"
                 ),
             };
             found.push(text);

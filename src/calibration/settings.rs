@@ -32,7 +32,7 @@ impl Weighting {
         match self {
             Self::Absolute => self.name().into(),
             Self::Relative => format!(
-                "{} (to {} % of its test's largest stress where a stress is smaller)",
+                "{} (relative to {} % of the test's largest stress where a stress is smaller)",
                 self.name(),
                 100.0 * SMALLEST_SHARE
             ),
@@ -108,7 +108,7 @@ pub fn limits(
         if from < to {
             return Ok([from, to]);
         }
-        let message = format!("the bounds of {} leave no value of the law", parameter.key);
+        let message = format!("the bounds of {} allow no value of the law", parameter.key);
         let hint = format!("the law takes values from {low:.1e} to {high:.1e}");
         Err(Error::input(message, hint))
     };

@@ -128,7 +128,10 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
 /// A card as the law of the first loading, without parameters to be found.
 fn of_card(card: &Card) -> Result<First, Error> {
     let law = Law::named(&card.law_name).ok_or_else(|| {
-        let message = format!("the law of the card `{}` is none of gelbench's", card.name);
+        let message = format!(
+            "the law of the card `{}` is not one of gelbench's",
+            card.name
+        );
         Error::input(
             message,
             "take a card with a law of `gelbench materials list`",

@@ -83,7 +83,7 @@ pub fn run(options: Options) -> Outcome {
         let message = format!("the field of {} {reason}", options.field.display());
         Error::input(
             message,
-            "nothing can be related to it; choose a step with a load",
+            "deviations relative to it do not exist; choose a step with a load",
         )
     })?;
     print(&summary(&compared, &differences))?;
@@ -114,19 +114,19 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
             false => "large",
         };
         let message = format!(
-            "the imported displacements are about {} times too {relation}, as in another unit of length",
+            "the imported displacements are about {} times too {relation}, as if in another unit of length",
             ratios[0]
         );
-        Diagnostic::warning("", message).hint("say the file's unit with --unit")
+        Diagnostic::warning("", message).hint("state the file's unit with --unit")
     });
     let scaled = differences.iter().all(Difference::is_scaled);
     let doubt = doubt.or_else(|| {
         let share = 1.0 / differences[0].factor;
         scaled.then(|| {
             let message = format!(
-                "the imported displacements are about {share:.3} times those of the models at the load factor {at}, as at another load factor"
+                "the imported displacements are about {share:.3} times those of the models at the load factor {at}, as if at another load factor"
             );
-            Diagnostic::warning("", message).hint("say that of the file with --factor")
+            Diagnostic::warning("", message).hint("state the file's load factor with --factor")
         })
     });
     // The finite elements stand first.
@@ -146,11 +146,12 @@ fn shift_doubt(finite_elements: &Difference) -> Diagnostic {
     } = finite_elements;
     let [x, y] = shift.displacement;
     let message = format!(
-        "most of the finite elements' difference is a motion of the whole body, by ({x:.4}, {y:.4}) mm and {:.4} degrees: without it {shifted_percent:.4} instead of {percent:.4} % are left",
+        "most of the finite elements' difference is a rigid-body motion by ({x:.4}, {y:.4}) mm and {:.4} degrees: without it the difference is \
+         {shifted_percent:.4} instead of {percent:.4} %",
         shift.angle.to_degrees()
     );
     Diagnostic::warning("", message)
-        .hint("take it out of the file, or mend the axes or the supports of the study")
+        .hint("remove it from the file, or correct the axes or the supports of the study")
 }
 
 /// Computes what is compared.
@@ -176,7 +177,7 @@ fn plate(options: &Options, text: String, told: studies::Progress) -> Result<Com
     let factor = options.factor.unwrap_or(last);
     if factor > PERCENTAGE && factor > last {
         let message = format!("--factor {factor} is a stretch of {} %", 100.0 * factor);
-        let hint = format!("write --factor \"{factor} %\" where per cent are meant");
+        let hint = format!("write --factor \"{factor} %\" if percent is meant");
         return Err(Error::input(message, hint));
     }
     let lattice = Mesh::plate(problem.size, study.cells, CellShape::Quad4);
@@ -204,11 +205,12 @@ fn shape(
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);
     if factor < 0.0 {
-        let message =
-            format!("the load factor {factor} is negative, and a specimen's begin at zero");
+        let message = format!(
+            "the load factor {factor} is negative, and load factors of a specimen begin at zero"
+        );
         return Err(Error::input(
             message,
-            "turn the signs of supports and loads in the study",
+            "reverse the signs of supports and loads in the study",
         ));
     }
     let (imported, sites) = import(options, factor, &specimen.outline.lattice())?;

@@ -43,9 +43,8 @@ fn message(payload: &dyn Any, place: &str) -> String {
     ];
     let what = texts.into_iter().flatten().next().unwrap_or("no reason");
     format!(
-        "error: gelbench met a fault of its own: {what}{place}\n  \
-         nothing of this run was written; results of earlier runs are as they were\n  \
-         please report it with the command, its input files and the version: gelbench {}\n",
+        "error: gelbench met a fault of its own: {what}{place}\n  nothing of this run was written; results of earlier runs are unchanged\n  please \
+         report it with the command, its input files and the version: gelbench {}\n",
         env!("CARGO_PKG_VERSION")
     )
 }

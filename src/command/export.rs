@@ -88,7 +88,7 @@ pub fn run(options: &Options) -> Outcome {
 pub fn not_for_other_codes(case: &Kind) -> Error {
     Error::input(
         format!(
-            "a study of the kind `{}` is no boundary value problem of one sheet",
+            "a study of the kind `{}` is not a boundary value problem of one sheet",
             case.name
         ),
         "take a plate study or one of the kind `specimen`",

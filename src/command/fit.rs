@@ -252,7 +252,8 @@ impl Written<'_> {
 /// What was not written by a fit is never replaced by one.
 fn guard(card: &Path, others: &[PathBuf]) -> Result<(), Error> {
     let refuse = |path: &Path| {
-        let cause = "there is a file of this name that no fit has written; choose another --name";
+        let cause =
+            "a file of this name exists that was not written by a fit; choose another --name";
         Err(Error::write(path, cause))
     };
     if card.exists() {

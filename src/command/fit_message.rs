@@ -70,7 +70,7 @@ fn relaxation(fit: &Fit) -> String {
         );
     }
     text + &format!(
-        "  at once      a sudden stress is {:.4} times that of long times, whose law this is\n",
+        "  at once      instantaneous stress is {:.4} times the long-term stress, to which the parameters belong\n",
         material.relaxation_function(0.0)
     )
 }
@@ -101,9 +101,9 @@ fn parameters(fit: &Fit) -> String {
         return String::new();
     }
     let quality = &fit.quality;
-    let mut text = format!("  residuals    {}\n", fit.settings.weighting.describe());
+    let mut text = format!("  weighting    {}\n", fit.settings.weighting.describe());
     if let Some(verdict) = &quality.verdict {
-        text += &format!("  left over    {}\n", verdict.sentence());
+        text += &format!("  residuals    {}\n", verdict.sentence());
     }
     let keys = fit.parameters.iter().map(|parameter| parameter.key.len());
     let width = keys.max().unwrap_or(0).max(12);
@@ -113,7 +113,7 @@ fn parameters(fit: &Fit) -> String {
         let [low, high] = estimate.interval.map(|end| digits(end, 5));
         let error = digits(estimate.standard_error, 2);
         text += &match (at_bound, quality.has_intervals()) {
-            (true, _) => format!("  {key:<width$} {value} {unit}   held by a bound\n"),
+            (true, _) => format!("  {key:<width$} {value} {unit}   at a bound\n"),
             (_, false) => format!("  {key:<width$} {value} {unit}   no interval\n"),
             _ => format!("  {key:<width$} {value} ± {error} {unit}   95 % {low} … {high}\n"),
         };
@@ -124,7 +124,7 @@ fn parameters(fit: &Fit) -> String {
 fn figures(fit: &Fit) -> String {
     let quality = &fit.quality;
     let residuals = match fit.parameters.is_empty() {
-        true => "  the curve is taken as it was measured; nothing is fitted\n".to_owned(),
+        true => "  the curve is used as measured; nothing is fitted\n".to_owned(),
         false => format!(
             "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {}, largest relative error {:.2} %, sum of squares {} MPa²\n",
             quality.rmse,
@@ -226,7 +226,7 @@ pub fn chosen(best: &Fit, (nearest, aicc): (&str, f64)) -> String {
         return String::new();
     }
     let reason = match best.quality.is_stable() && best.quality.is_identifiable() {
-        true => "the first that is stable over the data and whose parameters they all tell",
+        true => "the first that is stable over the data and whose parameters are all identifiable",
         false => "the first that is stable over the data",
     };
     format!(

@@ -11,9 +11,9 @@ pub fn terms(text: &str) -> Result<Terms, Error> {
         ("automatic", _) => Ok(Terms::Automatic),
         (_, Some(terms)) => Ok(Terms::Exactly(terms)),
         _ => Err(Error::input(
-            format!("--relaxation {text} is no number of terms"),
+            format!("--relaxation {text} is not a number of terms"),
             format!(
-                "a number up to {}, or nothing, for as many as AICc asks for",
+                "a number up to {}, or nothing, for as many as AICc selects",
                 Terms::MOST
             ),
         )),

@@ -203,8 +203,7 @@ fn file_name(path: &Path) -> String {
 
 fn message(found: &Identification, recording: &Recording, path: &Path) -> String {
     let mut text = format!(
-        "{}: {} instants\nnoise: {} mm of the extension, {} N of the force\n\
-         misfit: {} (1 where force, motion and forms fit together)\n",
+        "{}: {} instants\nnoise: {} mm in the extension, {} N in the force\nmisfit: {} (1 where force, motion and forms fit together)\n",
         path.display(),
         recording.times.len(),
         number(found.noise[0]),
@@ -249,7 +248,7 @@ fn powers(function: &Function, unit: &str) -> String {
 fn curve(function: &Function, argument: &str) -> String {
     const PLACES: usize = 7;
     let mut text = format!(
-        "  {argument:>14}  {:>10}  {:>10}  95 % at one place; band\n",
+        "  {argument:>14}  {:>10}  {:>10}  95 % pointwise; band\n",
         "value", "std error"
     );
     for x in function.places(PLACES) {

@@ -19,12 +19,12 @@ pub fn attend() {
         let broken_off = unfinished.as_ref().map(|own| own.break_off());
         let left = match broken_off.as_ref().map(|run| run.left) {
             None | Some(Left::Nothing) => {
-                "nothing of this run is left; results of earlier runs are as they were"
+                "nothing of this run is kept; results of earlier runs are unchanged"
             }
             Some(Left::Parts) => {
-                "the same command goes on from here; results of earlier runs are as they were"
+                "the same command continues from here; results of earlier runs are unchanged"
             }
-            Some(Left::Results) => "the results of this run are in place",
+            Some(Left::Results) => "the results of this run are complete",
         };
         let _ = writeln!(std::io::stderr(), "interrupted: {left}");
         std::process::exit(EXIT_CODE);

@@ -58,7 +58,7 @@ impl FolderJournal {
     /// What deserves to be told of a run that goes on.
     pub fn told(&self) -> Option<Diagnostic> {
         let message = format!(
-            "it goes on from {} equilibria that the same run had found before it was broken off; the times are those of the rest",
+            "the run continues from {} equilibria that it had found before it was interrupted; the times cover only the rest",
             self.count
         );
         (self.count > 0).then(|| Diagnostic::warning("", message))
@@ -67,7 +67,9 @@ impl FolderJournal {
     /// The folder, for the results, and a word where equilibria could not be kept.
     pub fn close(self) -> (ResultFolder, Option<Diagnostic>) {
         let told = |fault| {
-            let message = format!("equilibria could not be kept for a run that goes on: {fault}");
+            let message = format!(
+                "equilibria could not be stored for continuing an interrupted run: {fault}"
+            );
             Diagnostic::warning("", message)
         };
         (self.folder.into_inner(), self.fault.into_inner().map(told))

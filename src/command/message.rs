@@ -130,18 +130,18 @@ fn in_time(card: &Card) -> String {
         if let Some([stretch, change]) = card.tension_by_volume() {
             let percent = 100.0 * change;
             text += &format!(
-                "             uniaxial stress {percent:+.2} % at λ = {stretch:.2}, at most, against constant volume\n"
+                "             uniaxial stress changes by at most {percent:+.2} %, at λ = {stretch:.2}, compared with constant volume\n"
             );
         }
     }
     let viscosity = &card.viscosity;
     if viscosity.shear_viscosity > 0.0 {
         let shear = 1e6 * viscosity.shear_viscosity;
-        text += &format!("  viscosity  η = {shear:.6} Pa·s in parallel to the law\n");
+        text += &format!("  viscosity  η = {shear:.6} Pa·s in parallel with the law\n");
     }
     for term in &viscosity.relaxation {
         let (share, time) = (100.0 * term.share, term.time);
-        text += &format!("  relaxation {share:.4} % of a sudden stress in τ = {time} s\n");
+        text += &format!("  relaxation {share:.4} % of the instantaneous stress in τ = {time} s\n");
     }
     for (what, range, unit) in [
         ("times", viscosity.covered.times, "s"),
@@ -154,7 +154,7 @@ fn in_time(card: &Card) -> String {
     if !viscosity.relaxation.is_empty() {
         let at_once = viscosity.relaxation_function(0.0);
         text += &format!(
-            "  relaxation the law is that of long times; a sudden stress is {at_once:.6} times as large\n"
+            "  relaxation the law is the long-term one; instantaneous stress is {at_once:.6} times as large\n"
         );
     }
     text
@@ -171,7 +171,7 @@ fn softening(card: &Card) -> String {
         let most = state.energy;
         let [least, _] = softening.factor(0.0, most);
         format!(
-            "  softening  back from λ = {:.3} in uniaxial tension: {:.4} of {:.4} kJ/m³ are dissipated, η falls to {least:.4}\n",
+            "  softening  unloading from λ = {:.3} in uniaxial tension: {:.4} of {:.4} kJ/m³ are dissipated, η falls to {least:.4}\n",
             1.0 + share * far,
             1e3 * softening.dissipated(most),
             1e3 * most,

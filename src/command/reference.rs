@@ -134,9 +134,8 @@ pub fn print_keys(kind: Option<FileKind>) -> Outcome {
 /// The reference of some kinds of files as Markdown.
 pub fn reference(kinds: &[FileKind]) -> String {
     let mut text = String::from(
-        "Every key of studies, of what is known of markers, and of material cards. This page is what `gelbench keys` prints: it is \
-         made by the readers themselves.\n\n\
-         | quantity | units |\n|---|---|\n",
+        "Every key of studies, of files that state what is known of markers, and of material cards. This page is the output of `gelbench keys`, \
+         which the program's own readers generate.\n\n| quantity | units |\n|---|---|\n",
     );
     for dimension in Dimension::ALL {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
@@ -264,7 +263,7 @@ fn takes(takes: &Takes) -> String {
         }
         Takes::Unit(dimension) => format!("unit of {}", dimension.name()),
         Takes::LinearLength => {
-            "length, or one linear in the place: `\"2 mm + 0.1 * X\"`".to_owned()
+            "length, or a linear function of the place: `\"2 mm + 0.1 * X\"`".to_owned()
         }
         Takes::Section => "table".to_owned(),
         Takes::Sections => "list of tables".to_owned(),

@@ -18,13 +18,12 @@ use crate::sweep::{
 };
 
 /// What stands below the help.
-pub const HELP: &str = "\
-A key's parts have dots between them, places of lists count from 0, and parameters of the study's card are material.KEY:
+pub const HELP: &str = "A key's parts have dots between them, places of lists count from 0, and parameters of the study's card are material.KEY:
   --vary \"material.c10=0.04..0.06 MPa:20\"   20 values, evenly
   --vary \"plate.thickness=1 mm,2 mm\"        these values
   --vary \"material.c10=0.05+-0.002 MPa\"     normal, with mean and standard deviation; needs --samples
   --vary \"plate.width=45..55 mm\"            uniform; needs --samples
-Every combination is run. A sweep that was broken off goes on where it was when it is started again.
+Every combination is run. An interrupted sweep continues where it stopped when it is started again.
 
 Samples:
   gelbench sweep examples/pva_plate.toml --vary \"plate.thickness=1..3 mm:5\"

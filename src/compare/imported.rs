@@ -162,7 +162,7 @@ impl ExternalField {
             settings.time.unwrap_or(settings.factor),
         );
         field.map(|field| Self::OnMesh(Box::new(field))).map_err(|reason| {
-            let hint = "a field stands in .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with $NodeData, CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";
+            let hint = "a field is read from .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with $NodeData, CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";
             let hint = reason.remedy.as_deref().unwrap_or(hint);
             Error::input(format!("{} {reason}", path.display()), hint)
         })

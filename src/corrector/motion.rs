@@ -82,13 +82,13 @@ struct Term {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MotionFault {
     /// A support lets go later than at the start.
-    #[error("a support lets go: begin at the release")]
+    #[error("a support is released during the motion: begin at the release")]
     LettingGo,
     /// Stresses depend on the whole past.
-    #[error("three instants do not tell the stresses of a Prony series: leave out its terms")]
+    #[error("three instants do not determine the stresses of a Prony series: leave out its terms")]
     Relaxing,
     /// A free unknown has no mass.
-    #[error("a free unknown has no mass: hold it, or give it a mass")]
+    #[error("a free unknown has no mass: fix it, or give it a mass")]
     Massless,
 }
 

@@ -19,18 +19,18 @@ const VERSION: u32 = 1;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RetainedFault {
     /// The bytes do not begin as a kept factor does.
-    #[error("this is no kept factor: factorise again")]
+    #[error("this is not a stored factor: factorise again")]
     NoFactor,
     /// The file was written by another version of gelbench.
     #[error(
-        "the factor was kept in format {0}, this gelbench reads format {VERSION}: factorise again"
+        "the factor is stored in format {0}, this gelbench reads format {VERSION}: factorise again"
     )]
     Version(u32),
     /// The checksum is wrong.
-    #[error("the kept factor is damaged, its checksum is wrong: factorise again")]
+    #[error("the stored factor is damaged, its checksum is wrong: factorise again")]
     Damaged,
     /// The factor is one of other conditions.
-    #[error("the kept factor does not fit the problem: {0}")]
+    #[error("the stored factor does not fit the problem: {0}")]
     DoesNotFit(String),
     /// The file could not be read.
     #[error("cannot read {0}")]
@@ -116,10 +116,10 @@ fn fits(
             .iter()
             .map(|(name, rows)| format!("{name} ({rows})"))
             .collect();
-        return other(format!("its conditions are others: {}", names.join(", ")));
+        return other(format!("its conditions differ: {}", names.join(", ")));
     }
     if parts.weights != corrector.weights {
-        return other("its weights are others".into());
+        return other("its weights differ".into());
     }
     if parts.unknowns.is_some() && parts.unknowns != corrector.square_unknowns() {
         return other("its conditions belong to other unknowns".into());

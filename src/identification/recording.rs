@@ -167,7 +167,7 @@ impl Reader<'_> {
                 let hint = match &reason {
                     QuantityFault::UnknownUnit(unit) => reason.remedy(unit, dimension),
                     _ => format!(
-                        "write the unit in brackets behind the name; known: {}",
+                        "write the unit in brackets after the name; known: {}",
                         units.join(", ")
                     ),
                 };

@@ -65,9 +65,9 @@ impl Suspect {
             format!("{:.3} ± {:.3} {unit}", factor * amount, factor * error)
         };
         match self {
-            Self::ForceZero => format!("a force whose zero lies at {}", around(1.0, "N")),
+            Self::ForceZero => format!("a zero error of the force of {}", around(1.0, "N")),
             Self::ExtensionZero => {
-                format!("an extension whose zero lies at {}", around(1.0, "mm"))
+                format!("a zero error of the extension of {}", around(1.0, "mm"))
             }
             Self::Drift => format!(
                 "a force that drifts by {} over the recording",
@@ -78,7 +78,7 @@ impl Suspect {
                 around(1e3, "ms")
             ),
             Self::Mass => format!("a mass that is larger by {}", around(1e6, "g")),
-            Self::StepOfK => format!("a K(·) that steps by {} at rest", around(1.0, "N/mm")),
+            Self::StepOfK => format!("a step of K(·) at rest by {}", around(1.0, "N/mm")),
             Self::Friction => format!("a dry friction of {}", around(1.0, "N")),
         }
     }
@@ -179,11 +179,11 @@ pub fn warning(suspects: &[Suspected]) -> Option<String> {
         .map(|own| own.suspect.words(own.amount, own.error));
     let words: Vec<String> = words.collect();
     let remedy = match suspects.first()?.suspect.is_of_body() {
-        true => "smooth functions go past it, and no interval or band holds it",
-        false => "put it right before, as no interval holds it",
+        true => "smooth functions cannot follow it, and no interval or band includes it",
+        false => "correct this in the data first, because no interval includes it",
     };
     Some(format!(
-        "the recording asks for {}: {remedy}",
-        words.join(", or else for ")
+        "the recording indicates {}: {remedy}",
+        words.join(", or alternatively ")
     ))
 }

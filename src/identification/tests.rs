@@ -218,11 +218,11 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
     let interval = 1e3 * (sound.times[1] - sound.times[0]);
     let count = sound.times.len() as f64;
     let cases: [(&str, f64, Change); 5] = [
-        ("a force whose zero lies at ", 0.05 * force, &|own| {
+        ("a zero error of the force of ", 0.05 * force, &|own| {
             own.force.iter_mut().for_each(|f| *f += 0.05 * force);
         }),
         (
-            "an extension whose zero lies at ",
+            "a zero error of the extension of ",
             0.05 * extension,
             &|own| {
                 own.extension
@@ -251,7 +251,7 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
         let told = asked_for(&found).unwrap_or_default();
         // Zeros of force and extension are much the same: that of the other may be named first.
         let own = told
-            .split(", or else for ")
+            .split(", or alternatively ")
             .find_map(|one| one.strip_prefix(words));
         let own = own.unwrap_or_else(|| panic!("{words}: {told}"));
         let numbers: Vec<f64> = own
@@ -300,7 +300,7 @@ fn what_smooth_functions_go_past_is_named() {
     let (constant_k, constant_d): (Law, Law) = (&|_| 0.2, &|_| 0.004);
     let cases: [(&str, Law, Law); 2] = [
         (
-            "a K(·) that steps by ",
+            "a step of K(·) at rest by ",
             &|x| if x < 0.0 { 0.15 } else { 0.3 },
             constant_d,
         ),
@@ -322,7 +322,7 @@ fn what_smooth_functions_go_past_is_named() {
 /// What a recording asks for by the warnings.
 fn asked_for(found: &Identification) -> Option<String> {
     let told = found.warnings.iter();
-    let told = told.filter_map(|warning| warning.strip_prefix("the recording asks for "));
+    let told = told.filter_map(|warning| warning.strip_prefix("the recording indicates "));
     told.map(|told| told.split(':').next().unwrap_or_default().to_owned())
         .next()
 }

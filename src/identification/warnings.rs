@@ -23,8 +23,8 @@ fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
     let is_few = (bridged as f64) < FEW * wanted as f64;
     (is_few || length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
         format!(
-            "there are no rows between {} and {} s: the motion may be told with less detail than it has, and the rest be taken for noise; \
-             identify what lies before and after it by itself",
+            "there are no rows between {} and {} s: details of the motion there may be lost and counted as noise; identify the parts before and \
+             after the gap separately",
             longest[0], longest[1]
         )
     })
@@ -43,20 +43,19 @@ pub fn warnings(
     let mut warnings = Vec::new();
     if corners >= FEWEST_CORNERS {
         warnings.push(format!(
-            "the motion has {corners} corners, as where a machine turns at a constant rate: the smooth motion that is fitted goes past them, \
-             so that intervals and bands do not hold; drive it by sines, or identify the ways between corners by themselves"
+            "the motion has {corners} corners, as where a machine reverses at a constant rate: the fitted smooth motion cannot follow them, so that \
+             intervals and bands are not valid; use sinusoidal motion, or identify the parts between corners separately"
         ));
     }
     if signals.0.coarse || signals.1.coarse {
         warnings
-            .push("the motion is sampled too coarsely for its noise to be told from it".to_owned());
+            .push("the motion is sampled too coarsely to distinguish it from its noise".to_owned());
     }
     let excess = (found.misfit - 1.0) / (2.0 / found.freedom).sqrt();
     if excess > 4.0 {
         warnings.push(format!(
-            "force and motion do not fit together: what is left is {:.2} times the noise; the mass, the length at rest or \
-             the forms are wrong, the noise correlates, or there is more than one spring and one dashpot; intervals hold white \
-             noise alone and are too narrow",
+            "force and motion do not fit together: the residual is {:.2} times the noise; the mass, the length at rest or the forms are wrong, the \
+             noise is correlated, or there is more than one spring and one dashpot; intervals assume white noise and are too narrow",
             found.misfit.sqrt()
         ));
     }
@@ -74,14 +73,16 @@ pub fn warnings(
         let negative = |estimate: &Estimate| estimate.interval[1] < 0.0;
         if estimates.iter().all(negative) {
             warnings.push(format!(
-                "{name}(·) is negative: turn the sign of the force or of the extension"
+                "{name}(·) is negative: reverse the sign of the force or of the extension"
             ));
         } else if estimates.iter().any(negative) {
             warnings.push(format!(
-                "{name}(·) is negative somewhere: no passive spring does that"
+                "{name}(·) is negative somewhere: impossible for a passive spring or dashpot"
             ));
         } else if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
-            warnings.push(format!("the recording does not tell {name}(·) from zero"));
+            warnings.push(format!(
+                "the recording does not distinguish {name}(·) from zero"
+            ));
         }
     }
     if recording.mass == 0.0 {

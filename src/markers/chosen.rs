@@ -52,20 +52,20 @@ impl ChosenColumns {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
         for part in parts {
             let Some((role, name)) = part.split_once('=') else {
-                let hint = "write what a column holds and its name, as in --columns x=x_px,y=y_px,ux=disp_u,uy=disp_v";
+                let hint = "write a quantity and the name of its column, as in --columns x=x_px,y=y_px,ux=disp_u,uy=disp_v";
                 return fault(format!("`{part}` names no column"), hint);
             };
             let (role, name) = (role.trim(), name.trim());
             let found = Role::NAMES.iter().find(|(known, _)| *known == role);
             let Some((_, found)) = found else {
                 let known = Role::NAMES.map(|(known, _)| known);
-                let hint = suggestion(role, &known, "columns hold");
-                return fault(format!("`{role}` is nothing that a column holds"), &hint);
+                let hint = suggestion(role, &known, "known quantities:");
+                return fault(format!("`{role}` is not a known quantity"), &hint);
             };
             if name.is_empty() {
                 return fault(
                     format!("`{role}=` names no column"),
-                    "write its name behind the =",
+                    "write its name after the =",
                 );
             }
             if all.iter().any(|(known, _)| known == found) {
@@ -74,7 +74,7 @@ impl ChosenColumns {
             }
             if all.iter().any(|(_, known)| known == name) {
                 let message = format!("the column `{name}` is named twice");
-                return fault(message, "a column holds one thing");
+                return fault(message, "assign each column to one quantity");
             }
             all.push((*found, name.to_owned()));
         }

@@ -39,8 +39,8 @@ pub fn mixed_units<'a>(heads: impl Iterator<Item = Option<&'a str>>) -> Option<D
         _ => None,
     });
     mixed.map(|[along, across]| {
-        let message = format!("of two columns that belong together one is in {along} and one in {across}: each is taken in its own unit");
-        Diagnostic::warning("", message).hint("look at the head of the table")
+        let message = format!("the two columns of one vector are in different units, {along} and {across}: each is read in its own unit");
+        Diagnostic::warning("", message).hint("check the header of the table")
     })
 }
 
@@ -105,7 +105,7 @@ pub fn required(table: &Table, names: Names) -> Result<(usize, Option<String>), 
             false => format!("the file has {}", found.join(", ")),
         };
         let message = format!("there is no column `{}`: {found}", plainly(names));
-        let hint = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own, or say which they are: \
+        let hint = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with your own unit, or assign them: \
                     `gelbench correct` takes --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
         table.refuse_columns(message, hint)
     })
@@ -134,13 +134,13 @@ pub fn length(
         (Some(unit), Some(given)) if units.corrected == Some(unit) => Ok((index, given)),
         (Some(unit), Some(given)) if !units::is_known(unit) => Ok((index, given)),
         (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
-            let message = format!("`{unit}` is no unit of length");
+            let message = format!("`{unit}` is not a unit of length");
             unknown_unit(table, unit, Dimension::Length, message)
         }),
         (None, Some(unit)) => Ok((index, unit)),
         (None, None) if pixels => Err(table.refuse_columns(
             format!("the column `{name}` is in pixels"),
-            "say how long a pixel is, such as --unit \"0.05 mm\"",
+            "give the length of a pixel, such as --unit \"0.05 mm\"",
         )),
         (None, None) => Err(table.refuse_columns(
             format!("the column `{name}` has no unit"),
@@ -155,10 +155,10 @@ pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Opti
     let said = millimetres(head)?;
     ((given / said - 1.0).abs() > 1e-12).then(|| {
         let message = format!(
-            "{} says {head}, --unit says {given} mm: the latter is taken",
+            "{} states {head}, --unit states {given} mm: the latter is used",
             table.source.name
         );
-        Diagnostic::warning("", message).hint("mend the head of the file")
+        Diagnostic::warning("", message).hint("correct the header of the file")
     })
 }
 
@@ -212,13 +212,13 @@ pub fn check_all(
         let twice = known.contains(&&**name);
         let message = match (name.is_empty(), twice) {
             (true, _) => "a column has no name".to_owned(),
-            (false, true) => format!("the column `{name}` says what another column says already"),
+            (false, true) => format!("the column `{name}` repeats another column"),
             (false, false) => format!("the column `{name}` is not known here"),
         };
         let meant = nearest(name, known.iter().copied()).filter(|_| !twice);
         let meant = meant.map_or(String::new(), |near| format!("did you mean `{near}`? "));
         let hint = format!(
-            "{meant}known columns: {}; --ignore-columns {name} passes over it",
+            "{meant}known columns: {}; ignore it with --ignore-columns {name}",
             known.join(", ")
         );
         table.fault(table.columns_place.clone(), message, &hint)
@@ -247,7 +247,7 @@ pub fn seconds(table: &Table, column: usize) -> Result<f64, Error> {
         return Ok(1.0);
     };
     units::factor(unit, Dimension::Time).map_err(|_| {
-        let message = format!("`{unit}` is no unit of time");
+        let message = format!("`{unit}` is not a unit of time");
         unknown_unit(table, unit, Dimension::Time, message)
     })
 }
@@ -303,10 +303,10 @@ pub fn check_flat(
         };
         if off > FLAT {
             let message = format!(
-                "the points leave their plane: `{name}` reaches {most:.4} compared with {what:.4} in the plane"
+                "the points do not stay in a plane: `{name}` reaches {most:.4} compared with {what:.4} in the plane"
             );
             let hint = format!(
-                "a sheet is in plane stress and stays flat; --ignore-columns {name} takes the field as if it did"
+                "give a flat sheet in plane stress, or treat the field as flat with --ignore-columns {name}"
             );
             return Err(table.refuse_columns(message, &hint));
         }

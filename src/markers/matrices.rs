@@ -67,15 +67,15 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
     let Some(step) = reading.grid else {
         return Err(Error::input(
             format!(
-                "{} is a matrix, which does not say how far its points are apart",
+                "{} is a matrix, which does not state the distance between its points",
                 u.display()
             ),
-            "give --grid \"0.5 mm\": Ncorr's (spacing + 1) times its length of a pixel",
+            "give --grid \"0.5 mm\": Ncorr's (spacing + 1) times its pixel length",
         ));
     };
     let Some(unit) = reading.unit else {
         return Err(Error::input(
-            format!("{} does not say its unit", u.display()),
+            format!("{} does not state its unit", u.display()),
             "give --unit mm, or the length of a pixel where Ncorr's units are pixels",
         ));
     };
@@ -85,7 +85,7 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
         let [[a, b], [c, d]] = [size(&u), size(&v)];
         return Err(Error::input(
             format!(
-                "{} has {a} × {b} fields, {} has {c} × {d}",
+                "{} has {a} × {b} entries, {} has {c} × {d}",
                 u.source.name, v.source.name
             ),
             "save u and v of the same frame",
@@ -120,10 +120,10 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
 
 fn matrix(path: &Path, reading: &ReadSettings) -> Result<Table, Error> {
     let table = Table::read_as(path, reading.encoding, Table::HINT)?;
-    table.check_numbers_or_holes(0..table.columns.len(), "a matrix holds numbers, or NaN")?;
+    table.check_numbers_or_holes(0..table.columns.len(), "give a matrix of numbers, or NaN")?;
     if table.columns.iter().any(|column| !column.name.is_empty()) {
         let hint = "give markers as one table, or matrices of numbers alone";
-        return Err(table.refuse_columns("a matrix has no names of columns", hint));
+        return Err(table.refuse_columns("a matrix must not have column names", hint));
     }
     Ok(table)
 }

@@ -14,7 +14,7 @@ use crate::mesh::import_series;
 pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let unit = reading.unit.unwrap_or(1.0);
     let series = import_series(path, unit, reading.array.as_deref()).map_err(|reason| {
-        let hint = "a field stands in .csv (x, y, ux, uy), .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with \
+        let hint = "give a field as .csv (x, y, ux, uy), .vtu, .vtk (up to version 4), .pvd, Gmsh's .msh with \
                     $NodeData, or CalculiX' .frd (ASCII)";
         Error::input(format!("{} {reason}", path.display()), hint)
     })?;

@@ -29,10 +29,10 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
     let across = extent[0].min(extent[1]);
     (thickness > THICK * across).then(|| {
         let message = format!(
-            "the specimen measures {:.4} × {:.4} mm and is {thickness} mm thick: no thin sheet",
+            "the specimen measures {:.4} × {:.4} mm and is {thickness} mm thick: it is not a thin sheet",
             extent[0], extent[1]
         );
-        let hint = "look at the units: of the thickness, and of the field, which --unit corrects (such as --unit m)";
+        let hint = "check the units of the thickness and of the field; --unit corrects that of the field (such as --unit m)";
         Diagnostic::warning("", message).hint(hint)
     })
 }
@@ -45,7 +45,7 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
     if series.frames.is_empty() {
         return Err(Error::input(
             "no point of the field has a displacement that is a number",
-            "look at the columns or the array that hold it",
+            "check the columns or the array that contain it",
         ));
     }
     let markers = || series.frames.iter().flat_map(|frame| &frame.markers);
@@ -65,23 +65,23 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
         && size > 0.0
     {
         let hint =
-            "write the unit of every column in its head, as in x [mm], or correct it with --unit";
+            "write the unit of every column in its header, as in x [mm], or correct it with --unit";
         return Err(Error::input(format!("the points {measures}"), hint));
     }
     // One point alone has no size.
     if size > 0.0 && largest > LARGEST * size {
         return Err(Error::input(
             format!(
-                "the displacement reaches {largest:.4} mm where the points span {size:.4} mm: they are in different units"
+                "the displacement reaches {largest:.4} mm, but the points span {size:.4} mm: they are in different units"
             ),
-            "write the unit of every column in its head, as in x [mm], ux [um]",
+            "write the unit of every column in its header, as in x [mm], ux [um]",
         ));
     }
     if largest < SMALLEST * size {
         let message = format!(
-            "the displacement reaches only {largest:.3e} mm where the points span {size:.4} mm"
+            "the displacement reaches only {largest:.3e} mm, but the points span {size:.4} mm"
         );
-        let hint = "look whether places and displacements are in the same unit";
+        let hint = "check that positions and displacements are in the same unit";
         warnings.push(Diagnostic::warning("", message).hint(hint));
     }
     Ok(())
@@ -141,11 +141,11 @@ pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Err
     Err(match unit {
         Some(unit) => Error::input(
             format!("{sizes}: about a factor of {unit}, as between two units of length"),
-            "say the unit of the field with --unit, and that of the mesh with --mesh-unit",
+            "state the unit of the field with --unit, and that of the mesh with --mesh-unit",
         ),
         None => Error::input(
             format!(
-                "{sizes}, but {} of {all} points lie outside of the mesh",
+                "{sizes}, but {} of {all} points lie outside the mesh",
                 all - inside
             ),
             "give both in the same axes, at rest",

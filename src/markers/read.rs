@@ -73,7 +73,7 @@ fn append(whole: &mut FileRows, found: FileRows, file: &Path) -> Result<(), Erro
     let meshes = [&whole.mesh, &found.mesh].map(|mesh| mesh.as_ref().map(|mesh| &mesh.nodes));
     let fault = match () {
         () if whole.understood.layout != found.understood.layout => {
-            "is of another kind than the files before it"
+            "has another layout than the files before it"
         }
         () if meshes[0] != meshes[1] => "has another mesh than the files before it",
         () => {

@@ -127,17 +127,17 @@ impl Gathering {
             (
                 self.holes,
                 "points without a displacement",
-                "they are left out; the places of those within the specimen still count for the outline",
+                "they are left out; the positions of those within the specimen still count for the outline",
             ),
             (
                 self.twice,
-                "rows that stand twice, with one place and displacement in one frame",
-                "each counts once: writing a measurement down again makes it no surer",
+                "duplicate rows, with the same position and displacement in one frame",
+                "each counts once: a copy adds no information",
             ),
             (
                 self.again,
-                "markers measured again at the same place in one frame, with another displacement",
-                "each counts as a measurement of its own; give one row a marker if they are not independent",
+                "markers measured again at the same position in one frame, with another displacement",
+                "each counts as a measurement of its own; give one row per marker if they are not independent",
             ),
         ];
         for (count, what, hint) in counted.into_iter().filter(|(count, ..)| *count > 0) {
@@ -152,10 +152,10 @@ impl Gathering {
         let lost = within(&found, all);
         if lost.len() < without {
             let message = format!(
-                "points without a displacement in any frame that are taken to lie outside of the specimen: {}",
+                "points without a displacement in any frame, assumed to lie outside the specimen: {}",
                 without - lost.len()
             );
-            let hint = "they leave whole rows or columns of the matrix, or a tenth of it at its rim, empty; --outline gives the true edge";
+            let hint = "they leave whole rows or columns of the matrix empty, or more than a tenth of it at its rim; give the true edge with --outline";
             warnings.push(Diagnostic::warning("", message).hint(hint));
         }
         let (frames, at_rest) = with_markers(self.frames, warnings);
@@ -187,11 +187,10 @@ fn with_markers(
     let (mut kept, mut at_rest) = (Vec::new(), Vec::new());
     for (number, frame) in frames {
         if frame.markers.is_empty() {
-            let message = format!("the frame {number} has no displacement at all");
+            let message = format!("frame {number} has no displacement at all");
             warn(message, "it is left out");
         } else if most > 0.0 && largest(&frame) <= AT_REST * most {
-            let message =
-                format!("in the frame {number} no marker moves: it is the picture at rest");
+            let message = format!("no marker moves in frame {number}: it is the picture at rest");
             warn(message, "it is left out, with the forces in it");
             at_rest.push(number);
         } else {

@@ -33,7 +33,7 @@ impl Subset {
     pub(super) fn of(table: &Table, path: &Path, layout: &str) -> Option<Self> {
         let of_head = |size: &str, step: &str| {
             let head = &table.source.text;
-            let told_by = format!("the head of {}", name_of(path));
+            let told_by = format!("the header of {}", name_of(path));
             Self::new([remark(head, size), remark(head, step)], told_by)
         };
         match layout {

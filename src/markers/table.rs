@@ -55,7 +55,7 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
     let number = plain(&table, &["line"]);
     let read: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
     columns::check_all(&table, &read, &["x", "y", "line"], &[])?;
-    table.check_numbers(read, "an outline has numbers x, y alone")?;
+    table.check_numbers(read, "give an outline as numbers x, y only")?;
     let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
     for (row, _) in &table.rows {
         let (place, number) = (
@@ -149,7 +149,7 @@ impl<'a> Reader<'a> {
                 .chain(columns::mixed_units(names()))
                 .collect(),
         };
-        let hint = "a field of this column is a number, or empty where nothing was found";
+        let hint = "write a number in every field of this column, or leave it empty where nothing was found";
         table.check_numbers_or_holes(reader.read(), hint)?;
         reader.overlooks_none(layout, chosen.any_length(), &reading.ignored_columns)
     }
@@ -172,8 +172,8 @@ impl<'a> Reader<'a> {
             let others = columns::others(table, &used, ignored);
             let others: Vec<_> = others.iter().map(|column| &*column.written).collect();
             if !others.is_empty() {
-                let message = format!("columns that are passed over: {}", others.join(", "));
-                let hint = "--columns names those that are read";
+                let message = format!("ignored columns: {}", others.join(", "));
+                let hint = "--columns lists those that are read";
                 self.warnings
                     .push(Diagnostic::warning("", message).hint(hint));
             }
@@ -224,7 +224,7 @@ impl<'a> Reader<'a> {
         }
         if place.iter().any(|x| !x.is_finite()) {
             let hint = "give x and y, or leave out the line";
-            return Err(refuse("a marker has no place", hint));
+            return Err(refuse("a marker has no position", hint));
         }
         if self.deformed && displacement.iter().any(|u| !u.is_finite()) {
             // Where it was at rest nobody knows.
@@ -236,7 +236,7 @@ impl<'a> Reader<'a> {
         };
         if self.frame.is_some() && whole(self.frame).is_none() {
             let hint = "number the frames 1, 2, 3 …";
-            return Err(refuse("a frame has no whole number", hint));
+            return Err(refuse("a frame number is not a whole number", hint));
         }
         let time = self.time.map(|(column, unit)| values[column] * unit);
         Ok(Row {

@@ -47,17 +47,17 @@ impl Understood {
     pub fn axes(&self) -> &'static str {
         match self.turned_up {
             true => {
-                "In the file y points down, as in an image; here y and uy are turned up: the origin is the file's, such as the \
-                 upper left corner of the image, and what lies below it has y less than zero."
+                "In the file y points down, as in an image; here y and uy are turned up: the origin is that of the file, such as the \
+                 upper left corner of the image, and points below it have negative y."
             }
-            false => "Origin and axes are the file's, with y taken to point up.",
+            false => "Origin and axes are those of the file, with y assumed to point up.",
         }
     }
 
     /// Where places come from, if they are not the file's.
     pub fn places(&self) -> Option<&'static str> {
         self.taken_to_rest.then_some(
-            "The file's places are those in the frame; the displacement was subtracted to have them at rest.",
+            "The positions in the file are those in the frame; the displacement was subtracted to obtain positions at rest.",
         )
     }
 

@@ -276,7 +276,7 @@ pub fn read_viscosity(section: &Section) -> ViscousMaterial {
     };
     let relaxation: Vec<Relaxation> = terms.iter().map(term).collect();
     if relaxation.iter().map(|term| term.share).sum::<f64>() > 0.999 {
-        let hint = "they are parts of the stress right after a sudden stretch; what remains is that of long times";
+        let hint = "they are fractions of the instantaneous stress after a sudden stretch; the rest is the long-term stress";
         section.fault("relaxation", "the shares must add up to less than 1", hint);
     }
     let range = |key: &'static str, dimension, bound| {

@@ -186,7 +186,7 @@ impl StressAfter {
 
 /// What to do where a material must not soften.
 pub const WITHOUT: &str =
-    "leave out the card's `[softening]`: its law is then that of the first loading";
+    "leave out the card's `[softening]`: its law then describes the first loading";
 
 #[cfg(test)]
 mod tests;

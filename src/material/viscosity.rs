@@ -67,10 +67,12 @@ impl ViscousMaterial {
         let at_once = self.relaxation_function(0.0);
         let sudden = match self.relaxation.is_empty() {
             true => String::new(),
-            false => format!(", and after a sudden load the stress is {at_once:.4} times as large"),
+            false => {
+                format!("; the stress right after a sudden load is {at_once:.4} times as large")
+            }
         };
         (!self.is_none()).then(|| {
-            format!("the viscosity of the card takes no part: these are the figures of infinitely slow loading{sudden}")
+            format!("the card's viscosity is ignored: results are for quasi-static (infinitely slow) loading{sudden}")
         })
     }
 

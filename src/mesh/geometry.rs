@@ -16,7 +16,7 @@ pub fn bounding_box(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2]
 /// How points measure where no specimen does: length and width of the box around them in mm, and the largest coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "span {:.1e} × {:.1e} mm and reach to {reach:.1e} mm from the origin, where specimens measure from 1 nm to 1 km and are no farther from it: look at the unit",
+    "span {:.1e} × {:.1e} mm and reach to {reach:.1e} mm from the origin, but specimens must measure 1 nm to 1 km and lie within 1 km of the origin: check the unit",
     .span[0],
     .span[1]
 )]

@@ -68,7 +68,7 @@ pub fn import(
 }
 
 fn unreadable(name: &str, reason: Unreadable) -> Vec<Diagnostic> {
-    let hint = "a mesh stands in Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
+    let hint = "a mesh file is Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
     vec![Diagnostic::error("", format!("{name} {reason}")).hint(hint)]
 }
 
@@ -114,7 +114,7 @@ fn read(path: &Path) -> Result<Raw, Unreadable> {
     match ending.as_deref() {
         Some("msh") => gmsh::read(&read_text(path)?),
         Some("vtu" | "vtk") => vtk::read(path),
-        _ => Err("is no .msh, .vtu or .vtk file".into()),
+        _ => Err("is not a .msh, .vtu or .vtk file".into()),
     }
 }
 
@@ -128,8 +128,8 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
         let message = match lines.len().saturating_sub(kept) {
             0 => return None,
             lost if lost == inner => format!(
-                "{} of the group `{name}` are sides of cells on the sheet, and no edges of the boundary: supports hold them, tractions \
-                 and pressures do not act there",
+                "{} of the group `{name}` are sides of cells inside the sheet, not edges of the boundary: supports act on them, tractions and \
+                 pressures do not",
                 match kept {
                     0 => "the lines".to_owned(),
                     _ => format!("{inner} of {} lines", lines.len()),
@@ -139,12 +139,12 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
                 format!("no line of the group `{name}` is a side of a cell; the group is left out")
             }
             lost => format!(
-                "{} of {} lines of the group `{name}` are no sides of cells and left out",
+                "{} of {} lines of the group `{name}` are not sides of cells and are left out",
                 lost - inner,
                 lines.len()
             ),
         };
-        let hint = "edges of the boundary are sides of one cell alone, with its nodes";
+        let hint = "edges of the boundary are sides of only one cell, with its nodes";
         Some(Diagnostic::warning("", message).hint(hint))
     };
     groups.iter().filter_map(told).collect()

@@ -90,8 +90,8 @@ impl Outline {
         let is_scattered = regular < SCATTERED;
         if is_scattered {
             doubts.push(format!(
-                "the markers lie irregularly, as where many are lost (distance to the nearest one over the side of each one's \
-                 square: {regular:.2}, on a grid 1)"
+                "the markers are irregularly spaced, as if many were lost (distance to the nearest marker relative to the spacing of an equally \
+                 dense grid: {regular:.2}, on a grid 1)"
             ));
             // Gaps at the edge are wider then; holes are judged as ever.
             let (wide, _) = alpha_shape::lines(&points, WIDER)?;
@@ -108,8 +108,8 @@ impl Outline {
         if let Some([x, y]) = steps.first() {
             let count = steps.len();
             doubts.push(format!(
-                "the outline has {count} steps of less than {STEP_LENGTH} spacings, one near ({x:.2}, {y:.2}) mm: markers that \
-                 were lost at the edge, or the specimen's shape"
+                "the outline has {count} steps of less than {STEP_LENGTH} spacings, one near ({x:.2}, {y:.2}) mm: either markers were lost at the \
+                 edge, or this is the specimen's shape"
             ));
         }
         outline.check()?;

@@ -48,14 +48,14 @@ impl Polygon {
     /// What it means if a curve is meant.
     pub fn warning(&self, mesh: &Mesh) -> Diagnostic {
         let message = format!(
-            "the boundary `{}` is a polygon: {} straight edges turn as those of a curve. If one is meant, it lies up to \
-             {:.2e} mm beside them, and the area is off by {:.2} %",
+            "the boundary `{}` is a polygon: {} straight edges turn like chords of a curve. If a curve is meant, it lies up to {:.2e} mm away from \
+             them, and the area is wrong by {:.2} %",
             self.group,
             self.edges,
             self.beside,
             100.0 * (self.area / mesh.area()).abs()
         );
-        let hint = "save the mesh with elements of the second order, whose sides are curved; where a polygon is meant, allow \"polygons\"";
+        let hint = "save the mesh with elements of the second order, whose sides are curved; if a polygon is meant, allow \"polygons\"";
         Diagnostic::warning("", message).hint(hint)
     }
 }

@@ -70,7 +70,7 @@ impl Explorer {
             ));
         }
         if !notes.is_empty() {
-            notes.push("The files in vtk/ hold all of them.".to_owned());
+            notes.push("The files in vtk/ contain all of them.".to_owned());
         }
         let data = json!({
             "along": outcome.along,

@@ -151,7 +151,7 @@ impl ResultFolder {
             let here = std::env::current_dir().and_then(fs::canonicalize);
             let shown = here.ok().and_then(|here| other.strip_prefix(here).ok());
             let message = format!(
-                "{} holds the results of {}: they are replaced",
+                "{} contains the results of {}: they are replaced",
                 self.path.display(),
                 shown.unwrap_or(&other).display()
             );
@@ -265,7 +265,7 @@ impl ResultFolder {
         let unfinished = self.unfinished();
         let partial = &unfinished.partial;
         if let Some(lost) = self.names.iter().find(|name| !partial.join(name).exists()) {
-            let cause = "it was written aside and taken away before it could be moved into place";
+            let cause = "it was written to a temporary folder and removed before it could be moved into place";
             return Err(Error::write(self.path.join(lost), cause));
         }
         files.extend(new);
@@ -335,7 +335,7 @@ fn foreign<'a>(
 /// The warning that a file is kept under another name.
 pub fn kept(place: &Path) -> Diagnostic {
     let message = format!(
-        "{} was there and is not gelbench's: it is kept as {}",
+        "{} existed and was not written by gelbench: it is kept as {}",
         place.display(),
         free_name(place).display()
     );

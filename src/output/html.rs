@@ -77,8 +77,8 @@ fn explore(explorer: &Explorer) -> Markup {
                 div.wide { table id="explorer-forces" {} }
             }
             p {
-                "The colours of a step are those of all models, without the outermost hundredth of the area at each end. Point at the \
-                 sheet to read values at the same place of all models; drag over the curve to change the step. " (explorer.note)
+                "The colour scale of a step covers all models, without the extreme hundredth of the area at each end. Point at the sheet to read the \
+                 values of all models at the same place; drag over the curve to change the step. " (explorer.note)
             }
         }
         script id="explorer-data" type="application/json" { (PreEscaped(&explorer.data)) }

@@ -57,14 +57,16 @@ impl Support {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum SupportMisfit {
     #[error(
-        "has a node at the centre of its radial displacement, where no direction leads away from it"
+        "has a node at the centre of its radial displacement, where the radial direction is not defined"
     )]
     NodeAtCentre,
     #[error("has no nodes")]
     NoNodes,
-    #[error("is no straight line parallel to an axis, which a roller or an axis of symmetry needs")]
+    #[error(
+        "is not a straight line parallel to an axis, which a roller or an axis of symmetry needs"
+    )]
     NotAlongAxis,
-    #[error("is a single point, which has no line along which it slides")]
+    #[error("is a single point, which defines no line to slide along")]
     NoLine,
 }
 
@@ -73,7 +75,9 @@ impl SupportMisfit {
         match self {
             Self::NodeAtCentre => "move the centre, or leave the node out",
             Self::NoNodes => "take a group with nodes",
-            Self::NotAlongAxis => "turn the mesh, or hold the group with the kind \"displacement\"",
+            Self::NotAlongAxis => {
+                "rotate the mesh, or hold the group with the kind \"displacement\""
+            }
             Self::NoLine => "hold it with the kind \"displacement\" and x or y",
         }
     }

@@ -114,7 +114,7 @@ fn tell(
     let (message, hint) = match conflict {
         Conflict::Motions => (
             format!("{one} and {other} contradict each other at {place}{more}"),
-            "leave out one of them, give both the same motion, or leave the nodes that they share out of one of the groups",
+            "leave out one of them, give both the same motion, or leave the shared nodes out of one of the groups",
         ),
         Conflict::GripAndSupport => (
             format!(

@@ -200,13 +200,13 @@ impl<'a> Bodies<'a> {
             });
         }
         match &kept[..] {
-            [turn] => Some(format!("turn about {}", self.pole(turn))),
+            [turn] => Some(format!("rotate about {}", self.pole(turn))),
             [one, other] => {
                 // The part of both that does not turn.
                 let along = [0, 1].map(|axis| one[axis] * other[2] - other[axis] * one[2]);
-                Some(format!("move {} and turn", direction(along)))
+                Some(format!("move {} and rotate", direction(along)))
             }
-            _ => Some("move along x and y and turn: nothing holds it".to_owned()),
+            _ => Some("move along x and y and rotate: nothing holds it".to_owned()),
         }
     }
 

@@ -11,8 +11,8 @@ pub fn is_one_of_several(state: &State) -> bool {
 pub fn one_of_several(states: &[String]) -> Option<String> {
     (!states.is_empty()).then(|| {
         format!(
-            "the tangent was not positive definite, or the body snapped, on the way to {}: the state is one of several, and \
-             which one depends on mesh and load steps",
+            "the tangent was not positive definite, or the body snapped through, on the way to {}: there are several equilibria, and which one is \
+             found depends on mesh and load steps",
             states.join(", ")
         )
     })

@@ -68,7 +68,7 @@ fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Li
             colour,
             Stroke::Filled,
         ),
-        Line::new("95 % at one place", end(0), colour, Stroke::Dashed),
+        Line::new("95 % pointwise", end(0), colour, Stroke::Dashed),
         Line::new("", end(1), colour, Stroke::Dashed),
         Line::new("identified", curve, darker, Stroke::Solid),
     ]

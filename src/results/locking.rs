@@ -48,7 +48,7 @@ pub fn reason(law: &dyn HyperelasticLaw) -> Option<String> {
     let nu = in_plane_poisson_ratio(law);
     (nu > NEARLY_CONSTANT).then(|| {
         format!(
-            "the sheet can hardly change its area (ν = {nu:.4} in its plane), and cells of the first degree lock"
+            "the sheet is nearly incompressible in its plane (ν = {nu:.4} there), and cells of the first degree lock"
         )
     })
 }

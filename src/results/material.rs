@@ -74,9 +74,12 @@ fn statement(card: &Card) -> Vec<Block> {
     if let Some([stretch, change]) = card.tension_by_volume() {
         let percent = 100.0 * change;
         let told = format!(
-            "{percent:+.2} % at λ = {stretch:.3}, against the same parameters at constant volume"
+            "{percent:+.2} % at λ = {stretch:.3}, relative to the same parameters at constant volume"
         );
-        rows.push(row("tension by the change of volume, at most", told));
+        rows.push(row(
+            "largest effect of the volume change on the tension",
+            told,
+        ));
     }
     let statements = law.statements().into_iter();
     rows.extend(statements.map(|(name, statement)| row(name, statement)));

@@ -221,7 +221,7 @@ fn over_time(card: &Card) -> LineChart {
     let lines = vec![
         Line::new("E(t)", points, PALETTE[0], Stroke::Solid),
         Line::new(
-            "of long times",
+            "long-term",
             span(card).map(|time| [time, modulus]),
             INK,
             Stroke::Dashed,

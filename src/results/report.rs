@@ -43,7 +43,7 @@ impl Results {
         }
         if !self.defaults.is_empty() {
             blocks.push(Block::paragraph(
-                "Settings that the study does not hold, with the defaults that they took:",
+                "Settings that the study leaves out, with the defaults used:",
             ));
             blocks.push(Block::Code("toml", self.defaults.join("\n")));
         }

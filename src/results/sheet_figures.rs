@@ -98,8 +98,8 @@ pub fn sheet_figures(
         let panels = models.iter().zip(&states).map(panel);
         let drawing = FieldFigure::new(format!("{title} at {at}"), quantity, panels);
         let caption = format!(
-            "{title} at {at}, at the nodes from the mean of what the cells around them have there. An arrow at the end of the \
-             colours: single places, as at corners, reach beyond."
+            "{title} at {at}; values at the nodes are means over the adjacent cells. An arrow at the end of the colours: single places, as at \
+             corners, exceed the scale."
         );
         let name = name_of(&SheetField::NAMES, *field).replace('-', "_");
         Figure::new(file(&name), caption, drawing)

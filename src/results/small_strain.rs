@@ -42,7 +42,7 @@ pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> O
     let [strain, rotation] = extremes(mesh, displacement);
     (strain > SMALL[0] || rotation > SMALL[1]).then(|| {
         format!(
-            "linear elasticity is for strains and rotations that are small against 1, and here they reach {:.0} % and {:.0}°",
+            "linear elasticity assumes strains and rotations that are small compared with 1, and here they reach {:.0} % and {:.0}°",
             100.0 * strain,
             rotation.to_degrees()
         )

@@ -105,7 +105,10 @@ pub(super) fn loops(card: &Card) -> Option<LineChart> {
                 [1.0 + x, stress]
             });
             let percent = 100.0 * softening.dissipated(most) / most;
-            let label = format!("back from {:.3}: {percent:.1} % is lost", 1.0 + share * far);
+            let label = format!(
+                "unloading from {:.3}: {percent:.1} % dissipated",
+                1.0 + share * far
+            );
             Line::new(label, back, PALETTE[index + 2], Stroke::Solid)
         })
         .collect();

@@ -64,7 +64,7 @@ impl Stretches {
         let [low, high] = card.stretch_range;
         (self.share > 0.0).then(|| {
             format!(
-                "principal stretches in the plane reach {:.3} … {:.3}{load}, on {} of the area outside the range of the card `{}`, which \
+                "principal stretches in the plane reach {:.3} … {:.3}{load}; on {} of the area they are outside the range of the card `{}`, which \
                  was calibrated from λ = {low} to {high}{}",
                 self.smallest,
                 self.largest,

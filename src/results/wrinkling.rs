@@ -75,8 +75,8 @@ pub fn warning<'a>(
 /// The warning about parts of a sheet, such as `7.9 % at 30 % stretch of the area`.
 pub fn of_parts(parts: &str) -> String {
     format!(
-        "part of the sheet is under compression, where a thin sheet wrinkles and the plane solution carries stress that it would \
-         lose: {parts} (array `wrinkling` of the finite elements' VTK files)."
+        "part of the sheet is under compression, where a thin sheet would wrinkle and lose stress that the plane solution still carries: {parts} \
+         (array `wrinkling` of the finite elements' VTK files)."
     )
 }
 

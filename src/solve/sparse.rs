@@ -27,7 +27,7 @@ pub enum FactorFault {
     #[error("the matrix is not positive definite, or not finite")]
     NotPositiveDefinite,
     /// The factor is larger than the memory.
-    #[error("the memory is not enough for the factor")]
+    #[error("not enough memory for the factor")]
     OutOfMemory,
 }
 

@@ -28,7 +28,7 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
         Ok(card) if card.offset == OffsetTreatment::Keep => {
             section.fault(
                 KEY,
-                "this card keeps a stress at rest and cannot drive a model",
+                "this card has a stress at rest and cannot be used in a model",
                 "set `offset = \"subtract\"` in the card",
             );
             None
@@ -47,8 +47,8 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
         Ok(card) if !rests(&card) => {
             section.fault(
                 KEY,
-                "this card's law is unstable from rest: without strain the sheet has another thickness and a stress, as its bulk modulus is negative",
-                "choose other parameters; of foams the sum of μᵢ (⅓ + βᵢ) must be positive",
+                "this card's law is unstable from rest: its bulk modulus is negative, so that at zero in-plane strain the sheet has another thickness and a stress",
+                "choose other parameters; for foams the sum of μᵢ (⅓ + βᵢ) must be positive",
             );
             None
         }
@@ -92,10 +92,12 @@ fn warn_of_volume(section: &Section<'_>, card: &Card) {
     section.warning(
         KEY,
         &format!(
-            "with its `[volume]` the card `{}` has a uniaxial stress up to {percent:.1} % {less} that of the same parameters at constant volume (at λ = {stretch:.2})",
+            "with its `[volume]`, the card `{}` has a uniaxial stress up to {percent:.1} % {less} the stress of the same parameters at constant \
+             volume (at λ = {stretch:.2})",
             card.name
         ),
-        "curves and parameters of tests that were read at constant volume do not reproduce these tests then: scale them, or state a Poisson's ratio nearer to ½",
+        "curves and parameters that were obtained from tests by assuming constant volume then do not reproduce these tests: scale them, or state a \
+         Poisson's ratio closer to ½",
     );
 }
 
@@ -116,7 +118,7 @@ fn in_plane(section: &Section<'_>, plane: PlaneState, card: Card) -> Option<Card
     let found = card.in_plane_strain();
     if found.is_none() {
         let message = format!(
-            "the card `{name}` keeps its volume: in plane strain its stress does not follow from the strain"
+            "the card `{name}` is incompressible: in plane strain its stress does not follow from the strain"
         );
         let hint = "give the card a `[volume]` with `poisson_ratio` or `bulk_modulus`";
         section.fault(SHEET, &message, hint);
@@ -133,13 +135,13 @@ fn changes_volume_enough(section: &Section<'_>, card: &Card) -> bool {
     let enough = ratio <= ROUNDED * largest;
     if !enough {
         let message = format!(
-            "the card `{}` has a bulk modulus of {ratio:.0} times its shear modulus: in plane strain gelbench computes sheets of up to \
-             {largest:.0} times, a Poisson's ratio of {LARGEST_POISSON_RATIO}",
+            "the card `{}` has a bulk modulus of {ratio:.0} times its shear modulus: in plane strain the limit is {largest:.0} times, a Poisson's \
+             ratio of {LARGEST_POISSON_RATIO}",
             card.name
         );
         let hint = format!(
-            "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses are then about 0.02 % from those of a body that keeps \
-             its volume"
+            "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses then differ by about 0.02 % from those of an \
+             incompressible body"
         );
         section.fault(SHEET, &message, &hint);
     }

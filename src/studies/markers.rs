@@ -92,7 +92,8 @@ pub struct MarkerStudy {
 fn of_material(card: &Card, mesh: &Mesh) -> impl Iterator<Item = Diagnostic> {
     let left_out = card.viscosity.left_out();
     let left_out = left_out.map(|told| {
-        Diagnostic::warning("", told).hint("take a card of tests at the rate of these ones")
+        Diagnostic::warning("", told)
+            .hint("use a card fitted to tests at the rate of this experiment")
     });
     too_stiff(&*card.law, mesh).into_iter().chain(left_out)
 }
@@ -101,7 +102,7 @@ fn of_material(card: &Card, mesh: &Mesh) -> impl Iterator<Item = Diagnostic> {
 fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
     let reason = locking::reason(law).filter(|_| locking::locks(mesh))?;
     let message = format!("{reason}: stresses are too large");
-    let hint = "take cells of the second degree, such as `--cells triangle6`";
+    let hint = "use quadratic cells, such as `--cells triangle6`";
     Some(Diagnostic::warning("", message).hint(hint))
 }
 
@@ -155,7 +156,7 @@ impl MarkerStudy {
             &*card.law,
         )?;
         if placed.outside > 0 {
-            let message = format!("markers outside of the mesh: {}", placed.outside);
+            let message = format!("markers outside the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
         warnings.extend(of_material(&card, &mesh));
@@ -293,7 +294,7 @@ fn whole(mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
         None => Ok(()),
         Some(frame) => Err(Error::input(
             format!(
-                "a field can be brought onto another mesh only if it is whole; the frame {} lacks {} of {} nodes",
+                "a field can be transferred to another mesh only if it is complete; frame {} lacks {} of {} nodes",
                 frame.number,
                 mesh.nodes.len() - frame.markers.len(),
                 mesh.nodes.len()

@@ -26,7 +26,7 @@ pub fn refuse(path: &Path, text: &str) -> Result<(), Error> {
             "`gelbench correct {name} --material CARD --thickness \"2 mm\"` corrects a field; a study names a mesh with shape = \"mesh\" and file = \"{name}\""
         );
         return Err(Error::input(
-            format!("{name} is a mesh or a field on one, and no study"),
+            format!("{name} is a mesh or a field on a mesh, not a study"),
             hint,
         ));
     }
@@ -41,7 +41,7 @@ pub fn refuse(path: &Path, text: &str) -> Result<(), Error> {
         Ok(table) => {
             let hint = taker(&table, &name.to_string());
             Err(Error::input(
-                format!("{name} is a table of numbers, and no study"),
+                format!("{name} is a table of numbers, not a study"),
                 hint,
             ))
         }
@@ -70,7 +70,7 @@ fn taker(table: &Table, name: &str) -> String {
     ]) {
         format!("a law is fitted to test data by `{fit}`")
     } else if has(&["time"]) && has(&["force"]) {
-        format!("springs and dashpots are found in a recording by `{identify}`")
+        format!("springs and dashpots are identified from a recording by `{identify}`")
     } else {
         format!(
             "`{correct}` takes displacements, `{fit}` test data, `{identify}` recordings of force and motion"
@@ -85,14 +85,14 @@ pub fn recognised(root: &Section<'_>, file: &str) -> Option<(&'static str, Strin
         let hint = format!(
             "`gelbench materials show {file}` shows it; a study names it with card = \"{file}\" under [material]"
         );
-        return Some(("is a material card, and no study", hint));
+        return Some(("is a material card, not a study", hint));
     }
     if any(&["edges", "unnamed", "edge_gap", "robust", "physics"]) && !any(&["plate", "material"]) {
         let hint = format!(
             "`gelbench correct FIELD --material CARD --thickness \"2 mm\" --study {file}` takes it"
         );
         return Some((
-            "says what is known of measured markers, and is no study by itself",
+            "states what is known of measured markers, and is not a study by itself",
             hint,
         ));
     }

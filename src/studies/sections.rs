@@ -80,11 +80,10 @@ pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], ca
     let thin = card.is_none_or(|card| card.law.plane_state() == PlaneState::Stress);
     if thin && thickness > THICK * size[0].min(size[1]) {
         let message = format!(
-            "{thickness} mm of a sheet of {:.4} × {:.4} mm: no thin sheet, as plane stress takes it to be",
+            "{thickness} mm for a sheet of {:.4} × {:.4} mm: plane stress assumes a thin sheet",
             size[0], size[1]
         );
-        let hint =
-            "look at the units of the lengths; a body that is held across is in plane strain";
+        let hint = "check the units of the lengths; a body that cannot strain across its thickness is in plane strain";
         section.warning("thickness", &message, hint);
     }
 }
@@ -163,7 +162,7 @@ fn check_stretch(
         section.warning(
             key,
             &format!(
-                "{} is beyond the stability of the card `{}`",
+                "{} is beyond the stable range of the card `{}`",
                 ClampedPlate::describe_step(stretch),
                 card.name
             ),

@@ -73,7 +73,7 @@ impl BaseStudy {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let mut study = EditedDocument::parse(&self.text).map_err(|cause| {
             let message = format!("{} is not TOML: {cause}", self.path.display());
-            Error::input(message, "mend the study")
+            Error::input(message, "correct the study")
         })?;
         let mut card = None;
         for (key, setting) in keys.iter().zip(settings) {
@@ -142,7 +142,7 @@ impl VariedCard {
         let document = EditedDocument::parse(&card.text).map_err(|cause| {
             Error::input(
                 format!("the card {name} is not TOML: {cause}"),
-                "mend the card",
+                "correct the card",
             )
         })?;
         Ok(Self {

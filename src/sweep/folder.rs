@@ -115,7 +115,7 @@ impl<'a> SweepFolder<'a> {
             let keys: Vec<&str> = heads.map(|head| key_and_unit(head).0).collect();
             (keys != self.sweep.keys()).then(|| {
                 let message = format!(
-                    "{} holds a sweep over {}: it is replaced",
+                    "{} contains a sweep over {}: it is replaced",
                     self.results.path().display(),
                     keys.join(", ")
                 );
@@ -172,7 +172,7 @@ impl<'a> SweepFolder<'a> {
         if !missing.is_empty() {
             let missing = missing.join(", ");
             return Err(Error::input(
-                format!("parts of {parts} that are not there: {missing}"),
+                format!("missing parts of {parts}: {missing}"),
                 "compute each with --shard PART/PARTS first",
             ));
         }

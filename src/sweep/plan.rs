@@ -64,7 +64,7 @@ impl FittedParameters {
         let wrong = |what: &str| Diagnostic::error(file, what.to_owned()).hint(HINT);
         let fit: Value = serde_json::from_str(text).map_err(|_| wrong("is not JSON"))?;
         let parameters = fit["parameters"].as_array();
-        let parameters = parameters.ok_or_else(|| wrong("holds no `parameters`"))?;
+        let parameters = parameters.ok_or_else(|| wrong("contains no `parameters`"))?;
         let texts = |key: &str| -> Option<Vec<String>> {
             let all = parameters
                 .iter()
@@ -76,8 +76,8 @@ impl FittedParameters {
         };
         let (keys, units) = texts("key")
             .zip(texts("unit"))
-            .ok_or_else(|| wrong("holds parameters without keys or units"))?;
-        let values = numbers("value").ok_or_else(|| wrong("holds parameters without values"))?;
+            .ok_or_else(|| wrong("contains parameters without keys or units"))?;
+        let values = numbers("value").ok_or_else(|| wrong("contains parameters without values"))?;
         let errors =
             numbers("standard_error").ok_or_else(|| without_errors(file, &fit, parameters))?;
         let errors = widened(&errors, parameters);
@@ -87,13 +87,13 @@ impl FittedParameters {
         for i in 0..count {
             for j in 0..count {
                 let own = correlation(i.max(j), i.min(j))
-                    .ok_or_else(|| wrong("holds no whole `correlation`"))?;
+                    .ok_or_else(|| wrong("contains no complete `correlation`"))?;
                 covariance[(i, j)] = errors[i] * own * errors[j];
             }
         }
         let factor = covariance.cholesky();
         let factor =
-            factor.ok_or_else(|| wrong("holds a covariance that is not positive definite"))?;
+            factor.ok_or_else(|| wrong("contains a covariance that is not positive definite"))?;
         Ok(Self {
             units: units
                 .into_iter()
@@ -142,19 +142,19 @@ fn without_errors(file: &str, fit: &Value, parameters: &[Value]) -> Diagnostic {
         .collect();
     let (reason, hint) = match fit["verdict"]["answer"].as_str() {
         Some("systematic") => (
-            "what it leaves is systematic, no noise".to_owned(),
+            "the residual is systematic, not noise".to_owned(),
             "fit a law that follows the data, or vary its parameters by ranges of your own",
         ),
         Some("rounding") => (
-            "what it leaves is no more than the numbers of its data were rounded by".to_owned(),
-            "its data have no noise to be uncertain by: vary its parameters by ranges of your own",
+            "the residual is no more than the rounding of its data".to_owned(),
+            "without noise in its data there is no standard error: vary its parameters by ranges of your own",
         ),
         _ if !held.is_empty() => (
-            format!("a bound holds {}", held.join(", ")),
+            format!("{} at a bound", held.join(", ")),
             "widen the bound, or fit a law with fewer parameters",
         ),
         _ => (
-            "nothing says how its data scatter".to_owned(),
+            "the scatter of its data is not known".to_owned(),
             "fit it to more points, or vary its parameters by ranges of your own",
         ),
     };
@@ -261,7 +261,7 @@ fn points_to_draw(sampling: Sampling, dimensions: usize) -> Result<usize, Diagno
         (None, _) => {
             let fault = Diagnostic::error(
                 "",
-                "distributions are given, but not how many points are drawn of them",
+                "distributions are given, but not how many points to draw from them",
             );
             return Err(fault.hint(
                 "give --samples, such as --samples 256, or a number of values: LOW..HIGH:20",

@@ -15,8 +15,7 @@ pub struct Points {
 
 impl Points {
     /// What such a table looks like.
-    pub const HINT: &str = "heads are keys, with the unit in brackets: plate.width [mm],material.c10 [MPa]; below them stands a line for each \
-                            point";
+    pub const HINT: &str = "column heads are keys, with the unit in brackets: plate.width [mm],material.c10 [MPa]; each line below is a point";
 
     /// Of columns, by keys with their units such as `material.c10 [MPa]`.
     ///
@@ -59,7 +58,8 @@ impl Points {
         };
         let records = read_records(bytes).filter(|records| !records.is_empty());
         let records = records.ok_or_else(|| {
-            let fault = Diagnostic::error("", "is no table with commas and one head");
+            let fault =
+                Diagnostic::error("", "is not a comma-separated table with one line of heads");
             named(fault.hint(Points::HINT))
         })?;
         let (head, lines) = (&records[0], &records[1..]);
@@ -86,7 +86,7 @@ impl Points {
 fn column<'a>(head: &'a str, values: &[String]) -> Result<(&'a str, Vec<Setting>), Diagnostic> {
     let (key, unit) = key_and_unit(head);
     if key.is_empty() || key.split('.').any(str::is_empty) {
-        return Err(Diagnostic::error("", format!("`{head}` is no key")).hint(Points::HINT));
+        return Err(Diagnostic::error("", format!("`{head}` is not a key")).hint(Points::HINT));
     }
     let setting = |text: &String| match (unit, text.parse::<f64>()) {
         (_, Ok(value)) if !value.is_finite() => None,

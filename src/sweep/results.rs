@@ -151,14 +151,14 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
     let mut blocks = vec![
         Block::heading(title),
         Block::paragraph(format!(
-            "{} runs; varied: {}. All figures of all runs are in sweep.csv, a line for each run.",
+            "{} runs; varied: {}. The figures of all runs are in sweep.csv, one line per run.",
             rows.len(),
             varied.join(", ")
         )),
         Block::table(&head, lines),
         Block::paragraph(format!(
-            "Quantiles are linear between the runs. Rank correlations are Spearman's, of {FEWEST} runs at least: 1 where a figure \
-             always rises with a key, −1 where it always falls."
+            "Quantiles are interpolated linearly between runs. Rank correlations are Spearman's, from at least {FEWEST} runs: 1 if a figure always \
+             rises with a key, −1 if it always falls."
         )),
     ];
     blocks.extend(cautions(rows).into_iter().map(Block::paragraph));
@@ -172,9 +172,9 @@ pub fn cautions(rows: &[Row]) -> Vec<String> {
     let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();
     let biased = (failed > 0).then(|| {
         format!(
-            "{failed} of {} runs have no solution, or none at their last steps, or were drawn beyond what a study may hold (column `fault` of \
-             sweep.csv): means, quantiles and bands there are those of the other runs alone, and are biased unless the runs without one \
-             are left out by chance.",
+            "{failed} of {} runs have no solution, or none at their last steps, or were drawn outside the admissible range of a study (column \
+             `fault` of sweep.csv): means, quantiles and bands there are computed from the other runs only, and are biased unless runs fail at \
+             random.",
             rows.len()
         )
     });
@@ -239,7 +239,7 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
     let band = band(&forces, along).map(|chart| {
         Figure::new(
             "band.png",
-            "The forces of all runs: medians, and the band between 5 and 95 % of the runs.",
+            "The forces of all runs: medians, and the band between the 5 % and 95 % quantiles.",
             chart,
         )
     });

@@ -65,7 +65,7 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
 pub fn read(path: &Path, keys: usize, bytes: &[u8]) -> Result<Vec<Row>, Error> {
     let wrong = || {
         Error::input(
-            format!("{} is no table of a sweep of these keys", path.display()),
+            format!("{} is not a table of a sweep of these keys", path.display()),
             "compute this shard again",
         )
     };

@@ -170,11 +170,11 @@ fn parameters_of_a_fit_are_drawn_with_their_correlation() {
 fn a_fit_without_standard_errors_is_refused_for_its_own_reason() {
     for (what, reason) in [
         (r#""verdict": {"answer": "systematic"}"#, "is systematic"),
-        (r#""verdict": {"answer": "rounding"}"#, "were rounded by"),
         (
-            r#""verdict": {"answer": "white noise"}"#,
-            "a bound holds c10",
+            r#""verdict": {"answer": "rounding"}"#,
+            "the rounding of its data",
         ),
+        (r#""verdict": {"answer": "white noise"}"#, "c10 at a bound"),
     ] {
         let bound = what.contains("white");
         let fit = format!(
@@ -213,7 +213,7 @@ fn a_unit_behind_the_last_value_is_that_of_all() {
 fn faults_name_what_to_write() {
     for (text, expected) in [
         ("material.c10", "there is no `=`"),
-        ("a..b=1", "the key is not whole"),
+        ("a..b=1", "the key is incomplete"),
         ("a=2..1:3", "2 is not below 1"),
         ("a=1..2:one", "`one` is not a number of values"),
         ("a=1 mm..2 MPa", "two units"),
@@ -278,14 +278,14 @@ fn points_of_another_program_are_run_in_every_combination() {
 #[test]
 fn tables_that_are_no_points_are_told() {
     for (table, expected) in [
-        ("", "no table"),
+        ("", "not a comma-separated table"),
         ("plate.width [mm]\n", "there are no points"),
-        ("plate.width [mm]\n1,2\n", "no table"),
+        ("plate.width [mm]\n1,2\n", "not a comma-separated table"),
         ("plate.width [mm]\nwide\n", "`wide` is not a number"),
         ("plate.width [mm]\ninf\n", "`inf` is not a number"),
         ("plate.width,a\n1,\n", "`` is not a number"),
-        ("plate..width\n1\n", "is no key"),
-        (". [mm]\n1\n", "is no key"),
+        ("plate..width\n1\n", "is not a key"),
+        (". [mm]\n1\n", "is not a key"),
     ] {
         let told = Points::parse(Path::new("p.csv"), table.as_bytes()).unwrap_err();
         let told = told.to_string();
@@ -347,7 +347,7 @@ fn values_are_each_one_and_without_the_noise_of_their_last_digits() {
     let told = Variable::parse("plate.width=40,50,40 mm")
         .unwrap_err()
         .to_string();
-    assert!(told.contains("the value 40 stands twice"), "{told}");
+    assert!(told.contains("the value 40 occurs twice"), "{told}");
     let Values::Listed(values) = Variable::parse("x=0.3..0.6:11").unwrap().values else {
         panic!("no grid");
     };

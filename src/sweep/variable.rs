@@ -111,7 +111,7 @@ impl Variable {
     fn of(key: &str, values: Result<Values, String>) -> Result<Self, String> {
         let key = key.trim();
         if key.is_empty() || key.split('.').any(str::is_empty) {
-            return Err("the key is not whole".to_owned());
+            return Err("the key is incomplete".to_owned());
         }
         Ok(Self {
             key: key.to_owned(),
@@ -174,7 +174,7 @@ impl Values {
         }
         let mut seen = HashSet::new();
         match listed.iter().find(|one| !seen.insert(one.words())) {
-            Some(again) => Err(format!("the value {} stands twice", again.words())),
+            Some(again) => Err(format!("the value {} occurs twice", again.words())),
             None => Ok(Self::Listed(listed)),
         }
     }

@@ -214,7 +214,7 @@ fn the_correction_is_the_same_to_the_bit_and_the_report_says_what_was_read() {
     let plain = dialects[0].text(&exports[0], "");
     let (nodes, report, printed) = corrected(plain.as_bytes(), &[]);
     assert!(printed.starts_with("columns; "), "{printed}");
-    assert!(report.contains("with y taken to point up"), "{report}");
+    assert!(report.contains("with y assumed to point up"), "{report}");
     let german = dialects
         .iter()
         .find(|one| one.separator == ";" && one.decimal == ',' && one.second_line);
@@ -274,7 +274,9 @@ fn forces_of_a_testing_machine_are_those_that_the_user_could_write() {
         let refused = correct(folder.path(), arguments).code(2);
         words(&refused.get_output().stderr)
     };
-    assert!(told(&["--forces", "machine.csv"]).contains("no column of this table is named"));
+    assert!(
+        told(&["--forces", "machine.csv"]).contains("no column of this table is chosen as a force")
+    );
     assert!(told(&["--study", "study.toml"]).contains("--forces FILE"));
 }
 

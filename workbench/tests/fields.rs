@@ -136,7 +136,7 @@ fn warnings_name_what_the_view_offers() {
     }
     let found = state(&bench).fields().found().unwrap().as_ref().unwrap();
     let gap = &TEXTS[3];
-    let said = format!("say where the edge is with “{}”", gap.label);
+    let said = format!("state the edge with “{}”", gap.label);
     let warnings = found.preview.warnings.join("\n");
     assert!(warnings.contains(&said), "{warnings}");
     assert!(!warnings.contains(gap.option), "{warnings}");

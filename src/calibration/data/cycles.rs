@@ -177,7 +177,7 @@ impl Turns {
         };
         let hint = "loading and unloading, or scatter, are fitted together; `--cycle last` or `--cycle first` takes a loading \
                     branch alone";
-        let warning = Diagnostic::warning("", format!("the strain turns back {times}")).hint(hint);
+        let warning = Diagnostic::warning("", format!("the strain reverses {times}")).hint(hint);
         Some(warning.at(&head.table.source, head.table.rows[row].1.clone()))
     }
 }

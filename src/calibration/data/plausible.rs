@@ -29,7 +29,7 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
     if against && test != Test::Biaxial {
         let message = "the stresses have the sign that is opposite to the strains";
         let hint =
-            "tension is positive in both columns, compression negative: turn the sign of one";
+            "tension is positive in both columns, compression negative: reverse the sign of one";
         return Err(head.fault(0..0, message, hint));
     }
     let compression = head.setting("test", None)?.as_deref() == Some("compression");
@@ -80,12 +80,12 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
     let acts = first.stress.abs() > (CLEARLY * noise).max(NOTHING * stress);
     (rows.len() >= 5 && is_at_rest && acts).then(|| {
         let message = format!(
-            "{}: at the first row nothing is stretched, and the stress is {:.2} % of the largest, more than its scatter",
+            "{}: at the first row the strain is zero, but the stress is {:.2} % of the largest, more than its scatter",
             head.table.source.name,
             100.0 * first.stress / stress
         );
-        let hint = "if the specimen was loaded before, begin the strains there; if the load cell was not set to zero, take its reading off the forces; \
-                    parameters are wrong by it";
+        let hint = "if the specimen was preloaded, count strains from its unloaded state; if the load cell was not set to zero, subtract its reading \
+                    from the forces; otherwise parameters are biased";
         Diagnostic::warning("", message).hint(hint)
     })
 }
@@ -104,7 +104,7 @@ pub fn implausible(head: &Head, strain: StrainColumn, largest: f64) -> Option<Di
             head.table.source.name,
             1.0 + largest
         );
-        let hint = "if the column is in percent, write [%] behind its name in place of [-]";
+        let hint = "if the column is in percent, write [%] after its name instead of [-]";
         Diagnostic::warning("", message).hint(hint)
     })
 }
@@ -125,7 +125,7 @@ mod tests {
             }
             let read = TestData::parse("a.csv", &text, &Statements::default()).unwrap();
             let mut warnings = read.warnings.iter();
-            warnings.any(|warning| warning.message.contains("nothing is stretched"))
+            warnings.any(|warning| warning.message.contains("the strain is zero"))
         };
         let table = "nominal_strain [-],nominal_stress [MPa]";
         assert!(told(table, 0.01, 0.0) && told(table, 0.01, 1e-4));

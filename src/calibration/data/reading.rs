@@ -47,7 +47,7 @@ impl TestData {
     fn of_table(table: &Table, reading: &Statements) -> Result<Self, Error> {
         let head = Head::new(table, &KEYS, reading)?;
         let layout = Layout::new(&head).map_err(Error::Input)?;
-        let hint = "every row holds finite numbers; units stand in the line of names";
+        let hint = "every row must contain finite numbers; units belong in the line of names";
         table.check_numbers_or_holes(layout.columns(), hint)?;
         let rows = MeasuredRows::of(table, &layout);
         if rows.kept.is_empty() {
@@ -125,12 +125,12 @@ impl MeasuredRows {
             ),
             (
                 self.copies,
-                "rows that stand before in the table, as all of its rows do",
-                "each counts once: writing a measurement down again makes it no surer",
+                "rows that repeat earlier ones, as all rows of the table do",
+                "each measurement counts once: copies add no information",
             ),
             (
                 repeated,
-                "rows that stand before in the table",
+                "rows that repeat earlier ones",
                 "each counts as a measurement of its own: if they are copies, intervals are too narrow",
             ),
         ];

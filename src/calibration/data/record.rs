@@ -193,13 +193,13 @@ impl Part {
     ) -> Faulty<()> {
         let Some(place) = place else {
             let message = "the loading branch does not pass the stated zero";
-            let hint = "give a displacement or a force that it passes, or none";
+            let hint = "give a displacement or a force that it passes through, or none";
             return Err(head.fault(head.place(ZERO), message, hint));
         };
         (self.zero, self.offset) = (at(x, place), at(y, place));
         self.found_zero = Some(found);
         self.remarks.push(format!(
-            "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is taken off",
+            "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is subtracted",
             machine.length * self.zero,
             machine.area * self.offset
         ));
@@ -228,7 +228,7 @@ impl Part {
                 (self.zero, self.offset) = (zero, offset);
                 self.found_zero = Some(strain);
                 format!(
-                    "slack up to {:.4} ± {:.4} mm is taken off: this is the zero of displacement, and {:.4} N that were read before it, of force",
+                    "slack up to {:.4} ± {:.4} mm is removed: this is the zero of displacement, and the reading before it, {:.4} N, that of force",
                     mm(zero),
                     mm(error),
                     machine.area * offset
@@ -238,8 +238,8 @@ impl Part {
                 self.zero = zero;
                 self.found_zero = Some(strain);
                 format!(
-                    "preload of {} at the first row: the zero of displacement is {:.4} mm, where the curve, followed back, has no force; a \
-                     load cell that was not set to zero reads the same: if it was that, take the force off in the file",
+                    "preload of {} at the first row: the zero of displacement is {:.4} mm, where the extrapolated curve has no force; a load cell \
+                     that was not set to zero reads the same: in that case subtract the force in the file",
                     force(stress),
                     mm(zero)
                 )
@@ -248,7 +248,7 @@ impl Part {
                 self.offset = stress;
                 self.found_zero = Some(FoundZero::Stress { area: machine.area });
                 format!(
-                    "{} at the first row are against the pull: the load cell's zero, which is taken off",
+                    "{} at the first row act against the pull: this is the load cell's zero, and it is subtracted",
                     force(stress)
                 )
             }
@@ -285,8 +285,7 @@ impl Zero {
         };
         let fault = |message: String, hint: &str| Err(head.fault(head.place(ZERO), message, hint));
         if machine.is_none() {
-            let message =
-                "the zero is found in tables of displacements and forces alone".to_owned();
+            let message = "the zero is found only in tables of displacements and forces".to_owned();
             return fault(message, "leave it out, or shift the strains in the file");
         }
         let parsed = |dimension| units::parse(&text, dimension).ok();

@@ -57,19 +57,19 @@ impl MovedZero {
                     "behind"
                 };
                 format!(
-                    "found again with the law, the zero of displacement lies {:.4} ± {:.4} mm {side} that",
+                    "estimated again together with the law, the zero of displacement lies {:.4} ± {:.4} mm {side} that value",
                     length * by.abs(),
                     length * error
                 )
             }
             FoundZero::Stress { area } => format!(
-                "found again with the law, the zero of force is {:.4} ± {:.4} N {} that",
+                "estimated again together with the law, the zero of force is {:.4} ± {:.4} N {} that value",
                 area * by.abs(),
                 area * error,
                 if by > 0.0 { "below" } else { "above" }
             ),
         };
-        Some(format!("{told}; the intervals hold that uncertainty"))
+        Some(format!("{told}; the intervals include this uncertainty"))
     }
 }
 

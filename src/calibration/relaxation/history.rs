@@ -74,7 +74,7 @@ impl History {
                     })
                     .collect();
                 if states.windows(2).any(|pair| pair[1].time < pair[0].time) {
-                    let message = format!("{}: the times run back", data.name);
+                    let message = format!("{}: the times decrease", data.name);
                     let hint =
                         "one file is one run of the machine: give each run a file of its own";
                     return Err(Error::input(message, hint));

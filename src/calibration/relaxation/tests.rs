@@ -267,9 +267,9 @@ fn what_cannot_be_fitted_is_told_with_a_remedy() {
     let good = [ramp_and_hold(1e-4, 0)];
     for (law, tests, message) in [
         ("neo-hooke", &without[..], "no column of times"),
-        ("neo-hooke", &backwards, "the times run back"),
+        ("neo-hooke", &backwards, "the times decrease"),
         ("marlow-table", &good, "takes a curve as it is"),
-        ("ogden-hill-1", &good, "changes its volume"),
+        ("ogden-hill-1", &good, "is compressible"),
     ] {
         let law = Law::named(law).unwrap();
         let told = fit_relaxation(law, tests, &FitSettings::default(), Terms::Automatic);
@@ -294,7 +294,7 @@ fn a_time_beyond_the_data_is_told() {
     let fit = fitted(&[data(rows.into_iter(), "")], Terms::Exactly(1));
     let told = fit.quality.warnings.join("\n");
     assert!(
-        told.contains("at the end of what the data resolve") || told.contains("not identifiable"),
+        told.contains("at the limit of what the data resolve") || told.contains("not identifiable"),
         "{told}"
     );
 }

@@ -124,7 +124,9 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
         let told = &found.quality.warnings;
         let vague = told.iter().find(|told| told.contains("not identifiable"));
         assert!(vague.unwrap().contains("c01"), "{told:?}");
-        let close = told.iter().any(|told| told.contains("hardly told apart"));
+        let close = told
+            .iter()
+            .any(|told| told.contains("hardly be distinguished"));
         assert_eq!(close, correlation.abs() >= 0.99, "{correlation}");
     }
 }

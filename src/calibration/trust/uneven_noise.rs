@@ -72,10 +72,10 @@ impl WeightedResiduals<'_> {
         let whole = all.iter().sum::<f64>() / (all.len() as f64).sqrt();
         match self.weighting {
             Weighting::Absolute if whole > CLEARLY => Some(
-                "what is left grows with the stress: the intervals are those of even noise and too narrow; see `--weighting relative`".into(),
+                "residuals grow with the stress: the intervals assume uniform noise and are too narrow; see `--weighting relative`".into(),
             ),
             Weighting::Relative if whole < -CLEARLY => Some(
-                "what is left, relative to the stress, is largest where the stress is small: see `--weighting absolute`".into(),
+                "relative residuals are largest where the stress is small: see `--weighting absolute`".into(),
             ),
             _ => None,
         }
@@ -131,8 +131,8 @@ impl WeightedResiduals<'_> {
             let of_mean = 100.0 * (spread / freedom / factors.len() as f64).sqrt();
             let told: Vec<String> = factors.iter().map(|[factor, _]| format!("{factor:.3}")).collect();
             format!(
-                "the specimens differ by more than the noise of each: they are {} times as stiff as the law. The intervals are of these \
-                 specimens; their mean tells the material's stiffness to ± {of_mean:.2} % (standard error)",
+                "the specimens differ by more than the noise of each: they are {} times as stiff as the law. The intervals apply to these specimens \
+                 only; their mean gives the material's stiffness to ± {of_mean:.2} % (standard error)",
                 told.join(", "),
             )
         })
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn noise_that_grows_with_the_stress_is_told_and_even_noise_is_not() {
-        let grows = "grows with the stress";
+        let grows = "grow with the stress";
         let mut found = 0;
         for seed in 0..10 {
             let uneven = tension(0.05, seed, |stress| 0.05 * stress);
@@ -188,7 +188,7 @@ mod tests {
                 grows,
             ));
             assert!(
-                !warned(&[uneven], Weighting::Relative, "relative to the stress"),
+                !warned(&[uneven], Weighting::Relative, "relative residuals"),
                 "{seed}"
             );
             let even = tension(0.05, seed, |_| 0.002);

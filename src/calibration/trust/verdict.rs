@@ -60,13 +60,13 @@ impl Verdict {
         let test = self.durbin_watson.map_or(String::new(), |test| {
             let chance = percent(test.probability);
             format!(
-                " (Durbin-Watson {:.2}; as small by white noise in {chance} of cases)",
+                " (Durbin-Watson {:.2}; probability under white noise {chance})",
                 test.statistic
             )
         });
         let unequal = match self.noise_ratio > 1.0 {
             true => format!(
-                "; of one test it is {:.1} times larger than of another, which the intervals hold",
+                "; in one test it is {:.1} times larger than in another, which the intervals take into account",
                 self.noise_ratio
             ),
             false => String::new(),
@@ -74,18 +74,18 @@ impl Verdict {
         let pattern = percent(self.pattern_probability.unwrap_or(f64::NAN));
         match self.answer {
             Answer::White if self.durbin_watson.is_none() => {
-                format!("taken as white noise: the points are too few to tell{unequal}")
+                format!("taken as white noise: too few points to decide{unequal}")
             }
             Answer::White => format!("white noise{test}{unequal}"),
             Answer::Correlated => format!(
-                "noise that correlates, neighbours by {:.2}, so that the points tell as much as {:.1} independent ones{test}{unequal}",
+                "correlated noise, {:.2} between neighbours, so that the points are worth {:.1} independent ones{test}{unequal}",
                 self.of_neighbours, self.effective_points
             ),
             Answer::Systematic => format!(
-                "systematic, a smooth pattern that comes of noise in {pattern} of cases: no intervals{test}"
+                "systematic, a smooth pattern that noise produces in {pattern} of cases: no intervals{test}"
             ),
             Answer::Rounding => {
-                "no more than the numbers were rounded by: no noise, and no intervals".to_owned()
+                "no more than the rounding of the data: no noise, and no intervals".to_owned()
             }
         }
     }

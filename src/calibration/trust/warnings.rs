@@ -14,7 +14,7 @@ const NEARLY: f64 = 0.05;
 pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Rival>) -> Vec<String> {
     let away = (quality.nmad_percent > 20.0).then(|| {
         let percent = quality.nmad_percent;
-        format!("the law does not follow the data: they are {percent:.0} % apart in the mean")
+        format!("the law does not follow the data: the mean deviation is {percent:.0} %")
     });
     let rival = rival.filter(|rival| rival.worse <= NEARLY || is_possible(rival, quality));
     let other = rival.map(|rival| {
@@ -22,10 +22,10 @@ pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Riva
         let values = pairs.map(|(parameter, value)| format!("{} = {value:.4}", parameter.key));
         let values = values.collect::<Vec<_>>().join(", ");
         match rival.worse <= NEARLY {
-            true => format!("the fit is not unique: {values} is at most 5 % worse"),
+            true => format!("the fit is not unique: the sum of squares of {values} is at most 5 % larger"),
             false => format!(
-                "the fit is not unique: {values} is {:.0} % worse in squares, which the noise of so few independent points does not exclude; intervals \
-                 are those about the one that was taken",
+                "the fit is not unique: the sum of squares of {values} is {:.0} % larger, which the noise of so few independent points does not \
+                 exclude; intervals belong to the fit that was taken",
                 100.0 * rival.worse
             ),
         }
@@ -53,7 +53,7 @@ pub fn taken_zeros(tests: &[TestData]) -> Option<String> {
     let names: Vec<&str> = found.map(|test| &*test.name).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "the zero that was found in {} is taken as known: the intervals do not hold its uncertainty",
+            "the zero that was found in {} is taken as known: the intervals do not include its uncertainty",
             names.join(", ")
         )
     })
@@ -67,19 +67,19 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
         if quality.at_bound[index] {
             let others = match quality.has_intervals() {
                 true if quality.fixed[index] => {
-                    ": the intervals of the others hold where it is there"
+                    ": the intervals of the others assume that it is exactly there"
                 }
-                true => ": the intervals of the others hold as if it were free",
+                true => ": the intervals of the others treat it as free",
                 false => "",
             };
-            warnings.push(format!("{key} = {value:.4e} is held by a bound{others}"));
+            warnings.push(format!("{key} = {value:.4e} is at a bound{others}"));
         } else if !knows_sign(estimate) {
             vague.push(key);
         }
     }
     if !vague.is_empty() {
         warnings.push(format!(
-            "not identifiable from these data: {}, whose sign they do not tell",
+            "not identifiable from these data: {}, whose sign they do not determine",
             vague.join(", ")
         ));
     }
@@ -100,7 +100,7 @@ fn correlated(quality: &Quality, parameters: &[Parameter]) -> Option<String> {
         more => format!(", and {more} more pairs above 0.99"),
     };
     Some(format!(
-        "{} and {} are hardly told apart: their correlation is {correlation:.4}{more}",
+        "{} and {} can hardly be distinguished: their correlation is {correlation:.4}{more}",
         parameters[*j].key, parameters[*i].key
     ))
 }

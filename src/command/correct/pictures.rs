@@ -18,10 +18,10 @@ pub struct PictureOptions {
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = names(&PictureFormat::NAMES),
         default_value = "png")]
     picture_formats: Vec<String>,
-    /// How wide they are: one column of a journal has 85 mm, two have 180 mm
+    /// How wide they are: one column of a journal is 85 mm wide, two are 180 mm
     #[arg(long, value_name = "WIDTH", value_parser = names(&PictureWidth::NAMES), default_value = "screen")]
     picture_width: String,
-    /// Their colours: dark for slides, print where lightness alone tells them apart
+    /// Their colours: dark for slides, print where lightness alone distinguishes them
     #[arg(long, value_name = "NAME", value_parser = names(&Palette::NAMES), default_value = "default")]
     palette: String,
 }

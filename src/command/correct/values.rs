@@ -24,18 +24,18 @@ pub enum Cells {
 /// Where a y axis points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum YAxis {
-    /// As on paper
+    /// Upwards, as on paper
     Up,
-    /// As in an image
+    /// Downwards, as in an image
     Down,
 }
 
 /// What the places of markers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Places {
-    /// Where markers were at rest
+    /// Positions at rest
     Rest,
-    /// Where markers are in the frame
+    /// Positions in the frame
     Frame,
 }
 
@@ -51,11 +51,11 @@ pub enum Holes {
 /// Weights of markers that are far off.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Weights {
-    /// As all others
+    /// Full weight
     No,
-    /// Less the farther they are off
+    /// Less weight the farther they are off
     Huber,
-    /// Not at all from a distance on
+    /// Zero weight beyond a distance
     Tukey,
 }
 
@@ -64,7 +64,7 @@ pub enum Weights {
 pub enum Holds {
     /// Equilibrium holds exactly
     Exact,
-    /// Up to smooth forces that are weighted against the data, for a law that is not exactly right
+    /// Equilibrium holds up to smooth forces that are weighted against the data, for a law that is not exactly right
     Weighted,
 }
 
@@ -96,7 +96,7 @@ fn on_an_edge<'a>(
         [edge, "y", what] => (edge, 1, what),
         _ => {
             let hint = format!("write edge, axis and force, as in \"{example}\"");
-            return Err(Diagnostic::error("", "it is no force on an edge").hint(hint));
+            return Err(Diagnostic::error("", "it is not a force on an edge").hint(hint));
         }
     };
     let what = what.replace("+-", "±");
@@ -158,8 +158,8 @@ fn quantity(
 /// An encoding by its name.
 pub fn encoding(text: &str) -> Result<TextEncoding, Diagnostic> {
     TextEncoding::of_name(text).ok_or_else(|| {
-        Diagnostic::error("", "it is no encoding that is known").hint(
-            "such as utf-8, utf-16le, utf-16be, latin1, windows-1252, gb18030, big5, shift_jis or euc-kr",
+        Diagnostic::error("", "it is not a known encoding").hint(
+            "choose one such as utf-8, utf-16le, utf-16be, latin1, windows-1252, gb18030, big5, shift_jis or euc-kr",
         )
     })
 }

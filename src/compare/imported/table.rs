@@ -149,7 +149,7 @@ fn factor_column(table: &Table) -> Result<Option<(usize, f64)>, Error> {
     let scale = match table.columns[index].unit.as_deref() {
         None | Some("") => 1.0,
         Some(unit) => units::factor(unit, Dimension::Ratio).map_err(|_| {
-            let message = format!("`{unit}` is no unit of a load factor");
+            let message = format!("`{unit}` is not a unit of a load factor");
             table.refuse_columns(message, "%, or none")
         })?,
     };

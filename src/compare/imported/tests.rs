@@ -171,7 +171,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
             frd(1e-3, ""),
             "measures 0.0300 × 0.0100 mm, the specimen 30.0000 × 10.0000 mm",
         ),
-        (".frd", frd(1.0, "NaN"), "that is no number"),
+        (".frd", frd(1.0, "NaN"), "that is not a number"),
         (
             ".frd",
             sound().replace("5.00000E-01    ", "7.50000E-01    "),
@@ -180,7 +180,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         (
             ".frd",
             sound().replace("DISP", "STRE"),
-            "holds no displacements",
+            "contains no displacements",
         ),
         (
             ".frd",
@@ -217,12 +217,12 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         (
             ".csv",
             format!("{}3,2,1,1,7\n", head.replace('\n', ",temperature\n")),
-            "known columns: x, y, ux, uy, stretch, load_factor, factor, time, node, z, uz; --ignore-columns temperature",
+            "known columns: x, y, ux, uy, stretch, load_factor, factor, time, node, z, uz; ignore it with --ignore-columns temperature",
         ),
         (
             ".csv",
             format!("{}3,2,1,1,7\n", head.replace('\n', ",ux\n")),
-            "`ux` says what another column says already",
+            "`ux` repeats another column",
         ),
         (
             ".csv",
@@ -242,7 +242,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         (
             ".txt",
             String::new(),
-            "is no .vtu, .vtk, .pvd, .msh, .frd or .csv file",
+            "is not a .vtu, .vtk, .pvd, .msh, .frd or .csv file",
         ),
     ]
 }

@@ -239,8 +239,8 @@ impl<'a> Interactive<'a> {
         self.climbed = found.map_err(|fault| Error::Solve {
             model: "corrector (climb)".into(),
             step: format!(
-                "a motion of the grips from {} to {grips} (in {} parts too; the field before is kept: move them \
-                 less far at a time, or begin anew at that stretch)",
+                "a motion of the grips from {} to {grips} (also in {} parts; the previous field is kept: move them \
+                 in smaller steps, or start anew at that stretch)",
                 self.grips, PARTS[PARTS.len() - 1]
             ),
             fault,

@@ -37,10 +37,10 @@ impl fmt::Display for Start {
             Self::Springs => f.write_str("springs"),
             Self::SpringsWithAreaTerm => f.write_str("springs with the area term"),
             Self::LoadSteps(steps) => write!(f, "springs at the first of {steps} load steps"),
-            Self::ContractedStretch => f.write_str("the affine stretch, contracted across"),
+            Self::ContractedStretch => f.write_str("the affine stretch with lateral contraction"),
             Self::LoadPath => f.write_str("Newton's method along a path of load steps"),
             Self::AffineStretch => f.write_str("the affine stretch"),
-            Self::StatesBefore => f.write_str("states before"),
+            Self::StatesBefore => f.write_str("previous states"),
         }
     }
 }

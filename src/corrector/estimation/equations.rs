@@ -84,8 +84,8 @@ impl<'a> Equations<'a> {
             .held(energy.unknowns());
         if !held.iter().any(|held| *held) {
             return Err(Error::input(
-                "all edges are free, so that nothing loads the specimen",
-                "say which edges are held, or leave their conditions open",
+                "all edges are free, so the specimen is not loaded",
+                "state which edges are held, or leave their conditions open",
             ));
         }
         let weighted = task.knowledge.physics == Physics::Weighted;
@@ -141,7 +141,7 @@ impl<'a> Equations<'a> {
         Err(last.unwrap_or_else(|| {
             Error::input(
                 "the markers do not determine even an affine field",
-                "they need to be three at least, and not on one line",
+                "give at least three that are not on one line",
             )
         }))
     }

@@ -89,10 +89,10 @@ pub fn check_joint_frames(frames: &[JointFrame]) -> Result<(), Error> {
     }
     let fault = Diagnostic::error(
         "",
-        "parameters of the law are to be found, and no force was measured in any frame",
+        "parameters of the law are to be estimated, but no force was measured in any frame",
     );
     Err(Error::Input(vec![fault.hint(
-        "displacements alone say nothing of a stiffness: give the force on an edge with its deviation",
+        "give the force on an edge with its standard deviation: displacements alone do not determine a stiffness",
     )]))
 }
 
@@ -115,7 +115,7 @@ fn outcome(
     if course.ended.is_none() && !directions.iter().any(Direction::is_determined) {
         return Err(Error::input(
             "the data determine no parameter of the law",
-            "measure a force with a deviation, say more of the edges, or take frames with larger strains",
+            "give a measured force with its standard deviation, state more about the edges, or use frames with larger strains",
         ));
     }
     let inverse = direction::inverse(&directions, &scales, VAGUE);

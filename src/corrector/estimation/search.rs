@@ -165,8 +165,8 @@ impl<'a> Equations<'a> {
         });
         fitted.map_err(|Undetermined| {
             Error::input(
-                "the data do not determine how the edges moved, or the parameters of the law",
-                "say more of the edges (free, rigid, known), measure more markers near them, or find fewer parameters",
+                "the data do not determine the motion of the edges, or the parameters of the law",
+                "state more about the edges (free, rigid, known), measure more markers near them, or estimate fewer parameters",
             )
         })
     }

@@ -153,7 +153,7 @@ fn wrong_input_is_told() {
         })
         .collect();
     assert!(told(&far, &grips).contains("0 of 231 markers lie on the mesh"));
-    assert!(told(&good, &with_grips(EdgeCondition::Free)).contains("nothing loads"));
+    assert!(told(&good, &with_grips(EdgeCondition::Free)).contains("the specimen is not loaded"));
     assert!(told(&good[..2], &grips).contains("2 of 2"));
     let line: Vec<Marker> = good
         .iter()

@@ -55,8 +55,8 @@ pub fn transfer(
     let imposed = imposed(mesh, &edges, &start);
     if imposed.iter().all(Option::is_none) {
         return Err(Error::input(
-            "all edges are free, so that nothing loads the specimen",
-            "say which edges are held, or leave their conditions open",
+            "all edges are free, so the specimen is not loaded",
+            "state which edges are held, or leave their conditions open",
         ));
     }
     let energy = SheetEnergy::of_mesh(Arc::clone(&specimen.law), mesh, specimen.thickness);

@@ -128,8 +128,8 @@ fn refused([from, to]: [&BTreeMap<String, Grip>; 2], reached: f64, fault: SolveF
     Error::Solve {
         model: "corrector".into(),
         step: format!(
-            "a motion of the grips {} (in parts too, {reached:.4} of it was reached; the field before is kept: move them \
-             less far at a time)",
+            "a motion of the grips {} (also in parts; a fraction of {reached:.4} was reached, and the previous field is kept: move \
+             them in smaller steps)",
             moved.join(" and ")
         ),
         fault,

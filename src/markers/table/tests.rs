@@ -69,7 +69,7 @@ fn columns_are_read_with_units_frames_and_holes() {
     near(&second.markers, &[marker(0, [10.0, 2.0], [1.0, 0.5])]);
     let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
     let expected = [
-        "one is in cm and one in mm",
+        "in different units, cm and mm",
         "points without a displacement: 2",
         "frames are missing: 2",
     ];
@@ -155,7 +155,7 @@ fn a_unit_that_nobody_knows_is_said_by_the_user() {
     let text = "x（毫米）,y（毫米）,ux（毫米）,uy（毫米）\n1,2,3,4\n5,2,3,4\n";
     let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
     assert!(
-        told.to_string().contains("`毫米` is no unit of length"),
+        told.to_string().contains("`毫米` is not a unit of length"),
         "{told}"
     );
     let found = read_texts(&[("a.csv", text)], &unit(2.0)).unwrap();
@@ -222,7 +222,7 @@ fn ncorr_keeps_matrices() {
     let told = read_texts(&files, &unit(1.0)).unwrap_err().to_string();
     assert!(told.contains("--grid"), "{told}");
     let told = read_texts(&[("1_u.csv", u), ("1_v.csv", "1,2\n")], &reading).unwrap_err();
-    assert!(told.to_string().contains("has 2 × 3 fields"), "{told}");
+    assert!(told.to_string().contains("has 2 × 3 entries"), "{told}");
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
         ),
         (
             "x [N],y [mm],ux [mm],uy [mm]\n1,2,3,4\n",
-            "`N` is no unit of length",
+            "`N` is not a unit of length",
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm]\n1,2,3,lost\n",
@@ -272,7 +272,7 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm]\n1,NaN,3,4\n",
-            "a.csv:2: a marker has no place",
+            "a.csv:2: a marker has no position",
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm]\n1,2,NaN,4\n",
@@ -288,11 +288,11 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
         ),
         (
             "frame,x [mm],y [mm],ux [mm],uy [mm]\n1.5,1,2,3,4\n",
-            "a frame has no whole number",
+            "a frame number is not a whole number",
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm],uy [mm]\n1,2,3,4,5\n",
-            "the column `uy` says what another column says already",
+            "the column `uy` repeats another column",
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm],standard_devation [mm]\n1,2,3,4,5\n",
@@ -304,7 +304,7 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm],uz [mm]\n1,2,3,4,1\n",
-            "the points leave their plane: `uz` reaches 1.0000",
+            "the points do not stay in a plane: `uz` reaches 1.0000",
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm],sigma [mm]\n1,2,3,4,-1\n",
@@ -340,7 +340,7 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
         ],
     );
     let told = found.warnings[0].to_string();
-    assert!(told.contains("says mm, --unit says 1000 mm"), "{told}");
+    assert!(told.contains("states mm, --unit states 1000 mm"), "{told}");
     // Of different units each stands.
     let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
     let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
@@ -365,11 +365,11 @@ fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
     assert_eq!(found.series.places(), [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]);
     let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
     assert!(
-        told[1].contains("rows that stand twice") && told[1].contains(": 1"),
+        told[1].contains("duplicate rows") && told[1].contains(": 1"),
         "{told:?}"
     );
     assert!(
-        told[2].contains("measured again at the same place"),
+        told[2].contains("measured again at the same position"),
         "{told:?}"
     );
     // What is found in one frame is not lost.

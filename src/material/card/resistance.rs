@@ -54,13 +54,13 @@ impl Card {
             }
             None if own => section.fault(
                 bulk,
-                &format!("the law `{}` has a change of volume of its own", self.law_name),
-                "leave out `[volume]`: the law's parameters say how it changes its volume",
+                &format!("the law `{}` is compressible by itself", self.law_name),
+                "leave out `[volume]`: the law's parameters determine its change of volume",
             ),
             None => section.fault(
                 bulk,
-                &format!("the law `{}` cannot take a change of volume", self.law_name),
-                "take an isotropic law: neo-hooke, mooney-rivlin, yeoh, ogden, gent and others; laws with fibres keep their volume",
+                &format!("the law `{}` has no compressible form", self.law_name),
+                "take an isotropic law: neo-hooke, mooney-rivlin, yeoh, ogden, gent and others; laws with fibres are incompressible",
             ),
         }
     }
@@ -107,10 +107,10 @@ impl Card {
     /// What the sheet is in words: `an incompressible material in plane stress`.
     pub fn describe_sheet(&self) -> String {
         let material = match (self.law_name == SWELLING, self.bulk_modulus()) {
-            (true, _) => "a gel that takes up and gives off solvent".to_owned(),
+            (true, _) => "a gel that exchanges solvent".to_owned(),
             (false, None) => "an incompressible material".to_owned(),
             (false, Some(modulus)) => {
-                format!("a material that changes its volume (bulk modulus κ = {modulus:.4} MPa)")
+                format!("a compressible material (bulk modulus κ = {modulus:.4} MPa)")
             }
         };
         let plane = match self.law.plane_state() {
@@ -118,7 +118,7 @@ impl Card {
             PlaneState::Strain => "plane strain",
         };
         let softens = match self.law.softening() {
-            Some(_) => ", which softens by its largest load",
+            Some(_) => ", with Mullins softening",
             None => "",
         };
         format!("{material} in {plane}{softens}")

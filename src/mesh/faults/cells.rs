@@ -42,15 +42,14 @@ pub fn without_sense(mesh: &Mesh) -> Vec<Diagnostic> {
     }
     let no_area = empty.error(
         ["cell has no area", "cells have no area"],
-        "take the cell out, or put its nodes where they belong; merged nodes need a smaller tolerance",
+        "remove the cell, or correct its nodes; if nodes were merged, take a smaller tolerance",
     );
     let folded = inverted.error(
         [
             "cell is turned inside out, in part at least",
             "cells are turned inside out, in part at least",
         ],
-        "its corners must follow each other around it with less than 180° between its sides, and nodes in the middle of \
-         curved sides must lie in their middle half",
+        "its corners must be in order around it, with angles below 180°, and midside nodes of curved sides must lie in the middle half of the side",
     );
     no_area.into_iter().chain(folded).collect()
 }
@@ -76,7 +75,7 @@ pub fn given_twice(mesh: &Mesh) -> Vec<[usize; 2]> {
 pub fn twice_told(mesh: &Mesh, twice: &[[usize; 2]]) -> Option<Diagnostic> {
     Finding::of(twice.iter().map(|[_, again]| mesh.centre(*again))).error(
         ["cell is given twice", "cells are given twice"],
-        "write each cell once; in Gmsh a surface must belong to one physical group, or none be saved twice (Coherence)",
+        "write each cell once; in Gmsh a surface must belong to one physical group only, and must not be saved twice (Coherence)",
     )
 }
 

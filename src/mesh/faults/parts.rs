@@ -65,8 +65,8 @@ pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
         parts.len(),
         shown.join(", ")
     );
-    let remedy = "take out what does not belong to the specimen; where parts touch, merge their nodes (merge_nodes, \
-                  --merge-nodes); where each is held on its own, allow \"parts\"";
+    let remedy = "remove what does not belong to the specimen; where parts touch, merge their nodes (merge_nodes, --merge-nodes); if each has \
+                  supports of its own, allow \"parts\"";
     Some(Diagnostic::error("", message).hint(remedy))
 }
 
@@ -83,6 +83,6 @@ pub fn hinges(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
             "node alone joins cells on both sides of it: a hinge",
             "nodes alone join cells on both sides of them: hinges",
         ],
-        "join the cells along a side, or part them; where the boundary is meant to touch itself in a node, allow \"hinges\"",
+        "join the cells along a side, or separate them; if the boundary is meant to touch itself in a node, allow \"hinges\"",
     )
 }

@@ -86,7 +86,7 @@ impl<'a> Sides<'a> {
                 "side has cells that overlap: two on the same side of it",
                 "sides have cells that overlap: two on the same side of each",
             ],
-            "take one of the cells out; a surface meshed twice must be joined before it is meshed (Coherence in Gmsh)",
+            "remove one of the cells; surfaces that coincide must be joined before they are meshed (Coherence in Gmsh)",
         );
         let apart = self
             .meeting()

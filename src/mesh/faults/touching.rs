@@ -238,8 +238,7 @@ impl<'a> Boundary<'a> {
     }
 }
 
-const SEAM: &str = "join them with merge_nodes = \"1e-6 mm\" in [specimen] (--merge-nodes for measured fields); where a slit \
-                    is meant, allow \"seams\"";
+const SEAM: &str = "join them with merge_nodes = \"1e-6 mm\" in [specimen] (--merge-nodes for measured fields); if a slit is meant, allow \"seams\"";
 
 /// Nodes and centres of cells inside of other cells.
 pub fn overlaps(mesh: &Mesh) -> Option<Diagnostic> {
@@ -259,6 +258,6 @@ pub fn overlaps(mesh: &Mesh) -> Option<Diagnostic> {
             "place is covered by two cells, which overlap",
             "places are covered by two cells, which overlap",
         ],
-        "take out what lies on other cells, or join the parts before meshing (BooleanFragments or Coherence in Gmsh)",
+        "remove cells that lie on other cells, or join the parts before meshing (BooleanFragments or Coherence in Gmsh)",
     )
 }

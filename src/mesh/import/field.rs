@@ -101,7 +101,7 @@ pub fn import_field(
         let known: Vec<_> = known.map(|time| time.to_string()).collect();
         let known = known.join(", ");
         let remedy =
-            "choose one of these with --factor, or with --time where they are no load factors";
+            "choose one of these with --factor, or with --time if they are not load factors";
         return Err(ImportFault {
             reason: format!("has no step at the time {time}; it has {known}"),
             remedy: Some(remedy.to_owned()),
@@ -159,7 +159,7 @@ fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSe
             series(results.raw, unit, &steps, "DISP")
         }
         Some("pvd") => collection(path, unit, array),
-        _ => Err("is no .vtu, .vtk, .pvd, .msh, .frd or .csv file".into()),
+        _ => Err("is not a .vtu, .vtk, .pvd, .msh, .frd or .csv file".into()),
     }
 }
 
@@ -204,7 +204,9 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
             if whole.is_none() {
                 hole.get_or_insert(match values {
                     None => format!("has no displacement of the node {node}"),
-                    Some(_) => format!("has a displacement of the node {node} that is no number"),
+                    Some(_) => {
+                        format!("has a displacement of the node {node} that is not a number")
+                    }
                 });
             }
             displacement.extend(whole.map_or([f64::NAN; 2], |u| u.map(|u| unit_of_values * u)));
@@ -234,7 +236,7 @@ fn choose<T>(
 ) -> Result<(String, T), Unreadable> {
     let names: Vec<String> = arrays.iter().map(|(name, _)| name.clone()).collect();
     if names.is_empty() {
-        return Err("holds no vectors at its points, and so no displacement".into());
+        return Err("contains no vectors at its points, and so no displacement".into());
     }
     let is_displacement = |name: &String| {
         let plain = name.to_lowercase();

@@ -81,7 +81,7 @@ pub fn read(text: &str) -> Result<Results, Unreadable> {
         mut results, solid, ..
     } = reader;
     if results.steps.is_empty() {
-        return Err("holds no displacements (DISP); ask CalculiX for *NODE FILE with U".into());
+        return Err("contains no displacements (DISP); ask CalculiX for *NODE FILE with U".into());
     }
     if solid {
         flatten(&mut results)?;
@@ -215,7 +215,7 @@ fn flatten(results: &mut Results) -> Result<(), Unreadable> {
         columns.entry(key(place)).or_default().push(*node);
     }
     if columns.len() * 2 > places.len() {
-        return Err("holds solids that are no single layer over a sheet".into());
+        return Err("contains solids that are not a single layer over a sheet".into());
     }
     for nodes in columns.values_mut() {
         nodes.sort_unstable(); // sums in one order give the same digits on every run

@@ -18,7 +18,7 @@ pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
             }
             Ok(Event::Eof) => return Ok(files),
             Ok(_) => {}
-            Err(cause) => return Err(format!("is no XML: {cause}").into()),
+            Err(cause) => return Err(format!("is not XML: {cause}").into()),
         }
     }
 }
@@ -38,6 +38,6 @@ fn data_set(tag: &BytesStart) -> Result<(f64, String), Unreadable> {
     };
     let time = value("timestep")?;
     let number = time.parse().ok().filter(|time: &f64| time.is_finite());
-    let number = number.ok_or_else(|| format!("has the time `{time}`, which is no number"))?;
+    let number = number.ok_or_else(|| format!("has the time `{time}`, which is not a number"))?;
     Ok((number, value("file")?))
 }

@@ -108,7 +108,7 @@ impl Raw {
 
     pub fn mesh(self, unit: f64) -> Result<Mesh, Unreadable> {
         if self.cells.is_empty() {
-            return Err("holds no triangles or quadrilaterals".into());
+            return Err("contains no triangles or quadrilaterals".into());
         }
         let (nodes, names) = self.nodes(unit)?;
         let sized = check_size(nodes.iter().copied());
@@ -137,11 +137,11 @@ impl Raw {
         for name in self.used() {
             let Some([x, y, z]) = self.places.get(&name) else {
                 return Err(
-                    format!("has a cell with the node {name}, which it does not hold").into(),
+                    format!("has a cell with the node {name}, which it does not contain").into(),
                 );
             };
             if [x, y, z].iter().any(|x| !x.is_finite()) {
-                return Err(format!("has the node {name} at a place that is no number").into());
+                return Err(format!("has the node {name} at a place that is not a number").into());
             }
             let plane = *height.get_or_insert(*z);
             if (z - plane).abs() > 1e-9 * (x.abs() + y.abs()).max(1e-300) {

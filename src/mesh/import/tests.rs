@@ -128,7 +128,7 @@ fn what_cannot_be_read_is_refused_by_name() {
         ),
         (
             VERSION_2.replace("1 1 3 5\n", "1 1 3 6\n"),
-            "the node 6, which it does not hold",
+            "the node 6, which it does not contain",
         ),
         (
             VERSION_2.replace("3 1 1 0\n", "3 0.5 0 0\n"),
@@ -150,7 +150,7 @@ fn what_cannot_be_read_is_refused_by_name() {
         let found = read("a.msh", &text).unwrap_err();
         assert!(found.contains(reason), "{found}");
     }
-    assert!(read("a.stl", "").unwrap_err().contains("is no .msh"));
+    assert!(read("a.stl", "").unwrap_err().contains("is not a .msh"));
     assert!(
         read("a.vtu", "nothing")
             .unwrap_err()
@@ -186,7 +186,10 @@ fn views_of_gmsh_are_fields_with_their_times() {
         assert_eq!(second.displacement[2..4], [2.0, 0.0]);
         assert!(second.displacement[4..].iter().all(|u| u.is_nan()));
         let told = import_field(&path, 1.0, None, 1.0).unwrap_err().to_string();
-        assert!(told.contains("of the node 3 that is no number"), "{told}");
+        assert!(
+            told.contains("of the node 3 that is not a number"),
+            "{told}"
+        );
         let chosen = import_field(&path, 1.0, None, 0.5).unwrap();
         assert_eq!(chosen.displacement, *first);
     }
@@ -277,7 +280,7 @@ fn groups_of_cells_and_of_lines_on_the_sheet_are_kept_as_nodes() {
     assert_eq!(mesh.groups()["pad"].cells.len(), 1);
     assert_eq!(mesh.groups()["sheet"].nodes.len(), 16);
     assert!(
-        told[0].to_string().contains("supports hold them"),
+        told[0].to_string().contains("supports act on them"),
         "{told:?}"
     );
     let finer = mesh.refined();

@@ -55,7 +55,7 @@ fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
         Err(_) => return Err("cannot be read as VTK: it is cut off or damaged".into()),
     };
     let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
-        return Err("is no unstructured grid".into());
+        return Err("is not an unstructured grid".into());
     };
     match pieces.into_iter().next() {
         Some(Piece::Inline(piece)) => of_piece(&piece),
@@ -97,7 +97,7 @@ fn check_legacy(bytes: &[u8]) -> Result<(), Unreadable> {
 }
 
 fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, Unreadable> {
-    let points = numbers(&piece.points).ok_or("has points that are no numbers")?;
+    let points = numbers(&piece.points).ok_or("has points that are not numbers")?;
     let kinds = piece.cells.types.iter().map(|kind| *kind as u8);
     Ok(UnstructuredGrid {
         points,

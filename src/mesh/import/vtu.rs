@@ -70,7 +70,7 @@ struct Layout {
 /// Says what is wrong or cannot be read.
 pub fn read(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
     let (head, appended) = split_appended(bytes);
-    let head = std::str::from_utf8(head).map_err(|_| "is no XML: its head is no text")?;
+    let head = std::str::from_utf8(head).map_err(|_| "is not XML: its header is not text")?;
     let layout = Layout::of(head)?;
     let file = XmlFile::new(&layout, appended)?;
     file.grid()
@@ -95,9 +95,9 @@ fn split_appended(bytes: &[u8]) -> (&[u8], &[u8]) {
 fn attributes(tag: &BytesStart) -> Result<Attributes, Unreadable> {
     let mut all = Attributes::new();
     for attribute in tag.attributes().with_checks(false) {
-        let attribute = attribute.map_err(|cause| format!("is no XML: {cause}"))?;
+        let attribute = attribute.map_err(|cause| format!("is not XML: {cause}"))?;
         let value = attribute.normalized_value(XmlVersion::Explicit1_0);
-        let value = value.map_err(|cause| format!("is no XML: {cause}"))?;
+        let value = value.map_err(|cause| format!("is not XML: {cause}"))?;
         all.insert(attribute.key.as_ref().to_owned(), value.into_owned());
     }
     Ok(all)
@@ -133,7 +133,7 @@ impl Layout {
                 Ok(Event::End(_)) => within = within.saturating_sub(1),
                 Ok(Event::Eof) => return Ok(layout),
                 Ok(_) => {}
-                Err(cause) => return Err(format!("is no XML: {cause}").into()),
+                Err(cause) => return Err(format!("is not XML: {cause}").into()),
             }
         }
     }
@@ -182,7 +182,7 @@ impl<'a> XmlFile<'a> {
             return Err("cannot be read as VTK: it has no VTKFile".into());
         }
         if file("type") != "UnstructuredGrid" {
-            return Err("is no unstructured grid".into());
+            return Err("is not an unstructured grid".into());
         }
         let compressed = match file("compressor") {
             "" => false,
@@ -288,7 +288,8 @@ impl<'a> XmlFile<'a> {
         if array.attribute("format") == "ascii" {
             let numbers = array.text.split_ascii_whitespace();
             let values: Result<Vec<f64>, _> = numbers.take(count + 1).map(str::parse).collect();
-            let values = values.map_err(|_| named("holds something that is no number".into()))?;
+            let values =
+                values.map_err(|_| named("contains something that is not a number".into()))?;
             return match values.len() == count {
                 true => Ok(values),
                 false => Err(named(format!("does not have {count} values")).into()),

@@ -188,7 +188,7 @@ fn half_of_a_grid_keeps_its_outline_with_a_word() {
             .collect();
         let found = Outline::of_points(&points).unwrap();
         assert!(
-            found.doubts[0].contains("lie irregularly"),
+            found.doubts[0].contains("irregularly spaced"),
             "{seed}: {:?}",
             found.doubts
         );

@@ -28,7 +28,7 @@ impl Shape {
             true => Ok(()),
             false => Err(Misfit {
                 measure: "shape",
-                reason: "its measures differ by more than 100,000 times",
+                reason: "its dimensions differ by a factor of more than 100,000",
                 limit: 0.0,
             }),
         }
@@ -114,8 +114,10 @@ impl Misfit {
         let relation = match (self.limit < 0.0, limit > 0.0) {
             (true, _) => "more",
             (false, true) => "less",
-            (false, false) => return "change the other measures: none fits to these".to_owned(),
+            (false, false) => {
+                return "change the other dimensions: no value is compatible with them".to_owned();
+            }
         };
-        format!("take {relation} than \"{limit} {unit}\", or change the other measures")
+        format!("take {relation} than \"{limit} {unit}\", or change the other dimensions")
     }
 }

@@ -37,18 +37,18 @@ impl Export<'_> {
     fn law(&self, code: Code) -> Result<CodeLaw, Diagnostic> {
         if self.card.bulk_modulus().is_some() {
             let message = format!(
-                "the card `{}` changes its volume; sheets that keep it can be exported",
+                "the card `{}` is compressible; only incompressible sheets can be exported",
                 self.card.name
             );
             let hint = match self.card.volume {
                 Some(_) => "leave out the card's `[volume]`",
-                None => "take a card whose law keeps its volume",
+                None => "take a card whose law is incompressible",
             };
             return Err(Diagnostic::error("", message).hint(hint));
         }
         if self.card.law.softening().is_some() && code != Code::Abaqus {
             let message = format!(
-                "{} has no softening that equals that of the card `{}`",
+                "{} has no softening equivalent to that of the card `{}`",
                 code.name(),
                 self.card.name
             );
@@ -59,7 +59,7 @@ impl Export<'_> {
         let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);
         known.ok_or_else(|| {
             let (name, card) = (code.name(), self.card);
-            let message = format!("{name} has no law that equals `{}` of the card `{}`", card.law_name, card.name);
+            let message = format!("{name} has no law equivalent to `{}` of the card `{}`", card.law_name, card.name);
             Diagnostic::error("", message).hint(format!(
                 "it has {}; fit such a card to the same data, as with `gelbench materials fit DATA.csv --law ogden-2`",
                 code.laws()
@@ -278,12 +278,12 @@ impl<'a> Model<'a> {
             .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
         if nine && shapes(CellShape::Quad8) {
             remarks.push(
-                "nine-node quadrilaterals go out as eight-node ones, without their middle nodes"
+                "nine-node quadrilaterals are exported as eight-node ones, without their middle nodes"
                     .into(),
             );
         }
         if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
-            remarks.push("CalculiX makes linear solids of its own kind of CPS3 and CPS4: compare quadratic elements, or fine meshes".into());
+            remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
         }
         if self.code != Code::Abaqus {
             remarks.push(format!(
@@ -294,20 +294,21 @@ impl<'a> Model<'a> {
         }
         if !self.pressures.is_empty() {
             remarks.push(match self.code {
-                Code::Abaqus => "the pressure of gelbench acts on the thickness at rest; see whether yours acts on the deformed thickness".into(),
+                Code::Abaqus => "the pressure of gelbench acts on the thickness at rest; check whether that of your code acts on the deformed thickness".into(),
                 Code::CalculiX | Code::FeBio => format!(
-                    "{code} lays the pressure on the deformed thickness, gelbench on the thickness at rest: the forces differ by the stretch across the thickness at the loaded edge"
+                    "{code} applies the pressure to the deformed thickness, gelbench to the thickness at rest: the forces differ by the thickness \
+                     stretch at the loaded edge"
                 ),
             });
         }
         if !card.viscosity.is_none() {
             remarks.push(
-                "the card's [viscosity] is left out: the file is of the law of long times alone"
+                "the card's [viscosity] is left out: the file contains the long-term law only"
                     .into(),
             );
         }
         if self.law == CodeLaw::TensionCurve {
-            remarks.push("the law depends on the first invariant alone and goes out as Marlow's law with points of its tension curve".into());
+            remarks.push("the law depends on the first invariant alone and is exported as Marlow's law with points of its tension curve".into());
         }
         remarks
     }

@@ -105,7 +105,7 @@ impl Locked {
                 file,
             }),
             Err(TryLockError::WouldBlock) => {
-                let cause = "another run is writing into this folder; wait for its end, or choose another with --output";
+                let cause = "another run is writing into this folder; wait until it ends, or choose another with --output";
                 Err(Error::write(folder, cause))
             }
         }

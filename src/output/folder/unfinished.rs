@@ -67,7 +67,7 @@ impl Unfinished {
     pub(super) fn growing(&self) -> Result<MutexGuard<'_, Stage>, Error> {
         let stage = self.stage();
         match *stage {
-            Stage::BrokenOff => Err(Error::write(&self.folder, "the run was broken off")),
+            Stage::BrokenOff => Err(Error::write(&self.folder, "the run was interrupted")),
             _ => Ok(stage),
         }
     }

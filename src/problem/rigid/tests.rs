@@ -23,14 +23,14 @@ const Y: Support = Support::Displacement([None, Some(0.0)]);
 fn free_motions_of_one_part_are_named() {
     let mesh = strip();
     for (supports, told) in [
-        (vec![], "move along x and y and turn: nothing holds it"),
+        (vec![], "move along x and y and rotate: nothing holds it"),
         (vec![("left", X)], "move along y without"),
         (vec![("bottom", Y)], "move along x without"),
-        (vec![("corner", CLAMP)], "turn about (0.0, -5.0) mm"),
-        (vec![("corner", X)], "move along y and turn"),
+        (vec![("corner", CLAMP)], "rotate about (0.0, -5.0) mm"),
+        (vec![("corner", X)], "move along y and rotate"),
         (
             vec![("corner", X), ("end", Y)],
-            "turn about (30.0, -5.0) mm",
+            "rotate about (30.0, -5.0) mm",
         ),
         (
             vec![(
@@ -114,7 +114,7 @@ fn every_part_must_be_held_and_a_hinge_holds_two_motions_of_three() {
     assert_eq!(hinged.len(), 1);
     let message = &hinged[0].message;
     assert!(
-        message.contains("the part with cell 1 near (1.5, 1.5) mm can turn about (1.0, 1.0) mm"),
+        message.contains("the part with cell 1 near (1.5, 1.5) mm can rotate about (1.0, 1.0) mm"),
         "{message}"
     );
     let apart = checked(&squares([3.0, 0.0]), &clamp);

@@ -49,11 +49,14 @@ pub fn name(mesh: &mut Mesh, areas: &[(String, Area)]) -> Result<(), Error> {
             .filter(|node| area.holds(mesh.nodes[*node]))
             .collect();
         if mesh.groups().contains_key(name) {
-            let fault = Diagnostic::error("", format!("the mesh has a group `{name}` already"));
+            let fault = Diagnostic::error("", format!("the mesh already has a group `{name}`"));
             faults.push(fault.hint("leave out the area, or give it another name"));
         } else if nodes.len() < LEAST {
-            let message = format!("the area `{name}` holds {} nodes of the mesh", nodes.len());
-            let hint = "look at its place, which is in the mesh's axes, or make smaller cells with --cell-size";
+            let message = format!(
+                "the area `{name}` contains too few nodes of the mesh: {}",
+                nodes.len()
+            );
+            let hint = "check its position, which is in the mesh's axes, or use smaller cells with --cell-size";
             faults.push(Diagnostic::error("", message).hint(hint));
         } else {
             mesh.name_nodes(name, &nodes);
@@ -85,12 +88,12 @@ mod tests {
         let told = name(&mut mesh, &[("left".into(), disc)])
             .unwrap_err()
             .to_string();
-        assert!(told.contains("has a group `left` already"), "{told}");
+        assert!(told.contains("already has a group `left`"), "{told}");
         let far = Area::of(&[50.0, 2.0, 1.0]).unwrap();
         let told = name(&mut mesh, &[("far".into(), far)])
             .unwrap_err()
             .to_string();
-        assert!(told.contains("holds 0 nodes"), "{told}");
+        assert!(told.contains("too few nodes of the mesh: 0"), "{told}");
         assert_eq!(Area::of(&[3.0, 1.0, 1.0, 3.0]), None);
     }
 }

@@ -57,11 +57,11 @@ pub fn mistaken(frame: &Frame, law: &dyn HyperelasticLaw) -> Option<(String, &'s
             .find(|(along, other, _)| is_pull(*along, -other));
         return mirrored.map(|(along, other, axis)| {
             let message = format!(
-                "pulled by {}, the markers widen by {} across: displacements along {axis} seem to be mirrored",
+                "stretched by {}, the markers widen by {} in the transverse direction: displacements along {axis} seem to be mirrored",
                 percent(along),
                 percent(other)
             );
-            (message, "turn the sign of that column, or say where y points in the file by `--y-axis`")
+            (message, "reverse the sign of that column, or state where y points in the file with `--y-axis`")
         });
     }
     let is_exchanged = is_pull(turned[0], turned[1]) || is_pull(turned[1], turned[0]);

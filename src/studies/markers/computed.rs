@@ -18,8 +18,7 @@ pub fn told(conditions: &Conditions) -> Option<Diagnostic> {
     let told = told.iter().filter(|(_, told)| *told);
     let told: Vec<&str> = told.map(|(key, _)| *key).collect();
     let message = format!(
-        "a field that is brought from its own mesh onto another one is taken as computed, without noise: what is said of {} has no \
-         part in it",
+        "a field that is transferred from its own mesh to another one is treated as computed, without noise; ignored: {}",
         told.join(", ")
     );
     let hint = "give a measured field as a table of its markers: x, y, ux, uy";

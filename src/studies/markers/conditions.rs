@@ -162,15 +162,15 @@ impl Conditions {
                 let (edge, last) = (&force.edge, all.last().cloned().unwrap_or_default());
                 let fault = match frame {
                     None => format!(
-                        "there are {} frames, and the force on `{edge}` does not say in which it was measured",
+                        "there are {} frames, but the force on `{edge}` does not state in which it was measured",
                         all.len()
                     ),
                     Some(number) => format!(
-                        "there is no frame {number}, in which the force on `{edge}` was measured"
+                        "there is no frame {number}, in which the force on `{edge}` is stated to be measured"
                     ),
                 };
                 let hint = format!(
-                    "say it in the file of --study, with `frame = {last}` under [[force]], or correct one frame alone; frames: {}",
+                    "state it in the file of --study, with `frame = {last}` under [[force]], or correct one frame alone; frames: {}",
                     all.join(", ")
                 );
                 return Err(Error::input(fault, hint));
@@ -192,7 +192,7 @@ impl Conditions {
             (None, None) => Ok(Vec::new()),
             (None, Some(first)) => Err(Error::input(
                 format!(
-                    "the force on `{}` stands in the column `{}` of no table",
+                    "the force on `{}` is to be read from the column `{}`, but no table is given",
                     first.edge, first.column
                 ),
                 "name the testing machine's table with --forces FILE",
@@ -325,10 +325,10 @@ fn area(section: &Section, names: &[String]) -> Option<(String, Area)> {
     let hint = "write x and y of the lower left and of the upper right corner, or x, y and the radius of a disc";
     match (area, names) {
         (Some(area), [name]) => return Some((name.clone(), area)),
-        (None, _) => section.fault("area", "is no rectangle and no disc", hint),
+        (None, _) => section.fault("area", "must be a rectangle or a disc", hint),
         _ => section.fault(
             "names",
-            "an area has one name",
+            "must be one name where there is an area",
             "give each pad a section of its own",
         ),
     }
@@ -364,7 +364,7 @@ fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
     if section.has("column") {
         section.text("column");
         let hint = "leave out the column, or the force";
-        section.fault("column", "stands beside a force", hint);
+        section.fault("column", "must not be given together with a force", hint);
     }
     let force = section.quantity("force", Dimension::Force, Bound::Any);
     let has = |key| section.has(key);
@@ -384,7 +384,7 @@ fn condition(section: &Section) -> EdgeCondition {
             let displacement = [along("ux"), along("uy")];
             if displacement == [None, None] {
                 let hint = "add ux = \"5 mm\", uy = \"0 mm\", or one of them";
-                section.fault("condition", "a known edge needs its displacement", hint);
+                section.fault("condition", "`known` needs a displacement", hint);
             }
             EdgeCondition::Known(displacement)
         }

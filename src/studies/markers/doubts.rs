@@ -40,12 +40,12 @@ impl MarkerStudy {
     fn unknown_edge(&self, estimate: &FieldEstimate) -> Option<Doubt> {
         let gap = self.unknown_gap.filter(|_| !estimate.is_explained())?;
         let message = format!(
-            "the free edges of the specimen are known but for {gap:.4} mm, as only the markers tell of them: precise data contradict edges \
-             that lie by less elsewhere"
+            "the free edges are known only to within {gap:.4} mm, because only the markers define them; with precise data even a smaller \
+             offset leads to rejection"
         );
         Some((
             message,
-            "give the edges and holes with --outline or --mesh, or --edge-gap where the report tells how far free edges lie from the mesh's",
+            "give the edges and holes with --outline or --mesh, or set --edge-gap if the report estimates how far the free edges lie from those of the mesh",
         ))
     }
 
@@ -91,7 +91,7 @@ impl MarkerStudy {
         );
         Some((
             message,
-            "leave the frame out, or look at its picture; its figures are those of nearly no data",
+            "leave the frame out, or check its picture; its results rest on almost no valid data",
         ))
     }
 
@@ -122,8 +122,8 @@ const NO_MEASUREMENT: f64 = 0.03;
 const NOISIER: f64 = 20.0;
 
 /// What helps where the card is left.
-const EXTRAPOLATED: &str = "stresses and forces there are an extrapolation that no interval holds: take a card of tests up to these \
-    stretches";
+const EXTRAPOLATED: &str = "stresses and forces there are extrapolated, which no interval includes: use a card fitted to tests up to \
+    these stretches";
 
 /// Moves the end of an interval on the side of `by`.
 fn widen(estimate: &mut Estimate, by: f64) {
@@ -164,14 +164,14 @@ type Doubt = (String, &'static str);
 fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
     let ratio = estimate.noise_ratio?;
     if estimate.noise_range.is_some() {
-        let message = "the markers' noise is not what was stated, but differs otherwise from place to place or from ux to uy: it is taken as they show it";
+        let message = "the markers' noise does not follow the stated noise and varies over the field or between ux and uy; the observed noise is used instead";
         let hint = "correct the stated noise, or leave it out to have it estimated";
         return Some((message.to_owned(), hint));
     }
     let relation = if ratio > 1.0 { "more" } else { "less" };
     let message = format!(
-        "the markers scatter {ratio:.2} times as much as their stated noise, {relation} than chance allows: it is scaled to what \
-         they show"
+        "the markers scatter {ratio:.2} times as much as their stated noise, {relation} than chance allows: the stated noise is \
+         rescaled to the observed scatter"
     );
     Some((
         message,
@@ -183,10 +183,10 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
 fn hidden_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
     has_hidden(estimate).then(|| {
         let message = format!(
-            "half of the markers lie far nearer to the field than the noise of {:.4} mm: many are gross errors, and intervals mean nothing",
+            "half of the markers lie much closer to the field than a noise of {:.4} mm suggests: many are gross errors, and intervals are meaningless",
             estimate.noise
         );
-        let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which takes the say from those that are far off";
+        let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which down-weights outlying markers";
         (message, hint)
     })
 }
@@ -196,34 +196,34 @@ fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
         let (off, count) = (outliers(estimate), used(estimate));
         let hint = match estimate.robust {
             Robust::No => {
-                "look at the conditions, the law, and the noise if it is stated; --physics weighted, or look at vtk/markers.pvd \
-                 where they are"
+                "check the conditions, the law, and the noise if it is stated; try --physics weighted, or see in vtk/markers.pvd \
+                 where they lie"
             }
             _ => {
-                "they have less say, or none; look at vtk/markers.pvd where they are: markers that were lost or matched wrongly lie anywhere, those \
-                 that the law or the conditions do not fit lie together"
+                "see in vtk/markers.pvd where they lie: markers that were lost or matched wrongly lie anywhere, those that the law or the conditions \
+                 do not fit lie together; all have reduced or zero weight"
             }
         };
-        (format!("{off} of {count} markers are outliers, which is no noise"), hint)
+        (format!("{off} of {count} markers are outliers, more than noise explains"), hint)
     })
 }
 
 fn edges(estimate: &FieldEstimate) -> Option<Doubt> {
     let found = estimate.contradiction.as_ref()?;
     let which = match found.edges.is_empty() {
-        true => "all of its edges together".to_owned(),
+        true => "all edges together".to_owned(),
         false => {
             let edges: Vec<&str> = found.edges.iter().map(|(name, _)| name.as_str()).collect();
             edges.join(", ")
         }
     };
     let message = format!(
-        "the data contradict what is said of {which}: let go, the misfit falls as by noise in {} of cases",
+        "the data contradict the stated condition on {which}: releasing it reduces the misfit by an amount that noise alone would reach with probability {}",
         small_probability(found.probability)
     );
     Some((
         message,
-        "an edge inside of the specimen is \"unknown\", not rigid or free; else the law or the thickness is wrong",
+        "give an edge that lies inside the specimen the condition \"unknown\", not rigid or free; otherwise the law or the thickness is wrong",
     ))
 }
 
@@ -233,16 +233,16 @@ fn idle_edges(estimate: &FieldEstimate) -> Option<Doubt> {
     let names: Vec<&str> = idle.map(|edge| edge.edge.as_str()).collect();
     let which = match names[..] {
         [] => return None,
-        [_] => "carries no force and is no free edge",
-        _ => "carry no force and are no free edges",
+        [_] => "carries no force, but the data reject a free edge there",
+        _ => "carry no force, but the data reject free edges there",
     };
     let message = format!(
-        "{} {which} for the data: the specimen probably ends elsewhere, and forces are those of the mesh's width",
+        "{} {which}: the specimen probably ends elsewhere, and forces correspond to the mesh's width",
         names.join(", ")
     );
     Some((
         message,
-        "say how far the edges lie outside of the markers with --edge-gap, or give them with --outline or --mesh",
+        "state how far the edges lie outside the markers with --edge-gap, or give them with --outline or --mesh",
     ))
 }
 
@@ -252,12 +252,12 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
         let reasons: Vec<String> = verdict.reasons.iter().map(|reason| reason.words()).collect();
         let trial = verdict.trials.first();
         let trial = trial.map_or(String::new(), |trial| {
-            format!("; most would be mended by {}", trial.alternative.words())
+            format!("; best alternative: {}", trial.alternative.words())
         });
         let message = format!("{}: {}{trial}", verdict.answer.words(), reasons.join("; "));
         (
             message,
-            "no interval holds here; the report ranks what would mend it, and residuals.png and misfit.png show where it is worst",
+            "intervals are not valid here; see the report for what would improve the fit, and residuals.png and misfit.png for where it is worst",
         )
     })
 }
@@ -278,7 +278,7 @@ fn forces(estimate: &FieldEstimate) -> Vec<Doubt> {
         );
         (
             message,
-            "look at thickness, material, units, the place of the edges, and the force's sign: it is the grip's on the specimen",
+            "check thickness, material, units, the position of the edges, and the sign of the force, which is that of the grip on the specimen",
         )
     };
     wrong.map(doubt).collect()

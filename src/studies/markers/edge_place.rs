@@ -31,7 +31,7 @@ impl EdgePlace {
                     half: 0.5 * subset.size * pixel,
                     step: subset.step * pixel,
                     words: format!(
-                        "subset {} and step {} pixels by {}",
+                        "subset {} and step {} pixels according to {}",
                         subset.size, subset.step, subset.told_by
                     ),
                 }
@@ -67,9 +67,9 @@ impl EdgePlace {
     /// How a mesh's origin says it.
     pub fn origin(&self) -> String {
         match self {
-            Self::Given(gap) if *gap > 0.0 => format!(", {gap} mm farther out"),
+            Self::Given(gap) if *gap > 0.0 => format!(", widened by {gap} mm"),
             Self::Subset { half, words, .. } => {
-                format!(", {half:.4} mm farther out: half a subset ({words})")
+                format!(", widened by {half:.4} mm, half a subset ({words})")
             }
             _ => String::new(),
         }
@@ -81,19 +81,19 @@ impl EdgePlace {
             Self::Given(_) => return None,
             Self::Subset { half, step, words } => (
                 format!(
-                    "the specimen's edge is taken to lie {half:.4} mm outside of the outermost markers, half a subset: {words}"
+                    "the specimen's edge is assumed to lie {half:.4} mm outside the outermost markers, half a subset: {words}"
                 ),
                 format!(
-                    "subsets lie inside of the specimen, and less than a step was left: between free edges, intervals of forces hold an edge up to \
-                     {step:.4} mm farther out, else they are forces through the outline, and errors of stress beside free edges hold it too; say where the edge is with \
-                     --edge-gap LENGTH, --outline or --mesh"
+                    "state the edge with --edge-gap LENGTH, --outline or --mesh; subsets end inside the specimen, less than one step from its edge, so force \
+                     intervals between free edges, and stress errors beside them, include an edge up to {step:.4} mm farther out; without free edges, forces \
+                     are those through the outline"
                 ),
             ),
             Self::Unknown(_) => (
-                "the specimen's edge is not known: the outline is that of the markers, which usually end inside of it".to_owned(),
-                "forces grow with the width: between free edges their intervals hold an edge up to a spacing farther out, else they are \
-                 forces through the outline, and errors of stress beside free edges hold it too; say where the edge is with --edge-gap LENGTH \
-                 (\"0 mm\" where markers lie on it), --outline or --mesh"
+                "the specimen's edge is not known: the outline is that of the markers, which usually end inside the edge".to_owned(),
+                "state the edge with --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh; forces grow with the width, so force \
+                 intervals between free edges, and stress errors beside them, include an edge up to one marker spacing farther out; without free \
+                 edges, forces are those through the outline"
                     .to_owned(),
             ),
         };

@@ -37,7 +37,7 @@ pub fn figures(
         pictures.along(1),
         Figure::new(
             "stress.png",
-            "Largest component of the nominal stress in every cell, at the nodes the mean of the cells around.",
+            "Largest component of the nominal stress in every cell, averaged at the nodes.",
             stress,
         ),
         Figure::new(
@@ -119,15 +119,14 @@ impl Pictures<'_> {
         let misfits = misfits(frame, estimate);
         let lengths = misfits.into_iter().map(|[x, y]| x.hypot(y));
         let misfit = self.at_markers(
-            "Mean of what is left of neighbouring markers",
+            "Mean residual of neighbouring markers",
             "misfit [mm]",
             marker_squares(frame, lengths),
         );
         let caption = |of: &str| match estimate.is_explained() {
             true => format!("Standard error of the {of} from the noise of the markers."),
             false => format!(
-                "Spread of the {of} if all that is left were noise: the data are not explained, so that it is no measure of the \
-                 error."
+                "Spread of the {of} if all residuals were noise: the data are not explained, so this is no measure of the error."
             ),
         };
         [
@@ -139,13 +138,12 @@ impl Pictures<'_> {
             Figure::new("stress_error.png", caption("nominal stress"), stress),
             Figure::new(
                 "residuals.png",
-                "What is left of every marker in units of its standard deviation, shown up to 5; normal noise leaves more \
-                 than 3.7 in one of a thousand.",
+                "Residual of every marker in units of its standard deviation; normal noise exceeds 3.7 at one marker in a thousand.",
                 residuals,
             ),
             Figure::new(
                 "misfit.png",
-                "Mean of what is left of every marker and its eight neighbours: noise alone leaves a third of its size; more shows where \
+                "Mean residual of every marker and its eight neighbours: noise alone gives a third of its size; more shows where \
                  law, thickness and conditions are wrong.",
                 misfit,
             ),

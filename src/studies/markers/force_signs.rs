@@ -38,12 +38,12 @@ fn told(force: &MeasuredForce, expected: f64) -> Diagnostic {
     let (edge, axis) = (&force.edge, ["x", "y"][force.axis]);
     let (size, sign) = (force.force.abs(), if expected < 0.0 { "-" } else { "" });
     let message = format!(
-        "the force on `{edge}` is {} N along {axis}, but by the markers the grip acts on the specimen towards {}{axis}",
+        "the force on `{edge}` is {} N along {axis}, but the markers show that the grip acts on the specimen towards {}{axis}",
         force.force,
         if expected < 0.0 { "-" } else { "+" },
     );
     let hint = format!(
-        "a force is positive along the axis: write {sign}{size} N; where the sign is meant, look at the markers' axes and the name of the edge"
+        "a force is positive along the axis: write {sign}{size} N; if the sign is intended, check the markers' axes and the name of the edge"
     );
     Diagnostic::error("", message).hint(hint)
 }

@@ -60,8 +60,8 @@ impl MarkerStudy {
     pub(super) fn of_gross_errors(&self, estimate: &FieldEstimate) -> Option<String> {
         (self.conditions.robust.is_none() && estimate.robust == Robust::Tukey).then(|| {
             format!(
-                "{} of {} markers are outliers, some farther off than noise can be: markers have less say the farther they are off, by Tukey's weights \
-                 (robust = \"no\" gives them the say of all others)",
+                "{} of {} markers are outliers, some farther off than noise can explain: Tukey's weights reduce the weight of a marker the farther it is off \
+                 (robust = \"no\" gives all markers full weight)",
                 outliers(estimate),
                 used(estimate)
             )

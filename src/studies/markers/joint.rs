@@ -84,7 +84,7 @@ impl JointStudy {
         if let Some((name, _)) = self.specimens.iter().find(|(_, own)| own.coarse.is_some()) {
             return Err(Error::input(
                 format!(
-                    "the field of `{name}` is brought onto another mesh, and has no noise to be weighted by"
+                    "the field of `{name}` is transferred to another mesh, and then has no noise that could weight it"
                 ),
                 "leave out its mesh",
             ));
@@ -185,8 +185,8 @@ impl MarkerStudy {
 
 /// What intervals of a field hold whose law was found with other fields.
 pub fn given_the_law() -> Diagnostic {
-    let message = "intervals of displacements, stresses and forces hold for the parameters that were found: the uncertainty of these is not in them";
-    Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to that of forces and stresses")
+    let message = "intervals of displacements, stresses and forces apply to the estimated parameter values: the uncertainty of the parameters is not included";
+    Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to those of forces and stresses")
 }
 
 impl Conditions {

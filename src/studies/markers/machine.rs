@@ -48,7 +48,7 @@ pub fn forces(
         let heads: Vec<String> = table.columns.iter().map(|column| column.head()).collect();
         let hint = "name edge, axis and column, as in --force-column \"right x Load\", or `column` under [[force]] in the file of --study";
         let message = format!(
-            "no column of this table is named; it has {}",
+            "no column of this table is chosen as a force; it has {}",
             heads.join(", ")
         );
         return Err(table.refuse_columns(message, hint));
@@ -59,7 +59,7 @@ pub fn forces(
     for one in wanted {
         let name = one.column.trim_start_matches('-').trim();
         let column = column_named(&table, name).map_err(|fault| Error::Input(vec![fault]))?;
-        table.check_numbers([column], "every row has a force")?;
+        table.check_numbers([column], "every row needs a force")?;
         let factor = newtons(&table, column)?
             * if one.column.starts_with('-') {
                 -1.0
@@ -92,13 +92,13 @@ pub fn forces(
         }
     }
     if found.is_empty() {
-        let hint = "number the frames in both files alike, or give the time in both";
+        let hint = "number the frames identically in both files, or give the time in both";
         return Err(table.refuse_columns("no row belongs to a frame of the field", hint));
     }
     let names: Vec<String> = without.iter().map(usize::to_string).collect();
     let word = (!without.is_empty()).then(|| {
         let message = format!(
-            "{} has no force in the frames {}",
+            "{} has no force for the frames {}",
             path.display(),
             names.join(", ")
         );
@@ -116,7 +116,7 @@ fn newtons(table: &Table, column: usize) -> Result<f64, Error> {
         return Err(table.refuse_columns(format!("the column `{name}` has no unit"), &hint));
     };
     units::factor(unit, Dimension::Force).map_err(|_| {
-        let message = format!("`{unit}` of the column `{name}` is no unit of force");
+        let message = format!("`{unit}` of the column `{name}` is not a unit of force");
         columns::unknown_unit(table, unit, Dimension::Force, message)
     })
 }
@@ -124,7 +124,7 @@ fn newtons(table: &Table, column: usize) -> Result<f64, Error> {
 /// What the rows are matched by: a column `frame`, else a column `time`.
 fn matching(table: &Table) -> Result<Match, Error> {
     let values = |column: usize| -> Result<Vec<f64>, Error> {
-        table.check_numbers([column], "every row has a frame or a time")?;
+        table.check_numbers([column], "every row needs a frame or a time")?;
         Ok(table.rows.iter().map(|(row, _)| row[column]).collect())
     };
     if let Some(column) = columns::plain(table, columns::FRAME) {
@@ -132,15 +132,14 @@ fn matching(table: &Table) -> Result<Match, Error> {
         for (row, number) in values(column)?.into_iter().enumerate() {
             if rows.insert(key(number), row).is_some() {
                 let place = table.rows[row].1.clone();
-                let message = format!("the frame {number} stands twice");
+                let message = format!("frame {number} occurs twice");
                 return Err(table.refuse(place, message, "give each frame one row"));
             }
         }
         return Ok(Match::Frames(rows));
     }
     let Some(column) = columns::plain(table, columns::TIME) else {
-        let hint =
-            "name the column that numbers the frames `frame`, or the one of times `time [s]`";
+        let hint = "name the column of frame numbers `frame`, or the column of times `time [s]`";
         return Err(table.refuse_columns("there is neither a column `frame` nor `time`", hint));
     };
     let second = columns::seconds(table, column)?;
@@ -151,9 +150,9 @@ fn matching(table: &Table) -> Result<Match, Error> {
     match times.windows(2).position(|pair| pair[1] <= pair[0]) {
         None => Ok(Match::Times(times)),
         Some(row) => {
-            let hint = "give the rows in the order of their times, each time once";
+            let hint = "sort the rows by time, each time once";
             let place = table.rows[row + 1].1.clone();
-            Err(table.refuse(place, "the time does not grow here", hint))
+            Err(table.refuse(place, "the time does not increase here", hint))
         }
     }
 }
@@ -175,7 +174,7 @@ impl Match {
         };
         let Some(time) = frame.time else {
             let message = format!(
-                "rows are matched by time, but the frame {} has none",
+                "rows are matched by time, but frame {} has none",
                 frame.number
             );
             let hint = "give the field a column `time [s]`, or this table a column `frame`";
@@ -188,12 +187,12 @@ impl Match {
         if after == 0 || after == times.len() {
             let row = after.min(times.len() - 1);
             let message = format!(
-                "the frame {} was taken at {time} s, but the machine's times go from {} to {} s",
+                "frame {} was taken at {time} s, but the machine's times run from {} to {} s",
                 frame.number,
                 times[0],
                 times[times.len() - 1]
             );
-            let hint = "give times from one clock: shift one of the columns";
+            let hint = "give both times on one clock: shift one of the columns";
             return Err(table.refuse(table.rows[row].1.clone(), message, hint));
         }
         let share = (time - times[after - 1]) / (times[after] - times[after - 1]);
@@ -247,7 +246,7 @@ mod tests {
         assert_eq!(values, [(7, -8.0), (2, 5.0)]);
         assert!((found[0].1.standard_deviation - 0.08).abs() < 1e-12);
         assert!(
-            told[0].to_string().contains("no force in the frames 3"),
+            told[0].to_string().contains("no force for the frames 3"),
             "{told:?}"
         );
         let (found, told) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
@@ -273,7 +272,7 @@ mod tests {
                 BY_TIME,
                 "Weg",
                 frame,
-                "`mm` of the column `Weg` is no unit of force",
+                "`mm` of the column `Weg` is not a unit of force",
             ),
             (
                 "frame,Load\n1,2\n",
@@ -291,19 +290,19 @@ mod tests {
                 "frame,Load [N]\n1,2\n1,3\n",
                 "Load",
                 frame,
-                "machine.csv:3: the frame 1 stands twice",
+                "machine.csv:3: frame 1 occurs twice",
             ),
             (
                 "time [s],Load [N]\n1,2\n1,3\n",
                 "Load",
                 frame,
-                "machine.csv:3: the time does not grow",
+                "machine.csv:3: the time does not increase",
             ),
             (
                 "time [N],Load [N]\n1,2\n",
                 "Load",
                 frame,
-                "`N` is no unit of time",
+                "`N` is not a unit of time",
             ),
             (
                 "frame,Load [N]\n1,lost\n",
@@ -321,13 +320,13 @@ mod tests {
                 BY_TIME,
                 "Load",
                 &[(4, Some(9.0))],
-                "frame 4 was taken at 9 s, but the machine's times go from 0 to 3 s",
+                "frame 4 was taken at 9 s, but the machine's times run from 0 to 3 s",
             ),
             (
                 BY_TIME,
                 "Load",
                 &[(4, None)],
-                "matched by time, but the frame 4 has none",
+                "matched by time, but frame 4 has none",
             ),
         ] {
             let found = of(text, column, frames).unwrap_err().to_string();

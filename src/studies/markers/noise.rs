@@ -21,6 +21,6 @@ fn unevenness(estimate: &FieldEstimate) -> Option<String> {
     };
     let [x, y] = estimate.noise_range?.map(range);
     Some(format!(
-        "markers show noise that is not one for all, of ux {x} and of uy {y}: those with more of it have less say"
+        "the noise differs between markers, ux {x} and uy {y}: noisier markers get less weight"
     ))
 }

@@ -19,7 +19,7 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
         Block::paragraph(words),
     ];
     if !understood.columns.is_empty() {
-        let head = ["taken as", "column", "its unit [mm]", "by"];
+        let head = ["quantity", "column", "unit [mm]", "source of the unit"];
         let rows = understood.columns.iter().map(row);
         blocks.push(Block::table(&head, rows));
     }

@@ -25,7 +25,7 @@ impl MarkerStudy {
         loop {
             let Some(size) = study.cell_size else {
                 return Err(Error::input(
-                    "cells are to become smaller, but the mesh is given",
+                    "cells cannot be refined, because the mesh is given",
                     "leave out --refine (refine), or the mesh",
                 ));
             };
@@ -38,16 +38,16 @@ impl MarkerStudy {
             }
             let coarse = |reason: &str| {
                 let still = match asked {
-                    true => "the data are still not explained on these cells, and would be mended by smaller ones".to_owned(),
+                    true => "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned(),
                     false => format!(
-                        "on {:.0} % of the area the mesh's own error is still the larger part of the error of stress",
+                        "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error",
                         100.0 * share
                     ),
                 };
                 Diagnostic::warning("", format!("{still}: {reason}"))
             };
             if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
-                let reason = format!("smaller cells than {size:.4} mm are too many");
+                let reason = format!("cells smaller than {size:.4} mm are too many");
                 study.warnings.push(coarse(&reason));
                 return Ok(study);
             }
@@ -82,12 +82,12 @@ pub(super) fn told(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<S
     (share > COARSE).then(|| {
         let remedy = match field.cell_size {
             Some(size) => format!(
-                "smaller cells than {size:.4} mm make intervals narrower there (--refine, or --cell-size)"
+                "cells smaller than {size:.4} mm make intervals narrower there (--refine, or --cell-size)"
             ),
             None => "a finer mesh makes intervals narrower there".to_owned(),
         };
         format!(
-            "In frame {number} the mesh's own error is the larger part of the error of stress on {:.0} % of the area: {remedy}.",
+            "In frame {number}, the mesh's discretisation error is the larger part of the stress error on {:.0} % of the area: {remedy}.",
             100.0 * share
         )
     })

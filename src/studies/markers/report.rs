@@ -20,7 +20,7 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     );
     text += match field.coarse {
         None => {
-            "frame  markers  outliers  noise [mm]  left [mm]  parameters  largest standard error [mm]\n"
+            "frame  markers  outliers  noise [mm]  residual [mm]  parameters  largest standard error [mm]\n"
         }
         Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
     };
@@ -73,7 +73,7 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         }
         text += &match field.coarse {
             None => format!(
-                "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
+                "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>13.4}  {:>10.1}  {:>27.4}\n",
                 frame.number,
                 used(estimate),
                 outliers(estimate),
@@ -144,8 +144,8 @@ pub(super) fn largest_error(estimate: &FieldEstimate) -> f64 {
 fn condition(condition: &EdgeCondition) -> String {
     match condition {
         EdgeCondition::Free => "free".into(),
-        EdgeCondition::Rigid => "rigid, moved by unknown amounts".into(),
-        EdgeCondition::Unknown => "moved in an unknown smooth way".into(),
+        EdgeCondition::Rigid => "rigid, unknown motion".into(),
+        EdgeCondition::Unknown => "unknown smooth motion".into(),
         EdgeCondition::Known([x, y]) => {
             let along = |axis: &str, value: &Option<f64>| match value {
                 Some(value) => format!("u{axis} = {value} mm"),
@@ -196,10 +196,10 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks.extend(field.unknown_gap.map(|gap| {
         let free = estimates.iter().any(|estimate| estimate.growth > 0.0);
         let then = match free {
-            true => format!("intervals of forces and moduli, and errors of displacement and stress, hold that it may lie up to {gap:.4} mm farther out than the mesh"),
-            false => "no edge is free: forces and their intervals are those through the outline of the mesh".to_owned(),
+            true => format!("intervals of forces and moduli, and errors of displacement and stress, include an edge up to {gap:.4} mm farther out than the mesh"),
+            false => "no edge is free, so forces and their intervals are those through the outline of the mesh".to_owned(),
         };
-        Block::paragraph(format!("The specimen's edge is not known but for the markers: {then}."))
+        Block::paragraph(format!("The specimen's edge is known only from the markers: {then}."))
     }));
     if field.regressed.is_some() {
         blocks.push(Block::heading("Parameters of the law"));
@@ -212,14 +212,14 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks
 }
 
-const EXPLANATION: &str = "Noise is the standard deviation of each component of a marker's displacement; left is the root \
-    mean square of measured less corrected displacements. Standard errors and intervals (95 %) come from the noise \
-    and from the mesh's own error, which the same equations on cells half as large tell (on meshes of more than 25,000 cells it \
-    is left out): they hold where the verdict is that the data are explained. An outlier is a \
-    marker whose residual normal noise would leave in less than one of a thousand.";
+const EXPLANATION: &str = "Noise is the standard deviation of each component of a marker's displacement; residual is the root \
+    mean square of measured minus corrected displacements. Standard errors and intervals (95 %) include the noise \
+    and the discretisation error of the mesh, estimated from the same equations on cells half as large (left out on meshes of more \
+    than 25,000 cells); they are valid only where the verdict is that the data are explained. An outlier is a \
+    marker whose residual normal noise would exceed with a probability below 0.001.";
 
-const TRANSFERRED: &str = "The given field is taken to be free of noise: edges that are not free keep its displacements, and \
-    the inside and the free edges are brought into equilibrium on the new mesh. The correction is the given field less the \
+const TRANSFERRED: &str = "The given field is assumed to be free of noise: edges that are not free keep its displacements, and \
+    the interior and the free edges are brought into equilibrium on the new mesh. The correction is the given field minus the \
     corrected one at the given nodes.";
 
 fn transferred_frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
@@ -248,10 +248,10 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
         "outliers",
         "noise [mm]",
         "noise is",
-        "left [mm]",
-        "parameters determined",
+        "residual [mm]",
+        "effective parameters",
         "largest standard error [mm]",
-        "correlation of neighbours (white noise)",
+        "residual correlation of neighbours (expected for white noise)",
         "steps",
     ];
     let frames = field.series.frames.iter().zip(estimates);
@@ -328,15 +328,15 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
         "unit",
         "value",
         "standard error",
-        "95 %",
+        "95 % interval",
     ];
     Block::table(&head, rows)
 }
 
 fn edges(field: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
     let known = |known: &EdgeCondition| match (known, &field.coarse) {
-        (EdgeCondition::Unknown, Some(_)) => "as the given field".to_owned(),
-        (EdgeCondition::Rigid, Some(_)) => "rigid, as near as can be to the given field".to_owned(),
+        (EdgeCondition::Unknown, Some(_)) => "displacements of the given field".to_owned(),
+        (EdgeCondition::Rigid, Some(_)) => "rigid, closest to the given field".to_owned(),
         _ => condition(known),
     };
     let row = |outcome: &EdgeOutcome| {
@@ -356,7 +356,7 @@ fn edges(field: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
         "edge",
         "length [mm]",
         "condition",
-        "probability of the misfit if it is free",
+        "probability of so large a misfit if the edge is free",
     ];
     if field.coarse.is_some() {
         return vec![Block::table(
@@ -381,7 +381,7 @@ fn edges(field: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
             "edge",
             "axis",
             "weight λ [1/mm²]",
-            "parameters beyond a straight line",
+            "effective parameters beyond a straight line",
         ];
         blocks.push(Block::table(&head, smooth));
     }

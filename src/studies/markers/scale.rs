@@ -44,14 +44,14 @@ pub fn paragraph(estimate: &FieldEstimate, deviation: f64) -> Option<String> {
     let changed: Vec<String> = changes(estimate).iter().map(percent).collect();
     let held = match deviation > 0.0 {
         true => format!(
-            "intervals hold a standard deviation of the scale of {:.3} %",
+            "intervals include a standard deviation of the scale of {:.3} %",
             100.0 * deviation
         ),
-        false => "no interval holds that, unless --scale-error states it".to_owned(),
+        false => "no interval includes this unless it is stated with --scale-error".to_owned(),
     };
     (!changed.is_empty()).then(|| {
         format!(
-            "A picture of the last frame whose scale is off by {} %, as by a specimen 1 mm nearer to a camera 1 m away, would change the force on {}: \
+            "A scale error of {} % in the picture of the last frame, as from a specimen 1 mm nearer to a camera 1 m away, would change the force on {}: \
              {held}.",
             100.0 * TOLD,
             changed.join(", on ")
@@ -72,7 +72,7 @@ pub fn line(frame: usize, estimate: &FieldEstimate, deviation: f64) -> Option<St
         .max_by(|a, b| a.change.total_cmp(&b.change));
     let worst = worst.filter(|_| deviation == 0.0 && estimate.is_explained())?;
     Some(format!(
-        "a picture of frame {frame} whose scale is off by {} % would change the force on {}, more than its interval: state it with --scale-error\n",
+        "a scale error of {} % in the picture of frame {frame} would change the force on {}, more than its interval allows: state it with --scale-error\n",
         100.0 * TOLD,
         percent(worst)
     ))

@@ -50,7 +50,11 @@ pub fn read(section: &Section) -> SpecimenFile {
         cell_size: length("cell_size"),
     };
     if found.mesh.is_some() && found.outline.is_some() {
-        section.fault("outline", "stands beside a mesh", "leave out one of them");
+        section.fault(
+            "outline",
+            "must not be given together with a mesh",
+            "leave out one of them",
+        );
     }
     section.unknown_keys();
     found

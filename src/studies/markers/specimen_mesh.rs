@@ -51,7 +51,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
         && (field.mesh.is_some() || !matches!(request.mesh, MeshSource::Data))
     {
         return Err(Error::input(
-            "an edge gap is given, but the specimen's edge is not made of markers",
+            "an edge gap is given, but the specimen's edge is not made from markers",
             "leave out --edge-gap (edge_gap), or the mesh and the outline",
         ));
     }
@@ -61,7 +61,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
         request,
         need_of_markers(markers as f64, frames),
         &format!("a field of {markers} markers"),
-        "take every other marker, or fewer frames",
+        "use every other marker, or fewer frames",
     )?;
     let whole = |mesh: &Mesh, place: &str| {
         let need = need(mesh.cell_count() as f64, mesh.nodes.len() as f64, frames);
@@ -69,7 +69,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
             request,
             need,
             &format!("the mesh {place}"),
-            "take a coarser mesh or fewer frames",
+            "use a coarser mesh or fewer frames",
         )
     };
     match (&request.mesh, &field.mesh) {
@@ -114,12 +114,12 @@ fn of_field(mesh: &Mesh) -> SpecimenMesh {
     let warnings = faults.map(|fault| Diagnostic {
         severity: Severity::Warning,
         message: format!("the field's own mesh: {}", fault.message),
-        hint: Some("correct it on a sound mesh: --mesh or --outline".into()),
+        hint: Some("correct the field on a valid mesh: --mesh or --outline".into()),
         ..fault
     });
     SpecimenMesh {
         warnings: warnings.collect(),
-        ..SpecimenMesh::known(mesh.clone(), "that of the field".into())
+        ..SpecimenMesh::known(mesh.clone(), "taken from the field".into())
     }
 }
 
@@ -146,8 +146,8 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
                 }
             };
             warn(
-                format!("gaps among the markers taken for holes: {count}{filled}"),
-                "--holes closed if markers were only lost there; --outline gives their true edges",
+                format!("gaps among the markers treated as holes: {count}{filled}"),
+                "use --holes closed if markers were only lost there, or give the true edges with --outline",
             );
         }
     }
@@ -209,7 +209,8 @@ fn made(
         .cell_size
         .unwrap_or(spacing.min(across / LEAST_ACROSS).max(smallest(MOST_CELLS)));
     if size > across / 2.0 {
-        let message = format!("cells of {size} mm are too large for a specimen of {across:.4} mm");
+        let message =
+            format!("cells of {size} mm are too large for a specimen {across:.4} mm wide");
         return Err(Error::input(message, "choose a smaller --cell-size"));
     }
     let triangles = outline.area() / (size * size * cell_area);

@@ -52,13 +52,17 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         text += &format!("frame {}: {}\n", frame.number, reasons(&found.verdict));
         text += &found.verdict.worst.map_or(String::new(), |worst| {
             let ([x, y], [ux, uy]) = (worst.place, worst.misfit);
-            format!("worst near ({x:.4}, {y:.4}) mm: markers there lie ({ux:.5}, {uy:.5}) mm off\n")
+            format!(
+                "largest misfit near ({x:.4}, {y:.4}) mm: mean residual ({ux:.5}, {uy:.5}) mm\n"
+            )
         });
         if found.verdict.trials.is_empty() {
             text += match found.holds_mesh_error {
-                true => "no edge, force, stiffness, law or finer mesh that was tried mends it\n",
+                true => {
+                    "no alternative tried (edges, forces, stiffness, law, finer mesh) improves the fit\n"
+                }
                 false => {
-                    "no edge, force, stiffness or law that was tried mends it; a finer mesh could not be tried: take smaller cells\n"
+                    "no alternative tried (edges, forces, stiffness, law) improves the fit; a finer mesh could not be tried: use smaller cells\n"
                 }
             };
         }
@@ -93,11 +97,11 @@ fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
 /// What is said where the cells are why data are not explained.
 fn finer_mesh(field: &MarkerStudy, verdict: &Verdict) -> Option<String> {
     let remedy = match field.cell_size {
-        Some(size) => format!("take smaller cells than {size:.4} mm, by --refine or --cell-size"),
-        None => "take a finer one".to_owned(),
+        Some(size) => format!("use cells smaller than {size:.4} mm (--refine or --cell-size)"),
+        None => "use a finer one".to_owned(),
     };
     verdict.asks_for_finer_mesh().then(|| {
-        format!("the mesh is too coarse for data as precise as these, which says nothing against law and conditions: {remedy}")
+        format!("the mesh is too coarse for data of this precision, which is no evidence against the law and the conditions: {remedy}")
     })
 }
 
@@ -113,7 +117,7 @@ fn reasons(verdict: &Verdict) -> String {
 fn words(trial: &Trial) -> String {
     match trial.left.is_finite() {
         true => format!(
-            "{}: {:.5} mm would be left",
+            "{}: the residual would be {:.5} mm",
             trial.alternative.words(),
             trial.left
         ),
@@ -121,12 +125,11 @@ fn words(trial: &Trial) -> String {
     }
 }
 
-const EXPLANATION: &str = "Explained: what is left of the markers is white noise. Explained with correlated noise: it correlates \
+const EXPLANATION: &str = "Explained: the residuals of the markers are white noise. Explained with correlated noise: they correlate \
     between neighbours as noise of image correlation does, with the length at which the correlation has fallen to 1/e; the \
-    intervals hold that. Not explained: other equations take more from the misfit than noise would let them, what is left \
-    correlates too far to be told from a misfit, it correlates between neighbours and is alike from frame to frame, or a measured \
-    force is contradicted. Standard errors and intervals mean nothing \
-    then, and are not given.";
+    intervals include that. Not explained: an alternative model reduces the misfit by more than noise could, the residuals \
+    correlate too far to be distinguished from a misfit, they correlate between neighbours and are similar from frame to frame, or a \
+    measured force is contradicted. Standard errors and intervals are then meaningless and are not given.";
 
 /// The verdict on every frame, and what would mend the last one that is not explained.
 pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
@@ -149,9 +152,9 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         "frame",
         "verdict",
         "correlation length [mm]",
-        "share that correlates",
-        "independent markers",
-        "why",
+        "correlated share of the variance",
+        "equivalent independent markers",
+        "reason",
     ];
     let mut blocks = vec![
         Block::heading("Verdict"),
@@ -163,8 +166,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     }
     if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
         blocks.push(Block::paragraph(format!(
-            "What would mend frame {}, each tried in one linearised step beside the equations, the best first; the probability is \
-             that noise alone would make the misfit fall so much.",
+            "What would improve the fit of frame {}, best first, each computed in one linearised step; the probability is that of \
+             noise alone reducing the misfit by as much.",
             frame.number
         )));
         let rows = found.verdict.trials.iter().map(|trial| {
@@ -179,7 +182,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
             ]
         });
         blocks.push(Block::table(
-            &["freedom", "would be left [mm]", "probability"],
+            &["alternative", "residual [mm]", "probability"],
             rows,
         ));
         blocks.extend(finer_mesh(field, &found.verdict).map(Block::paragraph));

@@ -80,7 +80,7 @@ impl MovingPlate {
     ) -> Result<CorrectedInstants, Error> {
         if !self.is_corrected {
             return Ok(CorrectedInstants::none(
-                "The study says that the motion is not corrected.".into(),
+                "The study disables the correction of the motion.".into(),
             ));
         }
         let mesh = &springs.mesh;
@@ -119,9 +119,9 @@ impl MovingPlate {
             at_instants.map_err(|fault| error("the force of the right grip".into(), fault))?;
         Ok(CorrectedInstants {
             note: format!(
-                "The corrector brings the springs' motion to the nearest one that satisfies the equation of motion of the \
-                 sheet at every three consecutive instants, {within} steps in an interval: {} Newton steps, {} \
-                 factorisations. The start being known, its result does not depend on the springs.",
+                "The corrector moves the springs' motion to the nearest motion that satisfies the sheet's equation of motion at every three \
+                 consecutive instants, with {within} steps per interval: {} Newton steps, {} factorisations. Because the start is known, the result \
+                 does not depend on the springs.",
                 found.iterations, found.factorisations
             ),
             end: fault.map(|fault| error(format!("time {} s", number(reached)), fault)),

@@ -162,15 +162,15 @@ impl OwnError {
     pub fn describe(&self) -> String {
         let cells = self.cells.iter().map(|[x, y]| format!("{x} × {y}"));
         let by_steps = self.by_steps.map_or_else(String::new, |share| {
-            format!(" ({} % by the length of the steps)", percent(share))
+            format!(" (of which {} % from the time steps)", percent(share))
         });
         let force = self.force.map_or_else(String::new, |force| {
-            format!(", of the right grip's force {} %", percent(force))
+            format!(", {} % of the right grip's force", percent(force))
         });
         format!(
-            "The finite elements' own error over all instants, estimated by {} cells{}: of the displacement {} %{by_steps}{force}.",
+            "The finite elements' own error over all instants, estimated from {} cells{}: {} % of the displacement{by_steps}{force}.",
             cells.collect::<Vec<_>>().join(" and "),
-            self.by_steps.map_or("", |_| " and by steps half as long"),
+            self.by_steps.map_or("", |_| " and from steps half as long"),
             percent(self.displacement),
         )
     }

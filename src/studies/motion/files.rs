@@ -85,7 +85,7 @@ pub fn figures(
         ),
         Figure::new(
             "motion_energy.png",
-            "Where the energy is: springs above, finite elements below.",
+            "Energies over time: springs above, finite elements below.",
             pair(energy(springs), energy(elements)),
         ),
         Figure::new(

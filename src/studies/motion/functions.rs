@@ -59,7 +59,7 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
         Grip::Sine => {
             let amplitude = stretch("amplitude");
             if start - amplitude.abs() < LEAST {
-                let message = "presses the plate below half of its length";
+                let message = "compresses the plate to less than half of its length";
                 section.fault(
                     "amplitude",
                     message,

@@ -36,8 +36,7 @@ pub fn outcome(
             Block::Paragraph(corrected.note.clone()),
             Block::Paragraph(compared(&deviations, own_error)),
             Block::Paragraph(
-                "Deviation at some instants, over the largest displacement field of the finite elements, and the force \
-                 of the right grip:"
+                "Deviation at some instants, relative to the largest displacement field of the finite elements, and force of the right grip:"
                     .into(),
             ),
             in_time(models, corrected, &deviations),
@@ -125,9 +124,9 @@ fn introduction(plate: &MovingPlate) -> String {
     let waves = plate.bar_waves();
     let (element, _) = plate.element;
     format!(
-        "A plate of {length} × {width} × {} mm with a density of {} kg/m³ between grips, by springs with dashpots and by \
-         finite elements ({}) with the same lumped mass. A bar of its length, clamped at {ends}, has its first \
-         longitudinal vibration √(E₀/ρ)/({waves} L) at {} Hz.",
+        "A plate of {length} × {width} × {} mm with a density of {} kg/m³ between grips, modelled by springs with dashpots and by finite elements \
+         ({}) with the same lumped mass. A bar of this length, clamped at {ends}, has its first longitudinal natural frequency √(E₀/ρ)/({waves} L) \
+         at {} Hz.",
         plate.problem.thickness,
         number(1e12 * plate.density),
         element.name(),
@@ -173,7 +172,7 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
 fn compared([of_springs, of_corrected]: &[Deviations; 2], own_error: Option<&OwnError>) -> String {
     let told = |name: &str, own: &Deviations| {
         let force = own.force.map_or_else(String::new, |force| {
-            format!(", and its force of the right grip by {} %", percent(force))
+            format!(", and the force of the right grip by {} %", percent(force))
         });
         format!(
             "The displacement of the {name} deviates from the finite elements' by {} % over all instants{force}. ",
@@ -185,7 +184,10 @@ fn compared([of_springs, of_corrected]: &[Deviations; 2], own_error: Option<&Own
         text += &told("corrected motion", of_corrected);
     }
     text + &own_error.map_or_else(
-        || "The finite elements' own error is not known: larger cells have no motion.".to_owned(),
+        || {
+            "The finite elements' own error is not known: there is no solution on larger cells."
+                .to_owned()
+        },
         OwnError::describe,
     )
 }

@@ -124,13 +124,13 @@ fn read_material(section: &Section, folder: &Path) -> Material {
     };
     if !LIKELY_DENSITY.contains(&density) && density.is_finite() {
         let message = format!(
-            "{} kg/m³ is no density of tissue, gels or rubbers, which is 100 to 10000 kg/m³",
+            "{} kg/m³ is outside the densities of tissue, gels and rubbers, 100 to 10000 kg/m³",
             number(1e12 * density)
         );
         section.warning(
             "density",
             &message,
-            "look at the unit: water has \"1000 kg/m^3\" or \"1 g/cm^3\"",
+            "check the unit: water has \"1000 kg/m^3\" or \"1 g/cm^3\"",
         );
     }
     let viscosity = match (section.has("viscosity"), &card) {
@@ -143,9 +143,9 @@ fn read_material(section: &Section, folder: &Path) -> Material {
             .as_ref()
             .is_some_and(|card| card.bulk_modulus().is_some())
     {
-        let hint = "leave out the viscosity, or take a card that keeps its volume";
+        let hint = "leave out the viscosity, or take an incompressible card";
         let message =
-            "the viscous stress is that of a sheet that keeps its volume, and this card's does not";
+            "the viscous stress is that of an incompressible sheet, and this card is compressible";
         section.fault("card", message, hint);
     }
     if card
@@ -248,8 +248,8 @@ fn read_probes(root: &Section, problem: &ClampedPlate) -> Vec<Probe> {
     tables(root, "probe", |section| {
         let probe = read_probe(section, problem);
         if names.contains(&probe.name) {
-            let hint = "columns of tables are called by it: give each probe a name of its own";
-            section.fault("name", "is that of another probe", hint);
+            let hint = "table columns carry this name: give each probe a name of its own";
+            section.fault("name", "is the name of another probe", hint);
         }
         names.push(probe.name.clone());
         probe

@@ -14,7 +14,7 @@ pub fn blocks(plate: &MovingPlate) -> Vec<Block> {
     vec![
         Block::Heading(2, "Plate, supports and loads".into()),
         Block::table(
-            &["what", "as the study says"],
+            &["what", "as in the study"],
             sentences(plate).into_iter().map(row),
         ),
     ]
@@ -69,9 +69,9 @@ fn viscosity(plate: &MovingPlate) -> String {
     let shear = 1e6 * material.shear_viscosity;
     let terms = material.relaxation.iter().map(|term| {
         let (share, time) = (100.0 * term.share, term.time);
-        format!("{share:.4} % of a sudden stress relaxes with τ = {time} s")
+        format!("{share:.4} % of the instantaneous stress relaxes with τ = {time} s")
     });
-    let mut all = vec![format!("η = {shear:.6} Pa·s in parallel to the law")];
+    let mut all = vec![format!("η = {shear:.6} Pa·s in parallel with the law")];
     all.extend(terms);
     all.join("; ")
 }
@@ -88,7 +88,7 @@ fn right_side(plate: &MovingPlate) -> String {
             amplitude,
             frequency,
         } => format!(
-            "swings about {:.4} % stretch by {:.4} % with {frequency} Hz",
+            "oscillating about {:.4} % stretch with an amplitude of {:.4} % at {frequency} Hz",
             100.0 * mean,
             100.0 * amplitude
         ),
@@ -97,13 +97,13 @@ fn right_side(plate: &MovingPlate) -> String {
             let points =
                 points.map(|[time, stretch]| format!("{:.4} % at {time} s", 100.0 * stretch));
             format!(
-                "moved straight between {}",
+                "moved linearly between {}",
                 points.collect::<Vec<_>>().join(", ")
             )
         }
     };
     match plate.release {
-        Some(time) => format!("in a rigid grip, {motion}; let go at {time} s"),
+        Some(time) => format!("in a rigid grip, {motion}; released at {time} s"),
         None => format!("in a rigid grip, {motion}"),
     }
 }

@@ -14,10 +14,10 @@ fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMat
     let shortest = shortest.fold(f64::INFINITY, f64::min);
     if time.interval > SHORT * shortest * (1.0 + 1e-9) {
         let message = format!(
-            "stresses in files and pictures are those of a motion that is even between two instants, and the shortest relaxation time is {shortest} s"
+            "stresses in files and pictures assume a uniform motion between two instants, and the shortest relaxation time is {shortest} s"
         );
         let hint = format!(
-            "forces hold the whole motion; for stresses take an interval of {} s or less",
+            "forces account for every time step; for stresses take an interval of {} s or less",
             SHORT * shortest
         );
         section.warning("interval", &message, &hint);
@@ -34,7 +34,7 @@ fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
     };
     let told = |key: &str, length: f64| {
         let message = format!(
-            "is {:.3} of the {period} s in which the grip swings once",
+            "is {:.3} of the grip's period of {period} s",
             length / period
         );
         let hint = format!("take a {key} of {} s or less", period / FEW);
@@ -55,7 +55,7 @@ fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
         let (message, hint) = told("interval", time.interval);
         section.warning(
             "interval",
-            &format!("{message}: figures and pictures show little of it"),
+            &format!("{message}: figures and pictures resolve it poorly"),
             &hint,
         );
     }
@@ -68,7 +68,7 @@ fn check_idle(root: &Section, (time, grip): (&TimeSettings, &GripMotion), forces
     let kinks = grip.stretch.kinks().into_iter().take(1);
     let begins = kinks.chain(grip.release).reduce(f64::min);
     if begins.is_some_and(late) {
-        let message = "does not begin in the time that is computed: nothing moves";
+        let message = "does not begin within the computed time: nothing moves";
         root.section("grip").warning("motion", message, hint);
     }
     let forces = forces.iter().filter(|force| match force.time {
@@ -76,8 +76,7 @@ fn check_idle(root: &Section, (time, grip): (&TimeSettings, &GripMotion), forces
         _ => false,
     });
     for PointForce { at: [x, y], .. } in forces {
-        let message =
-            format!("the force at ({x}, {y}) mm does not begin in the time that is computed");
+        let message = format!("the force at ({x}, {y}) mm does not begin within the computed time");
         root.section("time").warning("duration", &message, hint);
     }
 }
@@ -108,8 +107,9 @@ fn check_covered(
     if let Some([_, longest]) = covered.times
         && time.duration > longest * (1.0 + 1e-9)
     {
-        let message = format!("the relaxation was measured over {longest} s, and this is longer");
-        let hint = "what relaxes later than the tests lasted is not in the card: take it from a longer test";
+        let message =
+            format!("the relaxation was measured over {longest} s, and the motion lasts longer");
+        let hint = "relaxation that is slower than the tests is not in the card: find it from a longer test";
         in_time.warning("duration", &message, hint);
     }
     let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, rates(&grip.stretch))
@@ -122,8 +122,8 @@ fn check_covered(
         (false, false) => return,
     };
     let message = format!(
-        "the grip moves at {outside:.4} 1/s, and the relaxation was measured at {low:.4} to {high:.4} 1/s"
+        "the stretch rate of the grip is {outside:.4} 1/s, and the relaxation was measured at {low:.4} to {high:.4} 1/s"
     );
-    let hint = "the material may be stiffer at other rates than the card knows: take it from tests at this one";
+    let hint = "the material may be stiffer at rates that were not tested than the card states: find it from tests at this rate";
     root.section("grip").warning("motion", &message, hint);
 }

@@ -24,10 +24,10 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
     let caption = "Deviation from the finite elements over stretch.";
     all.push(Figure::new("errors.png", caption, errors(results)));
     let caption = match results.remembers {
-        true => "Grip force over stretch, and how far it is from the finite elements'.",
+        true => "Grip force over stretch, and its deviation from the finite elements.",
         false => {
-            "Grip force over stretch, and how far it is from the finite elements'; between the stretches of the study the curves \
-             are cubics that keep their shape."
+            "Grip force over stretch, and its deviation from the finite elements; between the stretches of the study the curves are shape-preserving \
+             cubics."
         }
     };
     all.push(Figure::new("force.png", caption, force(results)));

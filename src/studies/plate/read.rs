@@ -149,8 +149,8 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     if study.is_its_own_reference() {
         root.section("finite_element").warning(
             "cells",
-            "with these the finite elements are the corrected field's own equations on the same nodes and cannot judge it",
-            "leave `cells` and `grading` out, which suits the lattice, or take finer ones",
+            "with these settings the finite elements solve the corrected field's own equations on the same nodes and cannot judge it",
+            "leave out `cells` and `grading`, which then suit the lattice, or take finer ones",
         );
     }
     Some(study)
@@ -159,7 +159,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
 /// What cannot follow a material that softens.
 fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Correction>) {
     if lattice.area_term {
-        let message = "the areas of the lattice do not soften with the card's material";
+        let message = "the area term of the lattice does not soften with the card's material";
         let hint = "leave out `area_term`: the springs soften";
         root.section("mass_spring")
             .fault("area_term", message, hint);
@@ -240,7 +240,7 @@ fn read_reference_cells(section: &Section<'_>, automatic: impl Fn() -> [usize; 2
         let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
         section.fault(
             KEY,
-            "must be multiples of 4: the error is estimated on meshes with half and a quarter as many",
+            "must be multiples of 4: the error is estimated from meshes with half and a quarter as many cells",
             &format!("the next are [{x}, {y}]"),
         );
     }
@@ -288,7 +288,7 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
     }
     if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
         let hint = "at rest there is nothing to solve; leave it out";
-        section.fault(KEY, "must not hold zero", hint);
+        section.fault(KEY, "must not contain zero", hint);
         return stretches;
     }
     let are_like_lambda = stretches
@@ -302,24 +302,24 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
             1.0 + stretches[0]
         );
         let lambda = 100.0 * (stretches[0] - 1.0);
-        section.warning(KEY, &message, &format!("if these are λ, write what is above 1, such as \"{lambda:.0} %\"; if not, write \"{percent:.0} %\""));
+        section.warning(KEY, &message, &format!("if these are λ, write λ − 1, such as \"{lambda:.0} %\"; if not, write \"{percent:.0} %\""));
     }
     let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
     let remembers = card.is_some_and(|card| card.law.softening().is_some());
     let repeated = |pair: &[f64]| pair[1] == pair[0];
     if !one_sign {
         let hint = "every path begins at rest: write one study for the tension and one for the compression";
-        section.fault(KEY, "must have one sign", hint);
+        section.fault(KEY, "must all have the same sign", hint);
     } else if remembers && stretches.windows(2).any(repeated) {
         let hint =
-            "a material that softens may be unloaded and loaded again, but not stay where it is";
+            "a material that softens may be unloaded and loaded again: leave out repetitions";
         section.fault(KEY, "must differ from one to the next", hint);
     } else if !remembers
         && stretches
             .windows(2)
             .any(|pair| pair[1].abs() <= pair[0].abs())
     {
-        let hint = "sort them by their size and leave out repetitions; only a card with `[softening]` remembers how it was loaded";
+        let hint = "sort them by size and leave out repetitions; only a card with `[softening]` depends on the loading history";
         section.fault(KEY, "must go from small to large", hint);
     }
     if let Some(card) = card {
@@ -336,7 +336,7 @@ fn check_pairs(plate: &Section, scheme: DifferenceScheme, (size, cells): ([f64; 
         let [x, y] = even_cells(size, cells);
         plate.fault(
             "cells",
-            &format!("the scheme \"{name}\" takes cells two by two, and {odd} is odd"),
+            &format!("the scheme \"{name}\" needs even numbers of cells, and {odd} is odd"),
             &format!("take [{x}, {y}], or scheme = \"gauss\" under [corrector]"),
         );
     }

@@ -130,11 +130,10 @@ fn deviations(study: &Study, results: &Results) -> Vec<Block> {
         Block::heading("Deviation from the finite elements"),
         Block::table(&head, results.comparison.iter().flat_map(rows).flatten()),
         Block::Paragraph(format!(
-            "Displacement and departure are relative L2 norms over the plate, weighted by area; the departure \
-             has the affine stretch subtracted from both fields and is the strict measure. The nominal stress \
-             is a relative L2 norm over the cells more than {:.0} mm from the corners, where it is singular; \
-             for the mass-spring model it is the material's stress at the gradient of its field. \
-             Correction is 1 − e(corrected)/e(mass-spring) of the departure.",
+            "Displacement and departure are relative L2 norms over the plate, weighted by area; the departure has the affine stretch subtracted from \
+             both fields and is the strict measure. The nominal stress is a relative L2 norm over the cells more than {:.0} mm from the corners, \
+             where it is singular; for the mass-spring model it is the material's stress at the gradient of its field. Correction is 1 − \
+             e(corrected)/e(mass-spring) for the departure.",
             study.problem.size[1] / 5.0
         )),
     ]
@@ -180,9 +179,9 @@ fn work(results: &Results) -> Vec<Block> {
     let mut blocks = work_blocks("stretch [%]", &MODELS, rows).to_vec();
     blocks.push(
         Block::Paragraph(
-            "The material softens by its largest load, at every point for itself: the stretches follow one another as the study lists \
-             them, and what a point remembers changes at these stretches alone. The work of the grips is stored or dissipated; \
-             what is dissipated grows with the largest load and does not come back. The strain energies above are both together."
+            "The material softens at every point according to the largest load there so far (Mullins effect). The stretches follow one another as \
+             the study lists them, and the largest load is updated at these stretches only. The work of the grips is stored or dissipated; the \
+             dissipated part grows with the largest load and is not recovered. The strain energies above are the sum of both."
                 .to_owned(),
         ),
     );

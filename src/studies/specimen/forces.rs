@@ -42,9 +42,9 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
             }
         }
     }
-    let text = "Forces of the supports on the specimen, with the signs of the axes, and their moments about the middle of \
-                the deformed group, counter-clockwise; the force that a grip is given counts as one of its \
-                support; what rounding leaves of nothing is 0. Displacements, and the middle, are means over the length of the group's edges at rest.";
+    let text = "Forces of the supports on the specimen, positive along the axes, and their moments about the middle of the deformed group, positive \
+                counter-clockwise. A force prescribed on a grip counts as a support force. Values that are zero except for rounding are shown as 0. \
+                Displacements and the middle are means over the length of the group's edges at rest.";
     vec![
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
@@ -72,7 +72,7 @@ fn balance(models: &Models) -> String {
         Some(format!("{} {balance:.1e}", model.name))
     });
     format!(
-        "Balance: supports and loads together leave, at the worst load factor and over the largest force or moment: {}.",
+        "Balance: the unbalanced part of supports and loads, at the worst load factor and relative to the largest force or moment: {}.",
         told.collect::<Vec<_>>().join(", ")
     )
 }

@@ -227,10 +227,9 @@ fn introduction(models: &Models) -> String {
     let lattice = &models.on_lattice.springs.mesh;
     let measured = &models.reference.measured;
     format!(
-        "Deviations from the finite elements ({}) at {} nodes of the lattice ({}). Displacements in relative L2, weighted \
-         by area; the own error of the finite elements' displacement, which judges them, is that at these nodes; that of the field is the larger of it and that at all of \
-         their own nodes. What is measured \
-         is {}, its {} axis being that of the larger component or of the given load.",
+        "Deviations from the finite elements ({}) at {} nodes of the lattice ({}). Displacements are relative L2 norms, weighted by area. They are \
+         judged by the own error of the finite elements' displacement at these nodes; the own error of the field is the larger of this error and the \
+         error at all nodes of the finite elements. The measured quantity is {}; its {} axis is that of the larger component or of the given load.",
         models.reference.describe(),
         lattice.nodes.len(),
         lattice.describe(),
@@ -259,13 +258,13 @@ fn climbs(specimen: &Specimen, models: &Models) -> Option<String> {
     let error = match most.is_nan() {
         true => String::new(),
         false => format!(
-            ". These tell its discretisation error: {} mm (root mean square over the nodes) at load factor {factor}, where it is largest",
+            ". They give an estimate of its discretisation error: {} mm (root mean square over the nodes) at load factor {factor}, where it is largest",
             number(most)
         ),
     };
     Some(format!(
-        "The corrected field has climbed over meshes of {over}{last} nodes from springs on the coarsest, and needs the lattice's own \
-         springs for nothing but the comparison{error}. "
+        "The corrected field climbs from springs on the coarsest of the meshes of {over}{last} nodes; the lattice's own springs serve only the \
+         comparison{error}. "
     ))
 }
 
@@ -281,15 +280,14 @@ fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
     let mut text = climbs(specimen, models).unwrap_or_default();
     if !steps.is_empty() {
         text += &format!(
-            "From the springs' field itself the corrector found no way at the load factors {steps}; it began at an \
-             equilibrium that Newton's method reached from rest in load steps. "
+            "At the load factors {steps} the corrector did not converge from the springs' field; it started from an equilibrium that Newton's method \
+             reached from rest in load steps. "
         );
     }
     if !alone.is_empty() {
         text += &format!(
-            "The springs have no equilibrium at the load factors {alone}. There the corrected field comes from the \
-             corrector's conditions alone, by Newton's method in load steps from rest: no springs' field enters it, and \
-             there is no correction to be measured."
+            "The springs have no equilibrium at the load factors {alone}. There the corrected field comes from the corrector's conditions alone, by \
+             Newton's method in load steps from rest: it does not use a springs' field, and there is no correction to be measured."
         );
     }
     (!text.is_empty()).then(|| text.trim_end().to_owned())

@@ -140,7 +140,7 @@ fn check_elements(root: &Section, outline: &Outline, mesh: &Mesh) {
         section.warning(
             "element",
             &message,
-            "mesh with the cells that are wanted, or leave the key out",
+            "mesh with the cells you want, or leave the key out",
         );
     }
 }
@@ -164,7 +164,7 @@ fn check_climb(root: &Section, specimen: &Specimen) {
 fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
     let held = problem.supports.iter().all(|(_, support)| support.rests());
     if held && problem.loads.iter().all(|(_, load)| load.is_none()) {
-        let message = "no support moves and no load acts: the sheet rests";
+        let message = "no support moves and no load acts: the sheet stays at rest";
         let hint = "give a support a displacement, or a group a [[load]]";
         root.warning("support", message, hint);
     }
@@ -182,11 +182,11 @@ fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
     let divided = cells.iter().sum::<usize>() == mesh.cell_count();
     if matches!(specimen.outline, Outline::File { .. }) && divided {
         let message = format!(
-            "the cells of the file are divided into {}: all of them are of the card `{}`",
+            "the cells of the file are divided into {}: all of them get the card `{}`",
             names.join(", "),
             specimen.card.name
         );
-        section.warning("file", &message, "a specimen is of one material");
+        section.warning("file", &message, "a specimen has one material");
     }
 }
 
@@ -207,16 +207,17 @@ fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
     }
     if path.has("factors") && (factors.is_empty() || falls) {
         let message = "must be one or more ascending load factors";
-        let hint = "such as [0.5, 1.0]; only a card with `[softening]` remembers how it was loaded";
+        let hint =
+            "such as [0.5, 1.0]; only a card with `[softening]` depends on the loading history";
         path.fault("factors", message, hint);
     }
     if let Some(large) = factors.iter().find(|factor| **factor > LARGE_FACTOR) {
         let message = format!(
-            "{large} means {} % of the loads and motions that are stated",
+            "{large} means {} % of the stated loads and motions",
             100.0 * large
         );
         let hint = format!(
-            "write \"{large} %\" if percent are meant; the loads themselves say how large they are"
+            "write \"{large} %\" if percent is meant; otherwise state larger loads instead"
         );
         path.warning("factors", &message, &hint);
     }
@@ -271,12 +272,12 @@ fn affords(
     if let Some(excess) = whole.filter(|_| affords) {
         let meshes = match outline.halvings() {
             0 => {
-                "on this mesh alone, and neither their displacement nor curves that its edges stand for have an error of their own"
+                "computed on this mesh alone, without an error estimate of their displacement and of the curves that its edges approximate"
             }
-            _ => "on two meshes instead of three",
+            _ => "computed on two meshes instead of three",
         };
         let message = format!(
-            "halved twice, for the finite elements' own error, it {excess}: they are {meshes}"
+            "halved twice, for the finite elements' own error, it {excess}: the finite elements are {meshes}"
         );
         section.warning(key, &message, &excess.remedy("take a coarser mesh"));
     }
@@ -290,7 +291,7 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
         return None;
     }
     if element.is_some_and(|element| !element.is_triangle()) {
-        let message = "adaptive refinement is that of triangles";
+        let message = "adaptive refinement needs triangles";
         section.fault("element", message, "take \"T2\" or \"T1\"");
     }
     Some(Refinement {
@@ -309,12 +310,12 @@ fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
             .fault("adaptive", message, hint);
     }
     if specimen.refinement.is_some() && !specimen.problem.moved_points(mesh).is_empty() {
-        let message = "to move single nodes takes no force in the limit of finer meshes, and local refinement goes on around them";
+        let message = "in the limit of fine meshes single nodes move without force, so that local refinement around them never ends";
         let hint = "move a group with edges, lines or an area, or leave out `adaptive`";
         root.fault("support", message, hint);
     }
     if specimen.refinement.is_some() && !specimen.problem.forces_on_points(mesh).is_empty() {
-        let message = "a force on single nodes has no limit on finer meshes, and local refinement goes on around them";
+        let message = "under a force on single nodes the displacement diverges on finer meshes, so that local refinement around them never ends";
         let hint = "put it on a group with edges, lines or an area, or leave out `adaptive`";
         root.fault("load", message, hint);
     }

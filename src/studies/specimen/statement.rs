@@ -17,9 +17,8 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let loads: Vec<_> = loads.map(|(group, own)| row(group, load(own))).collect();
     let factors: Vec<_> = specimen.factors.iter().map(f64::to_string).collect();
     let text = format!(
-        "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. \
-         Displacements, turns, forces, tractions and pressures below are those at load factor 1 and grow in proportion to \
-         it; the load factors are {}.",
+        "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. Displacements, rotations, forces, tractions and pressures below are those at \
+         load factor 1 and are proportional to it; the load factors are {}.",
         specimen.outline.describe(),
         problem.thickness,
         specimen.card.describe_sheet(),
@@ -29,11 +28,13 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let mut blocks = vec![
         Block::Heading(2, "Specimen, supports and loads".into()),
         Block::Paragraph(text),
-        Block::table(&["supported group", "what holds it"], supports),
+        Block::table(&["supported group", "support"], supports),
     ];
     blocks.push(match loads.is_empty() {
-        true => Block::Paragraph("There are no loads besides what the supports do.".into()),
-        false => Block::table(&["loaded group", "what acts on it"], loads),
+        true => Block::Paragraph(
+            "There are no loads besides the motions and forces of the supports.".into(),
+        ),
+        false => Block::table(&["loaded group", "load"], loads),
     });
     blocks
 }
@@ -94,7 +95,7 @@ fn support(support: &Support) -> String {
             centre: [x, y],
             angle,
         } => format!(
-            "turned rigidly by {:.6}° about ({x}, {y}) mm",
+            "rotated rigidly by {:.6}° about ({x}, {y}) mm",
             angle.to_degrees()
         ),
         Support::Grip(drives) => {

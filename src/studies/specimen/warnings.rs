@@ -53,8 +53,8 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
     let idle = specimen.problem.idle_loads(mesh).unwrap_or_default();
     (!idle.is_empty()).then(|| {
         format!(
-            "the load on {} has no effect on the field: supports hold these nodes along it, and take it up at once. Hold another \
-             group, or take a support that leaves the load's direction free, such as a grip with a force.",
+            "the load on {} has no effect on the field: supports fix these nodes in its direction and carry it directly. Support another group, or \
+             take a support that leaves the load's direction free, such as a grip with a force.",
             idle.join(", ")
         )
     })
@@ -64,8 +64,8 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
 fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
     let named = quoted(&specimen.problem.forces_on_points(mesh))?;
     Some(format!(
-        "the force on {named} acts on single points, under which displacement and stress grow with every finer mesh, without \
-         limit: neither they nor their own errors there say anything. Put it on edges, on a line or on an area."
+        "the force on {named} acts on single points, where displacement and stress grow without limit as the mesh is refined: their values and own \
+         errors there are meaningless. Put it on edges, on a line or on an area."
     ))
 }
 
@@ -73,8 +73,8 @@ fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
 fn moved_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
     let named = quoted(&specimen.problem.moved_points(mesh))?;
     Some(format!(
-        "the support on {named} moves single points, for which the force falls with every finer mesh, to nothing, and the field with \
-         it: neither they nor their own errors say anything. Move edges, a line or an area."
+        "the support on {named} moves single points: as the mesh is refined, their force tends to zero, and the field with it, so that force, field \
+         and own errors are meaningless. Move edges, a line or an area."
     ))
 }
 

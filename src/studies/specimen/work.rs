@@ -20,8 +20,8 @@ pub fn blocks(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let mut blocks = work_blocks("load factor [–]", &names, rows).to_vec();
     blocks.push(
         Block::Paragraph(
-            "The material softens by its largest load, at every point for itself: the load factors follow one another as the study \
-             lists them, and what a point remembers changes at these load factors alone. What is dissipated does not come back."
+            "The material softens at every point according to the largest load there so far (Mullins effect). The load factors follow one another as \
+             the study lists them, and the largest load is updated at these load factors only. Dissipated work is not recovered."
                 .to_owned(),
         ),
     );

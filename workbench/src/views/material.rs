@@ -334,7 +334,7 @@ fn result(ui: &mut Ui, fit: &Fitted, table: &mut Table) {
         }
     });
     if !fit.verdict.is_empty() {
-        ui.label(format!("left over: {}", fit.verdict));
+        ui.label(format!("residuals: {}", fit.verdict));
     }
     for (name, [low, high]) in &fit.ranges {
         ui.label(format!(

@@ -74,14 +74,14 @@ fn a_table_that_was_pasted_several_times_counts_once() {
     assert_eq!(all, own);
     let told = thrice.warnings[0].to_string();
     assert!(
-        once.warnings.is_empty() && told.contains("all of its rows do: 6"),
+        once.warnings.is_empty() && told.contains("all rows of the table do: 6"),
         "{told}"
     );
     let some = read(&(head.to_owned() + rows + "1.1,0.1\n"), &[]).unwrap();
     assert_eq!(some.observations.len(), 4);
     let told = some.warnings.iter().map(ToString::to_string);
     assert!(
-        told.clone().any(|one| one.contains("stand before")),
+        told.clone().any(|one| one.contains("repeat earlier ones")),
         "{told:?}"
     );
     // A record over time may rest.

@@ -118,7 +118,7 @@ fn a_loop_of_loading_and_unloading_is_told() {
     assert_eq!(data.observations.len(), 5);
     let warning = data.warnings[0].to_string();
     assert!(
-        warning.contains("a.csv:6: the strain turns back once"),
+        warning.contains("a.csv:6: the strain reverses once"),
         "{warning}"
     );
 }
@@ -308,7 +308,7 @@ fn the_cycle_and_the_zero_can_be_chosen() {
     assert!(
         read(strains, &[])
             .unwrap_err()
-            .contains("displacements and forces alone")
+            .contains("only in tables of displacements and forces")
     );
 }
 

@@ -138,22 +138,25 @@ impl Knowledge {
             let condition = self.edges.iter().find(|(name, _)| name == edge);
             if condition.is_none_or(|(_, condition)| *condition == EdgeCondition::Free) {
                 let fault = format!(
-                    "the force on `{edge}` was measured, but the edge is not named as held"
+                    "the force on `{edge}` was measured, but the edge is not stated to be held"
                 );
                 return refuse(
                     fault,
-                    "look at its name, or say how it moved: rigid (--rigid), known or unknown (a file for --study)",
+                    "check its name, or state how it moved: rigid (--rigid), known or unknown (a file for --study)",
                 );
             }
             if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
                 let fault = format!("the force on `{edge}` is {value} ± {deviation} N");
-                return refuse(fault, "give finite numbers and a positive deviation");
+                return refuse(
+                    fault,
+                    "give finite numbers and a positive standard deviation",
+                );
             }
         }
         if self.law.is_some() && self.forces.is_empty() {
             return refuse(
-                "a parameter of the law is to be found without a measured force".into(),
-                "displacements alone say nothing of a stiffness: give the force on an edge with its deviation",
+                "a parameter of the law is to be estimated without a measured force".into(),
+                "give the force on an edge with its standard deviation: displacements alone do not determine a stiffness",
             );
         }
         let positive = |noise: f64| noise > 0.0 && noise.is_finite();

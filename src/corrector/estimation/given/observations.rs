@@ -46,7 +46,7 @@ impl Observations {
             .count();
         if known > 0 && known < markers.len() {
             let fault = format!(
-                "{known} of {} markers have a standard deviation",
+                "only {known} of {} markers have a standard deviation",
                 markers.len()
             );
             return Err(Diagnostic::error("", fault).hint("give all of them one, or none"));
@@ -66,11 +66,12 @@ impl Observations {
         }
         if all.chosen.len() < 3 {
             let (found, count) = (all.chosen.len(), markers.len());
-            let fault =
-                format!("{found} of {count} markers lie on the mesh, and three are the fewest");
+            let fault = format!(
+                "{found} of {count} markers lie on the mesh, and at least three are needed"
+            );
             let hint = match found == count {
-                true => "leave this frame out, or look why its markers were lost",
-                false => "look at the units and the origins of markers and mesh",
+                true => "leave this frame out, or find out why its markers were lost",
+                false => "check the units and the origins of markers and mesh",
             };
             return Err(Diagnostic::error("", fault).hint(hint));
         }

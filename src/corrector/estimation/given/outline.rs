@@ -63,8 +63,8 @@ pub fn parts(mesh: &Mesh, edges: &[(String, EdgeCondition)]) -> Result<Vec<Segme
             .collect();
         let held = matches!(condition, EdgeCondition::Rigid | EdgeCondition::Known(_));
         if on_edges.is_empty() && !held {
-            let fault = format!("the group `{name}` holds no edge of the boundary");
-            let hint = "name boundary edges, or all their nodes; a pad inside of the sheet is rigid or known";
+            let fault = format!("the group `{name}` contains no edge of the boundary");
+            let hint = "name boundary edges, or all their nodes; make a pad inside the sheet rigid or known";
             return Err(Diagnostic::error("", fault).hint(hint));
         }
         if held && !inner.is_empty() {
@@ -127,7 +127,7 @@ fn labels(mesh: &Mesh, groups: &[&str]) -> Result<BTreeMap<usize, usize>, Diagno
             let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
             let fault = Diagnostic::error("", format!("the mesh has no group `{name}`"));
             return Err(fault.hint(match known.is_empty() {
-                true => "the mesh names no groups at all".to_owned(),
+                true => "the mesh has no groups at all".to_owned(),
                 false => format!("its groups are {}", known.join(", ")),
             }));
         };
@@ -145,7 +145,7 @@ fn labels(mesh: &Mesh, groups: &[&str]) -> Result<BTreeMap<usize, usize>, Diagno
             }
         }
         if labels.len() == before && group.nodes.is_empty() {
-            let fault = format!("the group `{name}` holds no node");
+            let fault = format!("the group `{name}` contains no node");
             return Err(Diagnostic::error("", fault).hint("name nodes or boundary edges"));
         }
     }
@@ -159,7 +159,7 @@ fn loops(mesh: &Mesh) -> Result<Vec<Vec<&Vec<usize>>>, Diagnostic> {
         if from.insert(edge[0], edge).is_some() {
             let [x, y] = mesh.nodes[edge[0]];
             let fault = format!("the boundary touches itself at ({x:.1}, {y:.1}) mm");
-            return Err(Diagnostic::error("", fault).hint("mend the mesh there"));
+            return Err(Diagnostic::error("", fault).hint("repair the mesh there"));
         }
     }
     let mut loops = Vec::new();
@@ -363,7 +363,7 @@ mod tests {
         assert!(told(&["lef"]).contains("no group `lef`"));
         for condition in [EdgeCondition::Free, EdgeCondition::Unknown] {
             let told = parts(&mesh, &[("inner".into(), condition)]).unwrap_err();
-            assert!(told.to_string().contains("holds no edge"));
+            assert!(told.to_string().contains("contains no edge"));
         }
     }
 

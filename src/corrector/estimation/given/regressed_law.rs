@@ -42,10 +42,10 @@ impl RegressedLaw {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
         let beyond = || {
             let message = format!(
-                "the law of the card `{}` is more than its parameters",
+                "the law of the card `{}` is not defined by its parameters alone",
                 card.name
             );
-            let hint = "take a card whose law is given by parameters alone";
+            let hint = "use a card whose law is given by parameters alone";
             Diagnostic::error("", message).hint(hint)
         };
         let law = Law::named(&card.law_name).ok_or_else(beyond)?;
@@ -75,14 +75,17 @@ impl RegressedLaw {
             };
             if law.places.contains(&place) || law.all[place].value == 0.0 {
                 let message = format!("the parameter `{key}` is given twice, or zero on the card");
-                return fault(message, "name each once, with a first guess on the card");
+                return fault(
+                    message,
+                    "name each once, with a non-zero initial value on the card",
+                );
             }
             law.places.push(place);
             law.chosen.push(law.all[place].clone());
         }
         if law.places.is_empty() {
-            let hint = "name those to be found, or all";
-            return fault("no parameter is to be found".into(), hint);
+            let hint = "name those to be estimated, or all";
+            return fault("no parameter is to be estimated".into(), hint);
         }
         match law.is_law_of(card) {
             true => Ok(law),

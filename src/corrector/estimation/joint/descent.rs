@@ -166,7 +166,9 @@ impl<'a> Descent<'a> {
             let settled = warm || step > JOINT_VARIANCE_STEPS;
             let change = self.step(&course, held);
             length = course.standard_errors(&change);
-            told(&format!("step {step}, {length:.1e} standard errors"));
+            told(&format!(
+                "step {step}, change of {length:.1e} standard errors"
+            ));
             if length <= CLOSE && settled {
                 course.steps = step;
                 return Ok(course);

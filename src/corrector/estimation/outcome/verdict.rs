@@ -81,18 +81,18 @@ impl Reason {
     pub fn words(self) -> String {
         match self {
             Self::Alternative(probability) => format!(
-                "other equations take so much from the misfit as by noise in {} of cases",
+                "an alternative model reduces the misfit by an amount that noise alone would reach with probability {}",
                 small_probability(probability)
             ),
             Self::Long(length) => format!(
-                "what is left correlates over {length:.3} mm, too far to be told from a misfit"
+                "the residuals correlate over {length:.3} mm, too far to be distinguished from a misfit"
             ),
             Self::Force(errors) => {
                 format!("a measured force is {errors:.1} standard errors off")
             }
             Self::Alike(correlation) => format!(
-                "what is left is alike in the frame before or after (correlation {correlation:.2}), as noise of single \
-                 pictures is not"
+                "the residuals resemble those of the previous or next frame (correlation {correlation:.2}), unlike noise of \
+                 single pictures"
             ),
         }
     }
@@ -134,8 +134,8 @@ impl Alternative {
     /// What it is in words.
     pub fn words(&self) -> String {
         match self {
-            Self::Edge(name) => format!("`{name}` moved in an unknown way"),
-            Self::Edges => "all edges of which something is said moved in an unknown way".into(),
+            Self::Edge(name) => format!("an unknown motion of `{name}`"),
+            Self::Edges => "an unknown motion of all edges with a stated condition".into(),
             Self::MovedEdge { edge, outwards } => {
                 let way = if *outwards > 0.0 { "out" } else { "in" };
                 let distance = roughly(outwards.abs());
@@ -150,13 +150,14 @@ impl Alternative {
             Self::Stiffness => "a thickness or stiffness that varies over the sheet".into(),
             Self::Law => "another isotropic law".into(),
             Self::Direction => "a stiffness that depends on the direction".into(),
-            Self::Volume => "a volume that changes".into(),
+            Self::Volume => "a change of volume".into(),
             Self::Scale => {
-                "a picture of another scale (a specimen nearer to its camera, or farther)".into()
+                "a picture of another scale (a specimen nearer to or farther from its camera)"
+                    .into()
             }
             Self::Mesh => "a finer mesh".into(),
             Self::Factor(factor) => {
-                format!("stiffness times thickness larger by a factor of {factor:.3}")
+                format!("stiffness times thickness multiplied by {factor:.3}")
             }
         }
     }

@@ -320,7 +320,7 @@ fn a_motion_that_the_sheet_cannot_follow_leaves_the_state_before() {
     let fault = fault.unwrap_err().to_string();
     let words = "`hole` from (0.300, 0.000) mm turned by 0.00° to (30.000, 0.000) mm";
     assert!(fault.contains(words), "{fault}");
-    assert!(fault.contains("the field before is kept"), "{fault}");
+    assert!(fault.contains("the previous field is kept"), "{fault}");
     assert_eq!(hand.state().state, before);
     assert_eq!(*hand.grips(), grips);
     let moved = hand.move_grips(&[("hole", shifted(1.0, 0.2))]).unwrap();

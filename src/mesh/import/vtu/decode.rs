@@ -106,10 +106,10 @@ pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Unreadable> {
         let padding = plain[start..].iter().position(|byte| *byte == b'=');
         let end = padding.map_or(plain.len(), |place| (start + place + 1).next_multiple_of(4));
         // Parts begin at multiples of four, for each is padded to them.
-        let part = plain.get(start..end).ok_or("is no base64")?;
+        let part = plain.get(start..end).ok_or("is not base64")?;
         let decoded = STANDARD
             .decode(part)
-            .map_err(|cause| format!("is no base64: {cause}"))?;
+            .map_err(|cause| format!("is not base64: {cause}"))?;
         bytes.extend(decoded);
         start = end;
     }

@@ -216,7 +216,7 @@ fn a_file_that_asks_for_more_than_it_holds_is_refused_before_anything_is_made() 
         (
             "UnstructuredGrid\"",
             "PolyData\"",
-            "is no unstructured grid",
+            "is not an unstructured grid",
         ),
         (
             "<Piece",

@@ -15,7 +15,7 @@ pub const FILE: &str = "card.toml";
 /// [`Error::Input`] where the parameters stand in no table of their own, so that they cannot be replaced.
 pub fn with_values(card: &Card, estimate: &JointEstimate, specimens: &str) -> Result<Card, Error> {
     let note = format!(
-        "parameters found by `gelbench correct` with the displacement fields of {specimens}; first values of the card `{}`",
+        "parameters estimated by `gelbench correct` from the displacement fields of {specimens}; initial values from the card `{}`",
         card.name
     );
     let value = |key: &str| {

@@ -61,19 +61,19 @@ pub fn summary(
         .filter(|one| !one.is_determined())
     {
         text += &format!(
-            "not determined: {}; it stays as the card has it, but for a common factor of stresses\n",
+            "not determined: {}; kept as on the card, except for a common factor of all stresses\n",
             combination(estimate, direction)
         );
     }
     if let Some(error) = estimate.prediction_error() {
         text += &format!(
-            "forces of frames that were left out: predicted to {:.3} % (root mean square)\n",
+            "forces of left-out frames: predicted to {:.3} % (root mean square)\n",
             100.0 * error
         );
     }
     text += &ranking_lines(study, found);
     if let Some(ended) = &estimate.ended {
-        text += &format!("the search ended before its goal: {ended}\n");
+        text += &format!("the search stopped before it converged: {ended}\n");
     }
     if !explained {
         text += "no interval: not all frames are explained by this law, thickness and conditions\n";
@@ -120,7 +120,7 @@ fn value(estimate: &Estimate, unit: &str, explained: bool) -> String {
     let interval = match (explained, low < high) {
         (true, true) => format!(" ({low:.6} … {high:.6})"),
         (false, true) => " (no interval: not explained)".to_owned(),
-        _ => " (not determined: first value)".to_owned(),
+        _ => " (not determined: initial value)".to_owned(),
     };
     format!("{:.6} {unit}{interval}", estimate.value)
 }
@@ -216,7 +216,7 @@ fn parameters(study: &JointStudy, estimate: &JointEstimate, explained: bool) -> 
             "unit",
             "standard error",
             "95 % interval",
-            "first value",
+            "initial value",
         ],
         estimate.with_keys().map(|(parameter, value)| {
             let [low, high] = value.interval;
@@ -245,7 +245,7 @@ fn determined(estimate: &JointEstimate) -> [Block; 3] {
         Block::heading("What the data determine"),
         Block::table(
             &[
-                "combination, each parameter over its value",
+                "combination (each parameter relative to its value)",
                 "singular value",
                 "relative standard error [%]",
                 "determined",
@@ -265,9 +265,9 @@ fn determined(estimate: &JointEstimate) -> [Block; 3] {
             }),
         ),
         Block::paragraph(format!(
-            "Singular values of what all frames say of the parameters, their edges being free to follow. A combination that is \
-             known to no better than {:.0} % of itself is not determined, and stays as the card has it, but for a common factor of \
-             all stresses.",
+            "Singular values of the pooled sensitivity to the parameters (roots of the eigenvalues of their information matrix), edge motions \
+             eliminated. A combination with a relative standard error above {:.0} % is treated as undetermined and kept as on the card, \
+             except for a common factor of all stresses.",
             100.0 * VAGUE
         )),
     ]
@@ -282,15 +282,15 @@ fn first_value(card: &Card, key: &str) -> String {
 fn intervals(estimate: &JointEstimate, explained: bool) -> String {
     match explained {
         true => format!(
-            "Markers that are far off are weighted by Tukey's weights, unless the conditions say otherwise. Intervals follow the profile \
-             likelihood of all frames, with the noise that was found in each. What is left of a marker in \
-             one frame and the next correlates by {:.2}, by which frames count for less. They hold 1 % that all forces without a stated deviation may have in \
-             common, a scale of the pictures that is stated, and forces that scatter more than is stated. {}",
+            "Outlying markers get Tukey's weights, unless the conditions state otherwise. Intervals follow the profile \
+             likelihood of all frames, with the noise estimated in each. Residuals of a marker in consecutive frames \
+             correlate by {:.2}, and frames count for less accordingly. The intervals include a common error of 1 % of all forces without a stated \
+             deviation, a stated error of the picture scale, and a scatter of forces beyond the stated one. {}",
             estimate.common,
             match estimate.holds_mesh_error {
-                true => "They hold the error of the meshes, from the same equations on cells half as large.",
-                false => "They do not hold the error of the meshes, one of which has too many cells to be refined: they are too narrow \
-                          where that error is not small beside the noise.",
+                true => "They include the discretisation error of the meshes, from the same equations on cells half as large.",
+                false => "They do not include the discretisation error, because one mesh has too many cells to be refined: they are too \
+                          narrow where that error is not small compared with the noise.",
             }
         ),
         false => "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned(),
@@ -325,15 +325,15 @@ fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
         "axis",
         "measured force [N]",
         "standard deviation [N]",
-        "predicted by the others [N]",
-        "off by [%]",
+        "predicted by the other frames [N]",
+        "difference [%]",
     ];
     vec![
-        Block::heading("Forces of frames that were left out"),
+        Block::heading("Forces of left-out frames"),
         Block::table(&head, rows),
         Block::paragraph(
-            "Frames are left out in groups, one after the other; the law of the other frames and the markers of the frame predict its \
-             force. A dash: no other group has a force.",
+            "Frames are left out in groups, one after the other; the law found from the other frames and the markers of the frame predict its \
+             force. A dash: no other group has a measured force.",
         ),
     ]
 }
@@ -360,16 +360,16 @@ fn ranking(study: &JointStudy, found: &JointResults) -> [Block; 3] {
     let head = [
         "card",
         "parameters",
-        "forces left out, root mean square error [%]",
-        "left of markers, root mean square [mm]",
+        "left-out forces, root mean square error [%]",
+        "left-out markers, root mean square residual [mm]",
         "ΔAICc",
     ];
     [
         Block::heading("Laws"),
         Block::table(&head, rows),
         Block::paragraph(
-            "The law that predicts the forces left out best first. AICc counts as many values as are independent, and is given above the \
-             least.",
+            "The law that best predicts the left-out forces comes first. AICc uses the number of independent values and is given relative to \
+             the smallest.",
         ),
     ]
 }

@@ -28,7 +28,7 @@ pub fn results(
     });
     let warnings = warnings.chain(undetermined(&found.estimate));
     let ended = found.estimate.ended.iter().map(|ended| {
-        format!("the search for the parameters ended before its goal: {ended}; frames, forces and thickness contradict each other")
+        format!("the search for the parameters stopped before it converged: {ended}; frames, forces and thickness contradict each other")
     });
     let scattered = forces_scatter(&found.estimate);
     let doubts = ended
@@ -73,8 +73,8 @@ fn forces_scatter(estimate: &JointEstimate) -> Option<String> {
     let ForceScatter { misfit, freedom } = estimate.force_scatter;
     estimate.force_scatter.is_too_large().then(|| {
         format!(
-            "the measured forces lie {:.1} times as far from those of the fields as their standard deviations allow (χ² is {misfit:.1} of {freedom:.0} \
-             degrees of freedom): deviations, thickness or law are wrong; intervals hold forces that are so much less certain",
+            "the measured forces differ from those of the fields by {:.1} times their standard deviations (χ² = {misfit:.1} for {freedom:.0} \
+             degrees of freedom): standard deviations, thickness or law are wrong; intervals assume forces less certain by this factor",
             (misfit / freedom).sqrt()
         )
     })
@@ -89,8 +89,8 @@ pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
     let open: Vec<String> = open.map(|own| report::combination(estimate, own)).collect();
     (!open.is_empty()).then(|| {
         format!(
-            "not determined by these frames, and left as the card has it: {}; the other parameters and their intervals take that for known: begin \
-             with a card that is near, add frames of larger strains or other kinds of loading, or leave the parameter out of --fit",
+            "not determined by these frames, and kept as on the card: {}; the other parameters and their intervals assume that this is known: start \
+             from a card close to the material, add frames with larger strains or other loading modes, or leave the parameter out of --fit",
             open.join("; ")
         )
     })
@@ -238,14 +238,14 @@ fn figure(rows: &[ForceRow]) -> Option<Figure> {
     }
     let axis = |label: &str| Axis::new(label, Scale::Linear);
     let chart = LineChart::new(
-        "Forces of frames that were left out",
+        "Forces of left-out frames",
         axis("measured force [N]"),
         axis("predicted force [N]"),
         lines,
     );
     Some(Figure::new(
         "forces.png",
-        "Forces as the other frames predict them over those that were measured.",
+        "Forces predicted by the other frames, over the measured ones.",
         chart,
     ))
 }

@@ -97,7 +97,7 @@ fn settings_that_contradict_each_other_are_refused() {
     assert!(faults("[corrector]\ngrading = \"auto\"\n")[0].contains("must be a number"));
     assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
     assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("from small to large"));
-    assert!(faults("[load]\nstretches = [-0.1, 0.3]\n")[0].contains("one sign"));
+    assert!(faults("[load]\nstretches = [-0.1, 0.3]\n")[0].contains("the same sign"));
     assert!(faults("[load]\nstretches = [-0.1, -0.05]\n")[0].contains("from small to large"));
     assert!(faults("[load]\nstretches = [0, 0.3]\n")[0].contains("zero"));
     assert!(faults("[load]\nstretches = [-1]\n")[0].contains("must be"));
@@ -169,7 +169,7 @@ fn a_stretch_beyond_the_stability_of_the_law_is_a_warning() {
     assert_eq!(study.warnings.len(), 1, "{:?}", study.warnings);
     let told = study.warnings[0].to_string();
     assert!(
-        told.contains("75 % stretch is beyond the stability"),
+        told.contains("75 % stretch is beyond the stable range"),
         "{told}"
     );
 }
@@ -203,7 +203,7 @@ fn only_a_material_that_softens_is_unloaded() {
     refused(history, &["corrector.method", "climb", "direct"]);
     refused(
         &format!("{direct}[mass_spring]\narea_term = true\n"),
-        &["area_term", "do not soften"],
+        &["area_term", "does not soften"],
     );
     refused(
         &format!("{direct}[load]\nstretches = [\"30 %\", \"30 %\"]\n"),

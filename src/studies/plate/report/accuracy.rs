@@ -48,10 +48,9 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
         Block::heading("Error budget"),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
         Block::Paragraph(format!(
-            "The departure before the correction is what the springs cannot do; the correction removes it. What \
-             remains is the discretisation error of the corrector's finite differences on {}{}, and \
-             the finite elements' own discretisation error, estimated from three meshes. The finite elements judge a \
-             deviation only where their own error of it is at most a tenth of it.",
+            "The departure before the correction is the model error of the springs; the correction removes it. What remains is the discretisation \
+             error of the corrector's finite differences on {}{}, and the finite elements' own discretisation error, estimated from three meshes. A \
+             deviation is judged only where the finite elements' own error is at most a tenth of it.",
             match study.corrector.is_graded() {
                 true => "the nodes of its graded cells",
                 false => "the lattice's nodes",
@@ -108,10 +107,10 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
     vec![
         Block::heading("The finite elements' own error"),
         Block::Paragraph(format!(
-            "{} elements on {}, {} and {} cells{}; Richardson's extrapolation with the observed order, none above 4. The \
-             clamped corners are singular, which lowers the order where cells are equal; a grading towards them \
-             restores it. The last columns come from the finest mesh alone, by recovery of its gradient; at \
-             singular corners they are good for the order of magnitude, and they count where three meshes do not converge.",
+            "{} elements on {}, {} and {} cells{}; Richardson's extrapolation with the observed order, at most 4. The clamped corners are singular, \
+             which lowers the order on equal cells; grading towards the corners restores it. The last columns come from the finest mesh alone, by \
+             recovery of its gradient; with singular corners they give the order of magnitude only, and they are used where the three meshes do not \
+             converge.",
             study.reference.element.name(),
             meshes[0],
             meshes[1],
@@ -148,8 +147,8 @@ pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
     ];
     let climb = match study.corrector.climb {
         Some(_) => {
-            " The corrected field has climbed: its iteration ends at a share (`climb_tolerance`) of its own discretisation \
-             error, which is what is left at its nodes."
+            " The iteration of the corrected field (a climb) stops at a fraction (`climb_tolerance`) of its own discretisation error, which explains \
+             the residual forces at its nodes."
         }
         None => "",
     };
@@ -157,10 +156,9 @@ pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
         Block::heading("Balance of forces and moments"),
         Block::table(&head, rows),
         Block::Paragraph(format!(
-            "The sum of the reactions of both grips along both axes, over the sum of their sizes, and the sum of their \
-             moments about the deformed plate's centre, over the same times half of its diagonal; the worst of all \
-             stretches. A plate is symmetric, and forces that are left at its free nodes cancel each other in these sums: \
-             they have a column of their own.{climb}"
+            "The sum of the reactions of both grips along both axes, relative to the sum of their magnitudes, and the sum of their moments about the \
+             deformed plate's centre, relative to the same times half of its diagonal; the worst of all stretches. Because a plate is symmetric, \
+             residual forces at its free nodes cancel in these sums: they have a column of their own.{climb}"
         )),
     ]
 }
@@ -203,11 +201,11 @@ pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
             "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",
             match study.corrector.climb {
                 Some(_) =>
-                    "the correction that is left, root mean square over the nodes of the finest grid, over the \
-                     largest displacement; the first is what this grid adds to the one before it.",
+                    "the remaining correction, root mean square over the nodes of the finest grid, relative to the largest displacement; the first \
+                     value is what this grid adds to the one before it.",
                 None =>
-                    "largest scaled residual over the largest displacement; its equations are as many as its \
-                     unknowns, so that each step is a Newton step that starts from the mass-spring field.",
+                    "largest scaled residual relative to the largest displacement; it has as many equations as unknowns, so that each step is a \
+                     Newton step, and the first starts from the mass-spring field.",
             }
         )),
     ];
@@ -235,7 +233,7 @@ fn starts(results: &Results) -> Option<Block> {
     let head = [
         "stretch [%]",
         "the climb began with",
-        "root mean square distance of that to the corrected field on the first grid [mm]",
+        "root mean square distance of this start to the corrected field on the first grid [mm]",
     ];
     (!rows.is_empty()).then(|| Block::table(&head, rows))
 }
@@ -244,18 +242,16 @@ fn starts(results: &Results) -> Option<Block> {
 fn role_of_springs(study: &Study) -> String {
     let start = match study.corrector.climb {
         Some(_) => {
-            "The climb begins with a field of its own on a coarse grid, as the table says, and needs the study's springs \
-             for the multipliers alone."
+            "The climb starts from a field of its own on a coarse grid (see the table) and uses the study's springs for the multipliers only."
         }
         None => {
-            "The direct method begins at the springs' field, and the multipliers are those of that field."
+            "The direct method starts from the springs' field, and the multipliers belong to that field."
         }
     };
     format!(
-        "What is projected: the mass-spring field ū onto the fields that satisfy equilibrium at the inner nodes, the \
-         motion of the grips and the free long sides. These are as many equations as there are unknowns: one field \
-         satisfies them whatever ū is, each step of the projection is a step of Newton's method, and the springs have \
-         no say in the result. Their share is the start and the multipliers. {start} Where fewer conditions than \
-         unknowns are imposed, as with measured points, noise or unknown grips, ū decides together with the physics."
+        "The corrector projects the mass-spring field ū onto the fields that satisfy equilibrium at the inner nodes, the motion of the grips and the \
+         free long sides. There are as many equations as unknowns: one field satisfies them whatever ū is, each step of the projection is a step of \
+         Newton's method, and the springs do not influence the result. They provide only the start and the multipliers. {start} Where fewer \
+         conditions than unknowns are imposed, as with measured points, noise or unknown grips, the result depends on both ū and the physics."
     )
 }

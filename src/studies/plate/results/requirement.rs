@@ -130,7 +130,7 @@ fn severity(judgement: &Judgement) -> usize {
 
 fn its_own_reference() -> Judgement {
     Judgement::CannotBeJudged {
-        reason: "the finite elements are the corrected field's own equations on the same nodes"
+        reason: "the finite elements solve the corrected field's own equations on the same nodes"
             .into(),
         remedy: REMEDY.into(),
     }

@@ -258,8 +258,8 @@ impl Outline {
                 "Take `lattice = \"triangles\"` for the corrected field"
             }
             _ => {
-                "The corrected field has the cells of the mesh: go by the finite elements of the second degree, or mesh with \
-                 triangles of which four meet in the middle of a quadrilateral"
+                "The corrected field uses the cells of the mesh: rely on finite elements of the second degree, or divide quadrilaterals into four \
+                 triangles that meet in the middle"
             }
         }
     }

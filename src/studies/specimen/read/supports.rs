@@ -25,8 +25,8 @@ impl<'a> SupportsAndLoads<'a> {
     /// Reads `[[support]]` and `[[load]]`; the study must say what holds the specimen.
     pub fn read(root: &Section<'a>) -> Self {
         if !root.has("support") {
-            let hint = "only what a study says is done: add [[support]] with group = \"left\" and kind = \"clamp\", for \
-                        example, once for each group that is held";
+            let hint = "no support is assumed: add [[support]] with group = \"left\" and kind = \"clamp\", for example, once for each group that is \
+                        held";
             root.fault("support", "is missing: nothing holds the specimen", hint);
         }
         let (supports, all_supports) = entries(root, "support", read_support);

@@ -116,8 +116,8 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
         }
     }
     if !rows.is_empty() {
-        let text = "Paths that ended early: the last equilibrium of each, at the largest load factor reached. \
-            One between the study's load factors has a file of its own. The other models went on without them.";
+        let text = "Paths that ended early: the last equilibrium of each, at the largest load factor reached. An equilibrium between the study's \
+                    load factors has a file of its own. The other models continued.";
         let what = format!("{} [{}]", measured.describe(), measured.unit());
         let head = [
             "model",

@@ -98,7 +98,7 @@ impl Reference {
     pub fn remedy(&self, specimen: &Specimen) -> &'static str {
         let (problem, mesh) = (&specimen.problem, &self.finest.mesh);
         if !problem.forces_on_points(mesh).is_empty() || !problem.moved_points(mesh).is_empty() {
-            return "no mesh tells what single points carry: load or move edges, a line or an area";
+            return "results at single points do not converge with the mesh: load or move edges, a line or an area";
         }
         if self.is_outline() {
             return "take a mesh whose edges follow the curves: cells of the second degree, or finer ones there";
@@ -164,8 +164,8 @@ impl Reference {
         let percents = steps.filter_map(|step| self.outline_percent(step));
         let most = percents.reduce(larger)?;
         Some(Block::Paragraph(format!(
-            "The outline: finite elements on meshes of the file have its edges, chords or parabolas. With the smooth \
-             curves that these stand for the {} would change by about {most:.2e} %; this is part of its own error.",
+            "The outline: finite elements on meshes of the file have its edges, which are chords or parabolas. With the smooth curves that these \
+             approximate, the {} would change by about {most:.2e} %; this is included in its own error.",
             self.measured.name()
         )))
     }
@@ -345,8 +345,8 @@ impl Reference {
                 figure(round.measured_percent, 5),
             ]
         };
-        let text = "Local refinement: in every round the cells with half of the squared error are cut into four. Errors \
-                    are those of the worst load factor.";
+        let text = "Local refinement: in every round the cells that contribute half of the squared error are divided into four. Errors are those at \
+                    the worst load factor.";
         let rounds = self.rounds.iter().enumerate().map(row);
         let history = [Block::Paragraph(text.into()), Block::table(&head, rounds)];
         outline.into_iter().chain(history).collect()
@@ -356,8 +356,8 @@ impl Reference {
 /// What an error that recovery does not tell comes to.
 fn unknown_energy() -> Judgement {
     Judgement::CannotBeJudged {
-        reason: "recovery tells no error: no load factor is reached, or between the points of the cells' rule the field folds or lies beyond \
-                 the limit of the law"
+        reason: "recovery gives no error estimate: no load factor is reached, or between the integration points the field folds or exceeds the limit \
+                 of the law"
             .into(),
         remedy: "take smaller load factors, or allow more cells".into(),
     }

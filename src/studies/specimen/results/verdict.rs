@@ -59,7 +59,7 @@ pub fn checks(specimen: &Specimen, models: &Models, deviations: &[Deviation]) ->
 const SOURCE: &str = "the study's tolerance";
 
 /// Why what is measured needs no comparison.
-const NOTHING: &str = "nothing to compare: both are zero next to the forces on single nodes, or to the largest displacement";
+const NOTHING: &str = "nothing to compare: both are zero relative to the forces on single nodes, or to the largest displacement";
 
 fn deviation_checks(
     specimen: &Specimen,

@@ -164,8 +164,8 @@ fn viscosity(card: &Card, damping: f64) -> Result<ViscousMaterial, Error> {
     match !viscosity.is_none() && card.bulk_modulus().is_some() {
         false => Ok(viscosity),
         true => Err(Error::input(
-            "the viscous stress is that of a sheet that keeps its volume, and this card's does not",
-            "take the damping back to zero, or take a card that keeps its volume",
+            "the viscous stress is that of an incompressible sheet, and this card is compressible",
+            "set the damping to zero, or take an incompressible card",
         )),
     }
 }
