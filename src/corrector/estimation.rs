@@ -43,6 +43,7 @@ mod uncertainty;
 
 pub use given::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Specimen, Unnamed,
+    name_parts,
 };
 pub use joint::{
     Direction, ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame,
@@ -50,8 +51,8 @@ pub use joint::{
 };
 pub use outcome::{
     Alternative, Answer, Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck,
-    MarkerEstimate, NoiseCorrelation, RULE, RULE_WITH_MODEL_ERROR, Reason, Smoothing,
-    StressEstimate, Trial, VariogramBin, Verdict, Whiteness, Worst,
+    FoundParameter, MarkerEstimate, NoiseCorrelation, RULE, RULE_WITH_MODEL_ERROR, Reason,
+    Smoothing, StressEstimate, Trial, VariogramBin, Verdict, Whiteness, Worst,
 };
 pub use regression::Robust;
 pub use transfer::transfer;

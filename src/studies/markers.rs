@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::corrector::estimation::{
-    FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate, transfer,
+    FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate, name_parts, transfer,
 };
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
@@ -28,6 +28,7 @@ mod doubts;
 mod edge_place;
 mod figures;
 mod force_signs;
+mod frame_agreement;
 mod gross_errors;
 pub mod joint;
 mod json;
@@ -135,6 +136,8 @@ impl MarkerStudy {
             mut doubts,
             unknown_gap,
         } = mesh(&request, &field)?;
+        let named = request.conditions.edges.iter();
+        name_parts(&mut mesh, named.map(|(name, _)| name.as_str()));
         area::name(&mut mesh, &request.conditions.areas)?;
         request.conditions.suit(&mesh, &field.series)?;
         let regressed = request.conditions.regressed_law(&card)?;

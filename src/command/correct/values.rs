@@ -90,15 +90,15 @@ fn on_an_edge<'a>(
     text: &'a str,
     example: &str,
 ) -> Result<(&'a str, usize, String, Option<f64>), Diagnostic> {
-    let words: Vec<&str> = text.splitn(3, ' ').collect();
-    let (edge, axis, what) = match words[..] {
-        [edge, "x", what] => (edge, 0, what),
-        [edge, "y", what] => (edge, 1, what),
-        _ => {
-            let hint = format!("write edge, axis and force, as in \"{example}\"");
-            return Err(Diagnostic::error("", "it is not a force on an edge").hint(hint));
-        }
+    // Names of edges may have blanks, and so may what acts there.
+    let axis = |axis: &str| text.find(axis).map(|at| (at, at + axis.len()));
+    let found = [axis(" x "), axis(" y ")].into_iter().enumerate();
+    let found = found.filter_map(|(axis, place)| Some((place?, axis)));
+    let Some(((end, begin), axis)) = found.min().filter(|((end, _), _)| *end > 0) else {
+        let hint = format!("write edge, axis and force, as in \"{example}\"");
+        return Err(Diagnostic::error("", "it is not a force on an edge").hint(hint));
     };
+    let (edge, what) = (&text[..end], &text[begin..]);
     let what = what.replace("+-", "±");
     let (what, deviation) = match what.split_once('±') {
         None => (&*what, None),

@@ -14,25 +14,39 @@ const LEVEL: f64 = 0.01;
 /// Steps of a trial: a free edge that the data do not contradict takes few.
 const TRIAL_STEPS: usize = 20;
 
-/// Searches with the edges as they are, then with those to be tested free one after the other, the longest first.
+/// Searches with the edges as they are, then with those to be tested free one after the other, the longest first. Where many edges that
+/// follow the markers lead nowhere, the search begins with all of them free, and releases those that the data contradict.
 ///
 /// # Errors
 /// As the search with the edges as they are.
 pub fn search<'a>(
     task: &Task<'a>,
-    mut edges: Vec<Edge<'a>>,
+    edges: Vec<Edge<'a>>,
 ) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
-    let mut found = Equations::new(task, &edges)?.run(MOST_STEPS)?;
+    let loaded = Equations::new(task, &edges).and_then(|search| search.run(MOST_STEPS));
+    match loaded {
+        Ok(found) => from_loaded(task, found, edges),
+        Err(fault) => from_free(task, edges).map_err(|_| fault),
+    }
+}
+
+/// The edges to be tested, the longest first.
+fn open(edges: &[Edge]) -> Vec<usize> {
     let mut open: Vec<usize> = (0..edges.len())
         .filter(|edge| edges[*edge].tested)
         .collect();
-    open.sort_by(|a, b| {
-        edges[*b]
-            .segment
-            .length()
-            .total_cmp(&edges[*a].segment.length())
-    });
-    for index in open {
+    let length = |edge: usize| edges[edge].segment.length();
+    open.sort_by(|a, b| length(*b).total_cmp(&length(*a)));
+    open
+}
+
+/// Frees edges as long as the data do not contradict it.
+fn from_loaded<'a>(
+    task: &Task<'a>,
+    mut found: NearestField<'a>,
+    mut edges: Vec<Edge<'a>>,
+) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    for index in open(&edges) {
         let mut freed = edges.clone();
         freed[index].condition = EdgeCondition::Free;
         if !freed.iter().any(Edge::is_loaded) {
@@ -52,6 +66,32 @@ pub fn search<'a>(
             edges[index].condition = EdgeCondition::Free;
             found = trial;
         }
+    }
+    settle(task, found, edges)
+}
+
+/// Releases edges that are free at first, where the data contradict that.
+fn from_free<'a>(
+    task: &Task<'a>,
+    given: Vec<Edge<'a>>,
+) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    let mut edges = given.clone();
+    let open = open(&edges);
+    for index in &open {
+        edges[*index].condition = EdgeCondition::Free;
+    }
+    let mut found = Equations::new(task, &edges)?.run(MOST_STEPS)?;
+    for index in open {
+        let mut released = edges.clone();
+        released[index].condition = given[index].condition;
+        let Ok(trial) = Equations::new(task, &released).and_then(|own| own.run(TRIAL_STEPS)) else {
+            continue;
+        };
+        let probability = probability(&trial, &found);
+        if probability < LEVEL {
+            (edges, found) = (released, trial);
+        }
+        edges[index].probability = Some(probability);
     }
     settle(task, found, edges)
 }

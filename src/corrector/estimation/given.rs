@@ -11,7 +11,7 @@ pub use knowledge::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
 };
 pub use observations::Observations;
-pub use outline::{Segment, parts};
+pub use outline::{Segment, name_parts, parts};
 pub use regressed_law::RegressedLaw;
 pub use start::{DEGREE, Polynomial};
 pub use task::{Edge, Task, singular_corners};

@@ -4,18 +4,20 @@
 
 use super::MarkerStudy;
 use super::axes::mistaken;
+use super::frame_agreement;
 use super::gross_errors::{has_hidden, has_many};
 use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::results::{BESIDE_CORNERS, Stretches, small_strain};
+use crate::results::{BESIDE_CORNERS, Stretches, number, small_strain};
 use crate::statistics::{Estimate, median, small_probability};
 
 impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
         let mut all = self.doubts.clone();
+        all.extend(frame_agreement::doubts(estimates));
         let usual = median(estimates.iter().map(|own| own.noise));
         let usual = Some(usual).filter(|usual| estimates.len() > 2 && *usual > 0.0);
         let frames = self.series.frames.iter().zip(estimates);
@@ -271,8 +273,8 @@ fn forces(estimate: &FieldEstimate) -> Vec<Doubt> {
             "the force measured on {} along {}, {} ± {} N, contradicts the field's {:.4} N by {:.1} standard errors",
             measured.edge,
             ["x", "y"][measured.axis],
-            measured.force,
-            measured.standard_deviation,
+            number(measured.force),
+            number(measured.standard_deviation),
             check.found,
             check.standardised.abs()
         );

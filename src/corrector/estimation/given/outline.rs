@@ -5,6 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::knowledge::EdgeCondition;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
+pub use names::name_parts;
+use names::{describe, group_of, number_alike};
+
+mod names;
 
 /// Turn of the boundary, in rad, from which on a node is a corner.
 const CORNER: f64 = 0.7;
@@ -100,23 +104,6 @@ pub fn segments(mesh: &Mesh, groups: &[&str]) -> Result<Vec<Segment>, Diagnostic
     }
     number_alike(&mut all);
     Ok(all)
-}
-
-/// Numbers parts that no group names and that would have one name, as they follow each other.
-fn number_alike(all: &mut [Segment]) {
-    let unnamed = |part: &&mut Segment| part.condition.is_none();
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for part in all.iter_mut().filter(unnamed) {
-        *counts.entry(part.name.clone()).or_default() += 1;
-    }
-    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
-    for part in all.iter_mut().filter(unnamed) {
-        if counts[&part.name] > 1 {
-            let number = numbers.entry(part.name.clone()).or_default();
-            *number += 1;
-            part.name = format!("{} {number}", part.name);
-        }
-    }
 }
 
 /// The number of the group of every boundary edge that has one, by its first node.
@@ -239,30 +226,6 @@ fn walk<'a>(mesh: &Mesh, edges: impl Iterator<Item = &'a Vec<usize>>) -> (Vec<us
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-/// The smallest group of the mesh that all of an edge belongs to.
-fn group_of(mesh: &Mesh, nodes: &[usize]) -> Option<String> {
-    let groups = mesh.groups().iter();
-    let has = |node: &usize, members: &[usize]| members.binary_search(node).is_ok();
-    let whole = groups.filter(|(_, group)| {
-        !group.edges.is_empty() && nodes.iter().all(|node| has(node, &group.nodes))
-    });
-    let smallest = whole.min_by_key(|(_, group)| group.nodes.len());
-    smallest.map(|(name, _)| name.clone())
-}
-
-fn describe(mesh: &Mesh, nodes: &[usize], outer: bool) -> String {
-    let at = |node: usize| {
-        let [x, y] = mesh.nodes[node];
-        format!("({x:.1}, {y:.1})")
-    };
-    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
-    match (outer, first == last) {
-        (true, true) => "the outer edge".to_owned(),
-        (false, true) => format!("the hole at {} mm", at(first)),
-        _ => format!("edge {} to {} mm", at(first), at(last)),
-    }
 }
 
 /// Whether the boundary turns at the first node of each edge of a loop.
