@@ -239,6 +239,11 @@ impl Outline {
         self.lines().map(|line| polygon_area(line)).sum()
     }
 
+    /// The area inside the outer line in mm², holes included.
+    pub fn outer_area(&self) -> f64 {
+        polygon_area(&self.outer)
+    }
+
     /// A mesh of cells of about the size `size` in mm (the length of their edges); `shape` is their kind, of three,
     /// six, four or nine nodes.
     ///

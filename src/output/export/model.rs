@@ -2,11 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::text::{Names, ascii, number};
+use super::text::Names;
 use crate::error::Diagnostic;
 use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Drive, LONGEST_TURN, Load, Support};
+
+mod remarks;
 
 /// What is exported.
 #[derive(Clone, Copy)]
@@ -79,6 +81,8 @@ pub struct Model<'a> {
     pub nodes: Vec<usize>,
     /// Node sets by name.
     pub sets: Vec<(String, Vec<usize>)>,
+    /// The groups of the mesh with the names of their sets.
+    groups: Vec<(&'a str, String)>,
     /// Parts of the boundary by name: cell and side within it.
     pub surfaces: Vec<(String, Vec<Side>)>,
     pub held: Vec<Constraint>,
@@ -163,8 +167,8 @@ impl<'a> Model<'a> {
             .collect();
         let nodes: BTreeSet<usize> = cells.iter().flat_map(|(_, own)| *own).copied().collect();
         let mut names = Names::default();
-        let (mut sets, mut surfaces, mut group_surfaces) =
-            (Vec::new(), Vec::new(), BTreeMap::new());
+        let (mut sets, mut groups) = (Vec::new(), Vec::new());
+        let (mut surfaces, mut group_surfaces) = (Vec::new(), BTreeMap::new());
         let sides = sides(&cells);
         for (group, content) in mesh.groups() {
             let own = content.nodes.iter().filter(|node| nodes.contains(node));
@@ -175,6 +179,7 @@ impl<'a> Model<'a> {
                 let edges = edges.map(|edge| sides[&[edge[0], edge[1]]]).collect();
                 surfaces.push((names.give(&format!("{name}_EDGES")), edges));
             }
+            groups.push((group.as_str(), name.clone()));
             sets.push((name, own.copied().collect()));
         }
         let mut model = Self {
@@ -184,6 +189,7 @@ impl<'a> Model<'a> {
             cells,
             nodes: nodes.into_iter().collect(),
             sets,
+            groups,
             surfaces,
             held: Vec::new(),
             ties: Vec::new(),
@@ -199,7 +205,9 @@ impl<'a> Model<'a> {
     /// Supports: on the set of their group, or on one of their own where another support replaces a part.
     fn hold(&mut self, names: &mut Names) -> Result<(), Diagnostic> {
         let held = self.given.problem.held_by(self.given.mesh)?;
-        for (number, (_, support)) in self.given.problem.supports.iter().enumerate() {
+        for (number, (group, support)) in self.given.problem.supports.iter().enumerate() {
+            let own_set = self.groups.iter().find(|(known, _)| known == group);
+            let own_set = own_set.map(|(_, set)| set.clone());
             for axis in [0, 1] {
                 let own = self.nodes.iter().copied();
                 let own = own.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
@@ -207,7 +215,12 @@ impl<'a> Model<'a> {
                 if own.is_empty() {
                     continue;
                 }
-                let known = self.sets.iter().position(|(_, nodes)| *nodes == own);
+                let of_group = |(name, _): &(String, Vec<usize>)| Some(name) == own_set.as_ref();
+                let all = self.sets.iter().enumerate();
+                let same = all.filter(|(_, (_, nodes))| *nodes == own);
+                let known = same
+                    .max_by_key(|(_, set)| of_group(set))
+                    .map(|(place, _)| place);
                 let set = known.unwrap_or_else(|| {
                     self.sets.push((names.give("HELD"), own));
                     self.sets.len() - 1
@@ -267,66 +280,6 @@ impl<'a> Model<'a> {
             }
         }
         Ok(())
-    }
-
-    /// Where the file differs from the study, in ASCII.
-    pub fn remarks(&self) -> Vec<String> {
-        let mut remarks = Vec::new();
-        let (card, code) = (self.given.card, self.code.name());
-        let shapes = |shape| self.cells.iter().any(|(own, _)| *own == shape);
-        let nine = (0..self.given.mesh.cell_count())
-            .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
-        if nine && shapes(CellShape::Quad8) {
-            remarks.push(
-                "nine-node quadrilaterals are exported as eight-node ones, without their middle nodes"
-                    .into(),
-            );
-        }
-        if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
-            remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
-        }
-        if self.code != Code::Abaqus {
-            remarks.push(format!(
-                "{code} has no incompressible sheet: the bulk modulus is {} MPa, {} times the initial shear modulus",
-                number(self.given.bulk_modulus(self.code)),
-                self.given.bulk_ratio
-            ));
-        }
-        if !self.pressures.is_empty() {
-            remarks.push(match self.code {
-                Code::Abaqus => "the pressure of gelbench acts on the thickness at rest; check whether that of your code acts on the deformed thickness".into(),
-                Code::CalculiX | Code::FeBio => format!(
-                    "{code} applies the pressure to the deformed thickness, gelbench to the thickness at rest: the forces differ by the thickness \
-                     stretch at the loaded edge"
-                ),
-            });
-        }
-        if !card.viscosity.is_none() {
-            remarks.push(
-                "the card's [viscosity] is left out: the file contains the long-term law only"
-                    .into(),
-            );
-        }
-        if self.law == CodeLaw::TensionCurve {
-            remarks.push("the law depends on the first invariant alone and is exported as Marlow's law with points of its tension curve".into());
-        }
-        remarks
-    }
-
-    /// The lines at the head of every file.
-    pub fn head(&self) -> Vec<String> {
-        let card = self.given.card;
-        let mut lines = vec![
-            format!("written by gelbench {}", env!("CARGO_PKG_VERSION")),
-            "units: mm, N, MPa = N/mm^2, mJ; the total time is the load factor".into(),
-            format!("material: card {}, law {}", card.name, card.law_name),
-        ];
-        lines.extend(
-            self.remarks()
-                .into_iter()
-                .map(|line| format!("remark: {line}")),
-        );
-        lines.into_iter().map(|line| ascii(&line)).collect()
     }
 }
 

@@ -4,11 +4,14 @@ use super::request::Request;
 use crate::error::Diagnostic;
 use crate::markers::Understood;
 use crate::mesh::{Outline, OutlineFault};
+use crate::statistics::extremes;
 
 /// What is known of the edge.
 pub(super) enum EdgePlace {
     /// So far outside, as the user says, in mm.
     Given(f64),
+    /// The same of the nearest rows of a grid beside edges that are not along it, where rows end up to a step of the grid farther inside.
+    GivenBesideGrid { gap: f64, step: f64 },
     /// At least half a subset outside, as subsets lie inside of the specimen, and less than a step farther.
     Subset {
         half: f64,
@@ -21,9 +24,11 @@ pub(super) enum EdgePlace {
 }
 
 impl EdgePlace {
-    /// What the user says, else what files say of subsets; `spacing` is that of the markers in mm.
-    pub fn of(request: &Request, understood: &Understood, spacing: f64) -> Self {
+    /// What the user says, else what files say of subsets; `spacing` is that of the markers in mm, and they are beside edges that are not
+    /// along their grid or not.
+    pub fn of(request: &Request, understood: &Understood, spacing: f64, beside_grid: bool) -> Self {
         match (request.conditions.edge_gap, &understood.subset) {
+            (Some(gap), _) if beside_grid => Self::GivenBesideGrid { gap, step: spacing },
             (Some(gap), _) => Self::Given(gap),
             (None, Some(subset)) => {
                 let pixel = understood.pixel.unwrap_or(spacing / subset.step);
@@ -46,7 +51,9 @@ impl EdgePlace {
     /// An [`OutlineFault`] of a gap that the user gives.
     pub fn outline(self, markers: Outline, spacing: f64) -> Result<(Outline, Self), OutlineFault> {
         match self {
-            Self::Given(gap) => Ok((markers.widened(gap)?, self)),
+            Self::Given(gap) | Self::GivenBesideGrid { gap, .. } => {
+                Ok((markers.widened(gap)?, self))
+            }
             Self::Subset { half, .. } => Ok(match markers.widened(half) {
                 Ok(wider) => (wider, self),
                 Err(_) => (markers, Self::Unknown(spacing)),
@@ -59,7 +66,7 @@ impl EdgePlace {
     pub fn unknown(&self) -> Option<f64> {
         match self {
             Self::Given(_) => None,
-            Self::Subset { step, .. } => Some(*step),
+            Self::Subset { step, .. } | Self::GivenBesideGrid { step, .. } => Some(*step),
             Self::Unknown(spacing) => Some(*spacing),
         }
     }
@@ -67,7 +74,9 @@ impl EdgePlace {
     /// How a mesh's origin says it.
     pub fn origin(&self) -> String {
         match self {
-            Self::Given(gap) if *gap > 0.0 => format!(", widened by {gap} mm"),
+            Self::Given(gap) | Self::GivenBesideGrid { gap, .. } if *gap > 0.0 => {
+                format!(", widened by {gap} mm")
+            }
             Self::Subset { half, words, .. } => {
                 format!(", widened by {half:.4} mm, half a subset ({words})")
             }
@@ -79,6 +88,15 @@ impl EdgePlace {
     pub fn warning(&self) -> Option<Diagnostic> {
         let (message, hint) = match self {
             Self::Given(_) => return None,
+            Self::GivenBesideGrid { gap, step } => (
+                format!(
+                    "the edge is assumed to lie {gap} mm outside the outermost markers, but the markers form a grid and the specimen is not a \
+                     rectangle along it: beside curved or inclined edges rows end up to {step:.4} mm farther inside"
+                ),
+                "give the true edges with --outline or --mesh; force intervals between free edges, and stress errors beside them, include an edge up \
+                 to that much farther out; where no edge is free, forces are those through the outline"
+                    .to_owned(),
+            ),
             Self::Subset { half, step, words } => (
                 format!(
                     "the specimen's edge is assumed to lie {half:.4} mm outside the outermost markers, half a subset: {words}"
@@ -98,5 +116,56 @@ impl EdgePlace {
             ),
         };
         Some(Diagnostic::warning("", message).hint(hint))
+    }
+}
+
+/// Whether markers form a grid along x and y whose outline is not the rectangle of that grid.
+pub(super) fn is_beside_grid(places: &[[f64; 2]], outline: &Outline, spacing: f64) -> bool {
+    /// A grid has as many places as lines along x times lines along y, where its rectangle is full; scattered markers have nearly their square.
+    const SPARSE: usize = 8;
+    /// The share of the rectangle that is filled at least.
+    const FULL: f64 = 0.97;
+    let lines = |axis: usize| {
+        let mut places: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+        places.sort_unstable_by(f64::total_cmp);
+        1 + places
+            .windows(2)
+            .filter(|pair| pair[1] - pair[0] > 0.05 * spacing)
+            .count()
+    };
+    let extent = |axis: usize| {
+        let [low, high] = extremes(outline.outer.iter().map(|point| point[axis]));
+        high - low
+    };
+    lines(0) * lines(1) <= SPARSE * places.len()
+        && outline.outer_area() < FULL * extent(0) * extent(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_waisted_grid_is_beside_its_edges_and_a_full_or_a_scattered_one_is_not() {
+        let grid = |inside: &dyn Fn([f64; 2]) -> bool, jitter: f64| -> Vec<[f64; 2]> {
+            let all = (0..41).flat_map(|i| (0..17).map(move |j| [f64::from(i), f64::from(j)]));
+            let moved = all.enumerate().map(|(k, [x, y])| {
+                let by = |factor: f64| jitter * ((factor * k as f64).sin());
+                [x + by(12.9), y + by(78.2)]
+            });
+            moved.filter(|place| inside(*place)).collect()
+        };
+        let waisted = |[x, y]: [f64; 2]| (y - 8.0).abs() < 5.0 + 0.008 * (x - 20.0).powi(2);
+        for (places, expected) in [
+            (grid(&|_| true, 0.0), false),
+            (grid(&waisted, 0.0), true),
+            (grid(&waisted, 0.3), false),
+        ] {
+            let found = Outline::of_points(&places).unwrap();
+            assert_eq!(
+                is_beside_grid(&places, &found.outline, found.spacing),
+                expected
+            );
+        }
     }
 }

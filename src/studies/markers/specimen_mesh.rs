@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::edge_place::EdgePlace;
+use super::edge_place::{EdgePlace, is_beside_grid};
 use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
@@ -152,7 +152,8 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
         }
     }
     let spacing = found.spacing;
-    let edge = EdgePlace::of(request, &field.understood, spacing);
+    let beside_grid = is_beside_grid(&places, &outline, spacing);
+    let edge = EdgePlace::of(request, &field.understood, spacing, beside_grid);
     let (outline, edge) = edge.outline(outline, spacing).map_err(refuse)?;
     let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!(

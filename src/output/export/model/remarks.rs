@@ -1,0 +1,138 @@
+//! Where a file differs from the study, and what stands at its head.
+
+use super::Model;
+use crate::material::{Code, CodeLaw};
+use crate::mesh::CellShape;
+use crate::output::export::text::{ascii, number};
+
+/// Thickness over the smaller extent from which on a layer of solids is worth a remark.
+const THICK: f64 = 0.01;
+/// A smaller extent in mm at which absolute tolerances may matter.
+const SMALL: f64 = 0.1;
+
+impl Model<'_> {
+    /// Where the file differs from the study, in ASCII.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        let (card, code) = (self.given.card, self.code.name());
+        let shapes = |shape| self.cells.iter().any(|(own, _)| *own == shape);
+        let nine = (0..self.given.mesh.cell_count())
+            .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
+        if nine && shapes(CellShape::Quad8) {
+            remarks.push(
+                "nine-node quadrilaterals are exported as eight-node ones, without their middle nodes"
+                    .into(),
+            );
+        }
+        if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
+            remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
+        }
+        if self.code != Code::Abaqus {
+            remarks.push(format!(
+                "{code} has no incompressible sheet: the bulk modulus is {} MPa, {} times the initial shear modulus",
+                number(self.given.bulk_modulus(self.code)),
+                self.given.bulk_ratio
+            ));
+        }
+        if !self.pressures.is_empty() {
+            remarks.push(match self.code {
+                Code::Abaqus => "the pressure of gelbench acts on the thickness at rest; check whether that of your code acts on the deformed thickness".into(),
+                Code::CalculiX | Code::FeBio => format!(
+                    "{code} applies the pressure to the deformed thickness, gelbench to the thickness at rest: the forces differ by the thickness \
+                     stretch at the loaded edge"
+                ),
+            });
+        }
+        remarks.extend(self.of_solids());
+        remarks.extend(self.of_reactions());
+        if self.smaller_extent() < SMALL {
+            remarks.push(
+                "lengths are in mm: codes with absolute tolerances may refuse so small a body; scale all lengths (stresses stay, forces grow with \
+                 the square)"
+                    .into(),
+            );
+        }
+        if !card.viscosity.is_none() {
+            remarks.push(
+                "the card's [viscosity] is left out: the file contains the long-term law only"
+                    .into(),
+            );
+        }
+        if self.law == CodeLaw::TensionCurve {
+            remarks.push("the law depends on the first invariant alone and is exported as Marlow's law with points of its tension curve".into());
+        }
+        remarks
+    }
+
+    /// The lines at the head of every file.
+    pub fn head(&self) -> Vec<String> {
+        let card = self.given.card;
+        let mut lines = vec![
+            format!("written by gelbench {}", env!("CARGO_PKG_VERSION")),
+            format!("units: mm, N, MPa = N/mm^2, mJ; {}", self.time()),
+            format!("material: card {}, law {}", card.name, card.law_name),
+        ];
+        let renamed = self.groups.iter();
+        let renamed = renamed.filter(|(group, set)| group.to_ascii_uppercase() != *set);
+        lines.extend(renamed.map(|(group, set)| format!("set {set}: the group `{group}`")));
+        lines.extend(
+            self.remarks()
+                .into_iter()
+                .map(|line| format!("remark: {line}")),
+        );
+        lines.into_iter().map(|line| ascii(&line)).collect()
+    }
+
+    /// What the total time is.
+    fn time(&self) -> &'static str {
+        let factors = self.given.factors;
+        let grow = |pair: &[f64]| pair[1].abs() > pair[0].abs();
+        match factors.windows(2).all(grow) {
+            true if factors[0] < 0.0 => "the total time is the load factor without its sign",
+            true => "the total time is the load factor",
+            false => {
+                "the total time is the length of the path of load factors, each of which stands before its step"
+            }
+        }
+    }
+
+    fn smaller_extent(&self) -> f64 {
+        let [low, high] = self.given.mesh.bounding_box();
+        (high[0] - low[0]).min(high[1] - low[1])
+    }
+
+    /// What a layer of solids makes of a sheet.
+    fn of_solids(&self) -> Vec<String> {
+        let (code, thickness) = (self.code.name(), self.given.problem.thickness);
+        let mut remarks = Vec::new();
+        if self.code != Code::Abaqus && thickness > THICK * self.smaller_extent() {
+            remarks.push(format!(
+                "{code} computes a layer of solids: its fields depart from those of a sheet as the thickness grows against the width (in a bent \
+                 ring by 0.5 % of the displacement at a fifth of the wall, by 5 % at four fifths); to compare, export a thinner sheet with forces \
+                 reduced alike"
+            ));
+        }
+        if self.code == Code::FeBio {
+            remarks.push(
+                "the layer has half the thickness of the sheet: its reaction forces are half of the sheet's".into(),
+            );
+        }
+        remarks
+    }
+
+    /// What printed sums of reactions contain besides.
+    fn of_reactions(&self) -> Option<String> {
+        let sets = || self.held.iter().map(|held| &self.sets[held.set]);
+        let loaded = |node: &usize| self.forces.iter().any(|(own, _)| own == node);
+        let is_loaded = sets().any(|(_, nodes)| nodes.iter().any(loaded));
+        let is_shared = sets().any(|(name, nodes)| {
+            let mut others = sets().filter(|(other, _)| other != name);
+            others.any(|(_, other)| nodes.iter().any(|node| other.binary_search(node).is_ok()))
+        });
+        (self.code != Code::FeBio && (is_loaded || is_shared)).then(|| {
+            "sums of RF over a set include nodal loads on its nodes, and nodes of two sets count in both: gelbench's forces of groups leave out the \
+             former and divide the latter"
+                .to_owned()
+        })
+    }
+}
