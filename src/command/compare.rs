@@ -76,6 +76,10 @@ struct Comparison {
 pub fn run(options: Options) -> Outcome {
     options.printed.choose();
     let compared = compute(&options)?;
+    for end in &compared.models.ends {
+        let hint = "the other models are compared without it";
+        warn(&[Diagnostic::warning("", end.to_string()).hint(hint)]);
+    }
     let fields = compared.models.fields.iter();
     let differences = fields.map(|field| compared.sites.difference(field));
     let differences: Result<Vec<Difference>, Mismatch> = differences.collect();

@@ -42,10 +42,12 @@ pub struct ModelField {
 }
 
 /// The fields of all models at one load factor.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ModelFields {
-    /// Finite elements, springs, corrected springs.
-    pub fields: [ModelField; 3],
+    /// Finite elements, springs, corrected springs; of the latter those that have a solution.
+    pub fields: Vec<ModelField>,
+    /// Why the others have none.
+    pub ends: Vec<Error>,
     /// The finite elements' own error in relative L2 in %; `None` where it is not known.
     pub own_percent: Option<f64>,
 }

@@ -97,7 +97,7 @@ fn solved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Resul
 /// factors before it are steps on the way.
 ///
 /// # Errors
-/// [`Error::Solve`] when a model has no solution.
+/// [`Error::Solve`] when the finite elements have no solution.
 pub fn fields(
     mut specimen: Specimen,
     factor: f64,
@@ -111,22 +111,27 @@ pub fn fields(
     specimen.factors.push(factor);
     let mut ends = Vec::new();
     let models = solved(&specimen, &mut ends, progress)?;
-    if let Some(end) = ends.first() {
-        return Err(end.error());
-    }
     let last = specimen.factors.len() - 1;
-    let own_percent = models.reference.field_percent(last);
-    let field = |model, solution: &Solution| ModelField {
-        model,
-        mesh: solution.mesh.clone(),
-        displacement: solution.states[last].displacement.clone(),
+    let field = |model, solution: &Solution| {
+        Some(ModelField {
+            model,
+            mesh: solution.mesh.clone(),
+            displacement: solution.displacement(last)?.to_vec(),
+        })
     };
+    let mut ends = ends.iter().map(End::error);
+    let Some(elements) = field(FINITE_ELEMENTS.name, &models.reference.finest) else {
+        return Err(ends.next().expect("a model that ends says why"));
+    };
+    let others = [
+        field(MASS_SPRING.name, &models.on_lattice.uncorrected),
+        field(CORRECTED.name, &models.on_lattice.corrected),
+    ];
     Ok(ModelFields {
-        fields: [
-            field(FINITE_ELEMENTS.name, &models.reference.finest),
-            field(MASS_SPRING.name, &models.on_lattice.uncorrected),
-            field(CORRECTED.name, &models.on_lattice.corrected),
-        ],
-        own_percent,
+        fields: std::iter::once(elements)
+            .chain(others.into_iter().flatten())
+            .collect(),
+        ends: ends.collect(),
+        own_percent: models.reference.field_percent(last),
     })
 }

@@ -312,25 +312,31 @@ pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<Mode
     stretches.push(stretch);
     let last = stretches.len() - 1;
     let mut results = run(&study, progress)?;
-    if let Some(end) = results.ends.pop() {
-        return Err(end);
-    }
-    let field = |model, mesh: &Mesh, state: Option<&State>| ModelField {
-        model,
-        mesh: mesh.clone(),
-        displacement: state.expect("no model ended").displacement.clone(),
+    let mut ends = std::mem::take(&mut results.ends);
+    let field = |model, mesh: &Mesh, state: Option<&State>| {
+        Some(ModelField {
+            model,
+            mesh: mesh.clone(),
+            displacement: state?.displacement.clone(),
+        })
     };
     let [springs, corrected, elements] = results.models(last);
     let [lattice, cells, finest] = results.meshes();
     // Between its nodes the corrected field is what its differences take it for.
     let cells = study.corrector.scheme.mesh(cells);
+    let Some(elements) = field(FINITE_ELEMENTS.name, finest, elements) else {
+        return Err(ends.swap_remove(0));
+    };
+    let others = [
+        field(MASS_SPRING.name, lattice, springs),
+        field(CORRECTED.name, &cells, corrected),
+    ];
     let own = results.comparison[last].reference;
     Ok(ModelFields {
-        fields: [
-            field(FINITE_ELEMENTS.name, finest, elements),
-            field(MASS_SPRING.name, lattice, springs),
-            field(CORRECTED.name, &cells, corrected),
-        ],
+        fields: std::iter::once(elements)
+            .chain(others.into_iter().flatten())
+            .collect(),
+        ends,
         own_percent: own.map(|own| own.displacement_percent),
     })
 }
