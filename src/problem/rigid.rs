@@ -214,7 +214,7 @@ impl<'a> Bodies<'a> {
     fn pole(&self, turn: &DVector<f64>) -> String {
         let by = self.size / turn[2];
         let [x, y] = [self.centre[0] - by * turn[1], self.centre[1] + by * turn[0]];
-        let decimals = decimals_for(0.01 * self.size);
+        let decimals = decimals_for(0.1 * self.size);
         // No minus before a zero.
         let tidy = |x: f64| match x.abs() < 0.5 * 10_f64.powi(-(decimals as i32)) {
             true => 0.0,

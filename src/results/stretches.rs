@@ -125,7 +125,7 @@ mod tests {
         assert!((beyond.excess - 1.04).abs() < 1e-12 && beyond.share == 1.0);
         let told = beyond.reason(&card(pressed), " at load factor 1").unwrap();
         assert!(
-            told.contains("0.700 … 1.300 at load factor 1, on 100.0 % of the area"),
+            told.contains("0.700 … 1.300 at load factor 1; on 100.0 % of the area"),
             "{told}"
         );
         // A foam without Poisson's ratio keeps its width, so that a pressed sample is not wider.

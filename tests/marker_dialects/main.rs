@@ -298,7 +298,7 @@ fn wrong_names_are_told_with_those_that_there_are() {
         ("x=x_px,y=x_px", "the column `x_px` is named twice"),
         (
             "x=x_px,displacement=disp_u",
-            "`displacement` is nothing that a column holds columns hold x, y, ux, uy",
+            "`displacement` is not a known quantity known quantities: x, y, ux, uy",
         ),
         ("uz=disp_u", "did you mean `ux`?"),
         ("x_px", "`x_px` names no column"),

@@ -5,6 +5,7 @@ use crate::dynamics::Start;
 use crate::error::SolveFault;
 use crate::solve::Cholesky;
 use crate::solve::vector::{add_scaled, difference, largest, spread};
+use crate::statistics::larger;
 
 /// How a motion is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +58,17 @@ struct RetainedFactor {
     cholesky: Cholesky,
     fresh: bool,
     made: usize,
+}
+
+impl RetainedFactor {
+    /// Takes the factor of a matrix.
+    fn take(&mut self, values: &[f64]) -> Result<(), SolveFault> {
+        let factor = self.cholesky.factorise(values);
+        factor.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
+        self.fresh = true;
+        self.made += 1;
+        Ok(())
+    }
 }
 
 /// A factor is renewed when an iteration leaves more than this part of the residual.
@@ -174,7 +186,7 @@ impl EquationOfMotion<'_> {
             let values = self.values(window, &interval, velocity);
             let residual = values
                 .iter()
-                .fold(0.0, |most: f64, row| most.max(largest(row)))
+                .fold(0.0, |most: f64, row| larger(most, largest(row)))
                 / self.scale(&interval, window);
             if !residual.is_finite() {
                 return Err(SolveFault::NotFinite("the corrected motion".into()));
@@ -185,12 +197,7 @@ impl EquationOfMotion<'_> {
             }
             if !retained.fresh || residual > SLOW * last {
                 let newest = self.block(window.begin, window.begin + 1, &interval);
-                retained
-                    .cholesky
-                    .factorise(&newest)
-                    .map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
-                retained.fresh = true;
-                retained.made += 1;
+                retained.take(&newest)?;
             }
             self.sweep(window, &interval, &values, &mut retained.cholesky);
             last = residual;
@@ -260,6 +267,10 @@ impl EquationOfMotion<'_> {
         retained: &mut RetainedFactor,
         corrected: &mut CorrectedMotion,
     ) -> Result<(), SolveFault> {
+        if !retained.fresh {
+            // The motion is in equilibrium as it is: no step was wanted.
+            retained.take(&self.block(window.begin, window.begin + 1, interval))?;
+        }
         let multipliers = self.multipliers(window, data, interval, &mut retained.cholesky)?;
         for (row, psi) in (window.begin..).zip(multipliers) {
             let instant = window.first + row + 1;

@@ -263,7 +263,7 @@ fn nothing_is_written_into_what_was_broken_off() {
             std::thread::yield_now();
         }
         assert_eq!(unfinished.break_off().left, Left::Nothing);
-        assert!(writer.join().unwrap().contains("broken off"));
+        assert!(writer.join().unwrap().contains("interrupted"));
         assert!(!path.exists(), "{:?}", names(path));
     }
 }

@@ -328,9 +328,8 @@ impl Judged<'_> {
         } = found;
         equations.task.knowledge = &knowledge;
         let first = equations.motion.parameters();
-        place
-            .parameters
-            .splice(first..first, values.iter().copied());
+        let of_law = values.iter().copied();
+        place.parameters.splice(first..first, of_law);
         let linear = equations.linearise(&place)?;
         let normal = equations.with_regression((&place, true), &linear, |regression| {
             regression.equations(&variances)
@@ -343,10 +342,8 @@ impl Judged<'_> {
         let target = difference.map(|own| equations.mesh_target(own, (&linear, &variances)));
         let force_rows = knowledge.measured_forces().iter();
         let off = force_rows.map(|own| own.common_deviation * own.force / own.standard_deviation);
-        let off = linear
-            .force_rows
-            .0
-            .tr_mul(&DVector::from_vec(off.collect()));
+        let (of_forces, _) = &linear.force_rows;
+        let off = of_forces.tr_mul(&DVector::from_vec(off.collect()));
         let magnified = equations.magnified(&place.field);
         let magnified = equations.target_of(&magnified, (&linear, &variances));
         let common = [off, magnified * -knowledge.scale_deviation];
