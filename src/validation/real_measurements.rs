@@ -159,11 +159,11 @@ impl Estimated {
     }
 }
 
-const HEAD: &str = "field | frame | markers | noise [mm] | correlation length [mm] | verdict | why | most would be mended by";
+const HEAD: &str = "field | frame | markers | noise [mm] | correlation length [mm] | verdict | why | best alternative";
 
 const EXPLANATION: &str = "Each field is corrected with a law that keeps its volume, a thickness that is assumed, and conditions \
     that hold in part: as a user who knows no better would. The verdict must be that the data are not explained; no \
-    interval is given then. What would mend it is tried in one linearised step each.";
+    interval is given then. Each alternative that would explain it is computed in one linearised step.";
 
 fn compute(fields: Vec<MeasuredField>, progress: Progress) -> Outcome {
     let mut outcome = Outcome::default();

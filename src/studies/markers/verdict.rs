@@ -23,7 +23,7 @@ pub fn worst(estimates: &[FieldEstimate]) -> Answer {
     ANSWERS.into_iter().find(of).unwrap_or_default()
 }
 
-/// The verdict on all frames, and what would mend the last one that is not explained.
+/// The verdict on all frames, and what would explain the last one that is not.
 pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     if field.coarse.is_some() {
         return String::new();
@@ -131,7 +131,7 @@ const EXPLANATION: &str = "Explained: the residuals of the markers are white noi
     correlate too far to be distinguished from a misfit, they correlate between neighbours and are similar from frame to frame, or a \
     measured force is contradicted. Standard errors and intervals are then meaningless and are not given.";
 
-/// The verdict on every frame, and what would mend the last one that is not explained.
+/// The verdict on every frame, and what would explain the last one that is not.
 pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let frames = || field.series.frames.iter().zip(estimates);
     let rows = frames().map(|(frame, found)| {
