@@ -8,7 +8,7 @@ use super::search::{MOST_STEPS, NearestField};
 use crate::error::Error;
 use crate::statistics::f_tail;
 
-/// Probability of the misfit under which a free edge is refused.
+/// Probability of the misfit under which one of all free edges is refused, where all are free: each of many has its share of it.
 const LEVEL: f64 = 0.01;
 
 /// Steps of a trial: a free edge that the data do not contradict takes few.
@@ -46,7 +46,9 @@ fn from_loaded<'a>(
     mut found: NearestField<'a>,
     mut edges: Vec<Edge<'a>>,
 ) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
-    for index in open(&edges) {
+    let open = open(&edges);
+    let level = LEVEL / open.len() as f64;
+    for index in open {
         let mut freed = edges.clone();
         freed[index].condition = EdgeCondition::Free;
         if !freed.iter().any(Edge::is_loaded) {
@@ -62,7 +64,7 @@ fn from_loaded<'a>(
             .as_ref()
             .map_or(0.0, |trial| probability(&found, trial));
         edges[index].probability = Some(probability);
-        if let (Ok(trial), true) = (trial, probability >= LEVEL) {
+        if let (Ok(trial), true) = (trial, probability >= level) {
             edges[index].condition = EdgeCondition::Free;
             found = trial;
         }
@@ -77,6 +79,7 @@ fn from_free<'a>(
 ) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
     let mut edges = given.clone();
     let open = open(&edges);
+    let level = LEVEL / open.len() as f64;
     for index in &open {
         edges[*index].condition = EdgeCondition::Free;
     }
@@ -88,7 +91,7 @@ fn from_free<'a>(
             continue;
         };
         let probability = probability(&trial, &found);
-        if probability < LEVEL {
+        if probability < level {
             (edges, found) = (released, trial);
         }
         edges[index].probability = Some(probability);

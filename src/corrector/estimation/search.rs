@@ -9,7 +9,7 @@ use crate::error::{Error, SolveFault};
 use crate::solve::vector::largest;
 
 /// Steps allowed.
-pub const MOST_STEPS: usize = 40;
+pub const MOST_STEPS: usize = 100;
 
 /// Steps after which the variances stay as they are: two of equal likelihood could take turns.
 pub const VARIANCE_STEPS: usize = 6;
