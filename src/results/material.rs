@@ -67,20 +67,7 @@ fn statement(card: &Card) -> Vec<Block> {
             .iter()
             .map(|(key, name)| row(key, name.clone())),
     );
-    if let Some(modulus) = card.bulk_modulus() {
-        let modulus = format!("{modulus:.6} MPa; {}", law.plane_state().name());
-        rows.push(row("bulk modulus κ", modulus));
-    }
-    if let Some([stretch, change]) = card.tension_by_volume() {
-        let percent = 100.0 * change;
-        let told = format!(
-            "{percent:+.2} % at λ = {stretch:.3}, relative to the same parameters at constant volume"
-        );
-        rows.push(row(
-            "largest effect of the volume change on the tension",
-            told,
-        ));
-    }
+    rows.extend(of_volume(card));
     let statements = law.statements().into_iter();
     rows.extend(statements.map(|(name, statement)| row(name, statement)));
     rows.extend([
@@ -112,6 +99,27 @@ fn statement(card: &Card) -> Vec<Block> {
         Block::Heading(2, "Material".into()),
         Block::table(&["property", "value"], rows),
     ]
+}
+
+/// What the card says of changes of volume, and what they make of tension.
+fn of_volume(card: &Card) -> Vec<Vec<String>> {
+    let row = |key: &str, value: String| vec![key.to_owned(), value];
+    let mut rows = Vec::new();
+    if let Some(modulus) = card.bulk_modulus() {
+        let modulus = format!("{modulus:.6} MPa; {}", card.law.plane_state().name());
+        rows.push(row("bulk modulus κ", modulus));
+    }
+    if let Some([stretch, change]) = card.tension_by_volume() {
+        let percent = 100.0 * change;
+        let told = format!(
+            "{percent:+.2} % at λ = {stretch:.3}, relative to the same parameters at constant volume"
+        );
+        rows.push(row(
+            "largest effect of the volume change on the tension",
+            told,
+        ));
+    }
+    rows
 }
 
 /// The stable stretches in the usual tests.

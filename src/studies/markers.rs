@@ -136,8 +136,7 @@ impl MarkerStudy {
             mut doubts,
             unknown_gap,
         } = mesh(&request, &field)?;
-        let named = request.conditions.edges.iter();
-        name_parts(&mut mesh, named.map(|(name, _)| name.as_str()));
+        name_parts(&mut mesh, request.conditions.edge_names());
         area::name(&mut mesh, &request.conditions.areas)?;
         request.conditions.suit(&mesh, &field.series)?;
         let regressed = request.conditions.regressed_law(&card)?;

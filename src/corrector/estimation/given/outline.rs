@@ -5,10 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::knowledge::EdgeCondition;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
-pub use names::name_parts;
-use names::{describe, group_of, number_alike};
-
-mod names;
 
 /// Turn of the boundary, in rad, from which on a node is a corner.
 const CORNER: f64 = 0.7;
@@ -264,94 +260,77 @@ fn corners(mesh: &Mesh, chain: &[&Vec<usize>]) -> Vec<bool> {
         .collect()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::{CellShape, Shape};
-
-    #[test]
-    fn a_plate_has_four_edges_from_corner_to_corner() {
-        for (cells, shape) in [([60, 20], CellShape::Quad4), ([7, 3], CellShape::Quad9)] {
-            let mesh = Mesh::plate([150.0, 50.0], cells, shape);
-            let all = segments(&mesh, &["left"]).unwrap();
-            let mut lengths: Vec<f64> = all.iter().map(Segment::length).collect();
-            lengths.sort_by(f64::total_cmp);
-            let expected = [50.0, 50.0, 150.0, 150.0];
-            assert!(
-                lengths
-                    .iter()
-                    .zip(expected)
-                    .all(|(l, e)| (l - e).abs() < 1e-9)
-            );
-            let named: Vec<_> = all.iter().filter(|part| part.condition.is_some()).collect();
-            assert_eq!((named.len(), named[0].name.as_str()), (1, "left"));
-            let degree = mesh.shape(0).degree();
-            assert_eq!(named[0].nodes.len(), degree * cells[1] + 1);
-            assert!(all.iter().any(|part| part.name == "bottom"));
+/// Numbers parts that no group names and that would have one name, as they follow each other; numbers that named ones have are left out.
+fn number_alike(all: &mut [Segment]) {
+    let named = all.iter().filter(|part| part.condition.is_some());
+    let taken: BTreeSet<String> = named.map(|part| part.name.clone()).collect();
+    let is_taken = |base: &str, number: usize| taken.contains(&format!("{base} {number}"));
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for part in all.iter().filter(|part| part.condition.is_none()) {
+        *counts.entry(part.name.clone()).or_default() += 1;
+    }
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+    for part in all.iter_mut().filter(|part| part.condition.is_none()) {
+        let is_alone = counts[&part.name] == 1;
+        if is_alone && !(1..=taken.len() + 1).any(|number| is_taken(&part.name, number)) {
+            continue;
         }
-    }
-
-    #[test]
-    fn sides_without_a_group_have_names_of_their_own() {
-        let shape = Shape::NotchedStrip {
-            size: [100.0, 40.0],
-            depth: 12.0,
-            half_length: 12.0,
-        };
-        let all = segments(&shape.mesh(12, CellShape::Quad4), &[]).unwrap();
-        let names: BTreeSet<&str> = all.iter().map(|part| part.name.as_str()).collect();
-        assert!(all.len() > 4 && names.len() == all.len(), "{names:?}");
-    }
-
-    #[test]
-    fn a_hole_is_one_closed_segment_without_corners() {
-        let shape = Shape::StripWithHole {
-            size: [100.0, 40.0],
-            radius: 8.0,
-        };
-        let mesh = shape.mesh(8, CellShape::Quad4);
-        let all = segments(&mesh, &[]).unwrap();
-        assert_eq!(all.iter().filter(|part| part.outer).count(), 4);
-        let hole: Vec<_> = all.iter().filter(|part| !part.outer).collect();
-        assert_eq!(hole.len(), 1, "{hole:?}");
-        assert_eq!(hole[0].ends()[0], hole[0].ends()[1]);
-        assert_eq!(hole[0].name, "hole");
-    }
-
-    #[test]
-    fn groups_that_cannot_be_edges_are_refused() {
-        let mut mesh = Mesh::plate([3.0, 2.0], [3, 2], CellShape::Quad4);
-        mesh.name_nodes("inner", &[4, 5].into());
-        let told = |groups: &[&str]| segments(&mesh, groups).unwrap_err().to_string();
-        assert!(told(&["lef"]).contains("no group `lef`"));
-        for condition in [EdgeCondition::Free, EdgeCondition::Unknown] {
-            let told = parts(&mesh, &[("inner".into(), condition)]).unwrap_err();
-            assert!(told.to_string().contains("contains no edge"));
+        let number = numbers.entry(part.name.clone()).or_default();
+        *number += 1;
+        while is_taken(&part.name, *number) {
+            *number += 1;
         }
-    }
-
-    #[test]
-    fn nodes_of_a_held_group_that_are_no_edge_are_a_pad() {
-        let mut mesh = Mesh::plate([3.0, 2.0], [3, 2], CellShape::Quad4);
-        let names = |mesh: &Mesh| -> Vec<(String, bool, usize)> {
-            let found = parts(mesh, &[("pad".into(), EdgeCondition::Rigid)]).unwrap();
-            let own = found.into_iter().filter(|part| part.condition.is_some());
-            own.map(|part| (part.name, part.inside, part.nodes.len()))
-                .collect()
-        };
-        let inner: BTreeSet<usize> = (0..mesh.nodes.len())
-            .filter(|node| {
-                mesh.nodes[*node][1] == 1.0 && (0.5..2.5).contains(&mesh.nodes[*node][0])
-            })
-            .collect();
-        mesh.name_nodes("pad", &inner);
-        assert_eq!(names(&mesh), [("pad".to_owned(), true, 2)]);
-        let edge: BTreeSet<usize> = (0..mesh.nodes.len())
-            .filter(|node| mesh.nodes[*node][0] < 1.5)
-            .collect();
-        mesh.name_nodes("pad", &edge);
-        let found = names(&mesh);
-        assert!(found.contains(&("pad".to_owned(), true, 1)), "{found:?}");
-        assert_eq!(found.len(), 4);
+        part.name = format!("{} {number}", part.name);
     }
 }
+
+/// Makes groups of the parts between corners that are named as results name them, such as `bottom 2` of a side in pieces; other names,
+/// and those of groups, are left as they are.
+pub fn name_parts<'a>(mesh: &mut Mesh, names: impl Iterator<Item = &'a str>) {
+    let wanted: Vec<&str> = names
+        .filter(|name| !mesh.groups().contains_key(*name))
+        .collect();
+    // A mesh that cannot be divided is told of where it is used.
+    let Some(parts) = (!wanted.is_empty())
+        .then(|| segments(mesh, &[]).ok())
+        .flatten()
+    else {
+        return;
+    };
+    for part in parts.iter().filter(|part| wanted.contains(&&*part.name)) {
+        let within = |edge: &&Vec<usize>| {
+            let mut runs = part.nodes.windows(edge.len());
+            runs.any(|run| run[0] == edge[0] && run[run.len() - 1] == edge[1])
+        };
+        let edges = mesh.boundary().iter().filter(within).cloned().collect();
+        mesh.name_edges(&part.name, edges);
+    }
+}
+
+/// The smallest group of the mesh that all of an edge belongs to.
+fn group_of(mesh: &Mesh, nodes: &[usize]) -> Option<String> {
+    let groups = mesh.groups().iter();
+    let has = |node: &usize, members: &[usize]| members.binary_search(node).is_ok();
+    let whole = groups.filter(|(_, group)| {
+        !group.edges.is_empty() && nodes.iter().all(|node| has(node, &group.nodes))
+    });
+    let smallest = whole.min_by_key(|(_, group)| group.nodes.len());
+    smallest.map(|(name, _)| name.clone())
+}
+
+/// Where a part lies.
+fn describe(mesh: &Mesh, nodes: &[usize], outer: bool) -> String {
+    let at = |node: usize| {
+        let [x, y] = mesh.nodes[node];
+        format!("({x:.1}, {y:.1})")
+    };
+    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    match (outer, first == last) {
+        (true, true) => "the outer edge".to_owned(),
+        (false, true) => format!("the hole at {} mm", at(first)),
+        _ => format!("edge {} to {} mm", at(first), at(last)),
+    }
+}
+
+#[cfg(test)]
+mod tests;
