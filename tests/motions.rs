@@ -50,6 +50,38 @@ fn a_released_plate_is_written_with_tables_and_series() {
     assert!(folder.path().join("out/motion_energy.png").exists());
 }
 
+/// Of a slender plate many vibrations of bending are slower than the first longitudinal one, √(E₀/ρ)/(2 L) = 144 Hz here.
+#[test]
+fn the_longitudinal_frequency_of_a_slender_plate_is_none_of_bending() {
+    let rest = "[start]\nstretch = \"0 %\"\n[grip]\nmotion = \"hold\"\n[material]\ncard = \"neo-hooke\"\ndensity = \"1 g/cm^3\"\n\
+        [time]\nduration = \"1 ms\"\ninterval = \"0.5 ms\"\nstep = \"0.02 ms\"\n";
+    let slender = motion(rest)
+        .replace(
+            "length = \"30 mm\"\nwidth = \"10 mm\"",
+            "length = \"60 mm\"\nwidth = \"1 mm\"",
+        )
+        .replace("cells = [6, 2]", "cells = [60, 1]")
+        .replace("cells = [8, 4]", "cells = [30, 1]")
+        .replace("[\"30 mm\", \"5 mm\"]", "[\"60 mm\", \"0 mm\"]");
+    let folder = folder_with(&slender);
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    for model in ["mass-spring", "finite elements"] {
+        let row = report
+            .lines()
+            .find(|line| line.starts_with(&format!("| {model} | ")));
+        let found: f64 = row
+            .unwrap()
+            .split('|')
+            .nth(6)
+            .unwrap()
+            .trim()
+            .parse()
+            .unwrap();
+        assert!((found / 144.3 - 1.0).abs() < 0.02, "{model}: {found}");
+    }
+}
+
 #[test]
 fn a_viscous_plate_in_sine_motion_dissipates_under_gravity_and_a_force() {
     let rest = "[material]\ncard = \"pva-10\"\ndensity = \"1 g/cm^3\"\n\

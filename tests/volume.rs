@@ -283,3 +283,49 @@ fn what_cannot_change_its_volume_is_told() {
     let unknown = told("thick", "poisson_ratio = 0.3", ["", ""]);
     assert!(unknown.contains("plane-strain"), "{unknown}");
 }
+
+/// Two terms of a foam whose bulk modulus is negative, Σ 2 μᵢ (⅓ + βᵢ), have a stress without strain.
+#[test]
+fn a_foam_that_is_not_at_rest_is_refused() {
+    let check = |mu_2: &str| {
+        let folder = TempDir::new().unwrap();
+        study(folder.path(), "plane-stress", "poisson_ratio = 0.4");
+        let parameters = format!(
+            "mu_1 = \"1 MPa\"\nalpha_1 = 8\nnu_1 = 0\nmu_2 = \"{mu_2}\"\nalpha_2 = 2\nnu_2 = 0.45\n"
+        );
+        let text = samples::card("ogden-hill-2", &parameters).text;
+        fs::write(folder.path().join("own.toml"), text).unwrap();
+        let done = gelbench(folder.path(), &["check", "small.toml"]);
+        let output = done.get_output();
+        (output.status.code(), one_line(&output.stderr))
+    };
+    let (code, told) = check("-0.5 MPa");
+    assert!(
+        code == Some(2) && told.contains("unstable from rest"),
+        "{told}"
+    );
+    assert_eq!(check("0.5 MPa").0, Some(0));
+}
+
+/// At small strain E = 2 μ (1 + ν) instead of 3 μ; in plane strain the report has E, and not E/(1 − ν²).
+#[test]
+fn a_volume_that_changes_tension_is_warned_of() {
+    for (ratio, told) in [("0.4", true), ("0.4999", false)] {
+        let folder = TempDir::new().unwrap();
+        study(
+            folder.path(),
+            "plane-strain",
+            &format!("poisson_ratio = {ratio}"),
+        );
+        let done = gelbench(folder.path(), &["check", "small.toml"]).code(0);
+        let warned = one_line(&done.get_output().stderr);
+        assert_eq!(warned.contains("constant volume"), told, "{warned}");
+    }
+    let card = gelbench::material::Card::parse("own", "own.toml", &card("poisson_ratio = 0.4"));
+    let card = card.unwrap();
+    let shear = card.law.shear_modulus();
+    let [stretch, change] = card.tension_by_volume().unwrap();
+    assert!((1.0..=2.0).contains(&stretch) && change < 1.4 / 1.5 - 1.0);
+    let plane = card.in_plane_strain().unwrap();
+    assert!((plane.youngs_modulus() / (2.8 * shear) - 1.0).abs() < 1e-9);
+}

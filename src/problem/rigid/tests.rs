@@ -84,6 +84,16 @@ fn supports_that_suffice_are_accepted() {
     }
 }
 
+/// A single point has no line on which it slides.
+#[test]
+fn a_roller_on_a_point_is_refused() {
+    let told = checked(&strip(), &[("left", CLAMP), ("end", Support::Roller)]);
+    assert!(
+        told.len() == 1 && told[0].message.contains("single point"),
+        "{told:?}"
+    );
+}
+
 /// Two squares beside each other, at one corner, or apart.
 fn squares(by: [f64; 2]) -> Mesh {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
