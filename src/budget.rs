@@ -55,7 +55,7 @@ impl Budget {
             let quantities = [
                 ("cells", need.cells, budget.cells),
                 ("instants", need.instants, budget.instants),
-                ("steps of time", need.steps, budget.steps),
+                ("time steps", need.steps, budget.steps),
                 ("unknowns", need.unknowns, budget.unknowns),
                 ("bytes of memory", need.bytes, budget.bytes),
             ];
@@ -140,7 +140,7 @@ impl Excess {
     /// What to do: something smaller, or the option where it helps.
     pub fn remedy(&self, smaller: &str) -> String {
         match self.passes {
-            true => format!("{smaller}, or say --allow-large"),
+            true => format!("{smaller}, or use --allow-large"),
             false => smaller.to_owned(),
         }
     }
@@ -180,7 +180,7 @@ mod tests {
         );
         assert_eq!(
             excess.remedy("take fewer"),
-            "take fewer, or say --allow-large"
+            "take fewer, or use --allow-large"
         );
         assert_eq!(Budget::LARGE.afford(need(1_234_567.0)), Ok(()));
     }

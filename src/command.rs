@@ -102,7 +102,7 @@ enum Command {
         #[command(flatten)]
         printed: Printed,
     },
-    /// Read a study and its card and tell every fault, without computing
+    /// Read a study and its card and report every fault, without computing
     #[command(after_help = "Sample: gelbench check examples/pva_plate.toml")]
     Check {
         /// The study file
@@ -110,7 +110,7 @@ enum Command {
         #[command(flatten)]
         large: Large,
     },
-    /// Compare the models of a study with a displacement field of another program
+    /// Compare the models of a study with a displacement field from another program
     #[command(
         after_help = "Sample: gelbench compare examples/dog_bone.toml dog_bone.frd --factor 0.5"
     )]
@@ -134,19 +134,19 @@ enum Command {
         after_help = "Samples:\n  gelbench new my_plate    writes my_plate.toml\n  gelbench new my_strip --kind specimen"
     )]
     New {
-        /// Name of the file; `.toml` is added where it is missing
+        /// Name of the file; `.toml` is appended if missing
         name: PathBuf,
-        /// What it is
+        /// Kind of the file
         #[arg(long, value_enum, default_value = "plate")]
         kind: FileKind,
     },
     /// Print every key of studies and cards with unit, range and default
     #[command(after_help = "Sample: gelbench keys specimen")]
     Keys {
-        /// One kind of files; all where it is not given
+        /// A kind of files; all if omitted
         kind: Option<FileKind>,
     },
-    /// Print the JSON Schema of a kind of files, by which editors complete and check them
+    /// Print the JSON Schema of a kind of files, with which editors complete and check them
     #[command(
         after_help = "Sample: gelbench schema specimen > specimen.schema.json\n\nThe first line `#:schema specimen.schema.json` of a study makes taplo and its editors use it."
     )]
@@ -154,17 +154,17 @@ enum Command {
         /// The kind of files
         kind: FileKind,
     },
-    /// Redo the publication's claims and the comparisons with other codes
-    ///
-    /// Writes REPORT.md with its pictures, REPORT.html and the times into output/validation/; some cases into a folder in it.
+    /// Reproduce the publication's claims and the comparisons with other codes
+    /// Writes REPORT.md with its pictures, REPORT.html and the times to output/validation/; some cases write to a
+    /// subfolder.
     #[command(after_help = "Sample: gelbench validate vibrating-spring --output /tmp/validation")]
     Validate {
-        /// Cases to compute; all where none is named
+        /// Cases to compute; all if omitted
         cases: Vec<String>,
-        /// Leave out the slow cases
+        /// Skip the slow cases
         #[arg(long)]
         quick: bool,
-        /// The fields that other people measured: the case real-measurements
+        /// Compute the fields measured by other groups (the case real-measurements)
         #[arg(long)]
         field: bool,
         /// Write the report into this folder
@@ -173,10 +173,10 @@ enum Command {
         #[command(flatten)]
         printed: Printed,
     },
-    /// Compute a study many times, some of its keys changed
+    /// Compute a study many times with some of its keys varied
     #[command(after_help = sweep::HELP)]
     Sweep(Box<sweep::Options>),
-    /// Print the completions of a shell
+    /// Print the completion script of a shell
     #[command(
         after_help = "Sample: gelbench completions bash > ~/.local/share/bash-completion/completions/gelbench"
     )]
@@ -191,13 +191,13 @@ enum Command {
         #[arg(long, value_name = "FOLDER", default_value = "output/man")]
         output: PathBuf,
     },
-    /// Open the workbench: sheets to pull by hand, where the program `gelbench-workbench` is installed
+    /// Open the workbench, with sheets to pull by hand, if the program `gelbench-workbench` is installed
     #[command(after_help = "Sample: gelbench workbench examples/pva_plate.toml")]
     Workbench {
-        /// Studies, cards, tests and measured fields that lie on its table
+        /// Studies, cards, tests and measured fields to open
         files: Vec<PathBuf>,
     },
-    /// Look at material cards, fit laws to measured curves, convert test data
+    /// Show material cards, fit laws to measured curves, convert test data
     Materials {
         #[command(subcommand)]
         command: materials::Materials,

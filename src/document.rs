@@ -134,7 +134,7 @@ impl Faults {
             } else {
                 Severity::Error
             };
-            let rest = Diagnostic::error("", format!("and {more} more findings"));
+            let rest = Diagnostic::error("", format!("{more} further findings are not listed"));
             all.push(Diagnostic { severity, ..rest });
         }
         if ok { Ok(all) } else { Err(Error::Input(all)) }
@@ -170,7 +170,7 @@ impl<'a> Document<'a> {
         }
         let more = syntax_faults.len() - told;
         if more > 0 {
-            let message = format!("{SYNTAX}: and {more} more faults of syntax");
+            let message = format!("{SYNTAX}: {more} further syntax errors are not listed");
             faults.push(Diagnostic::error("", message).at(&source, text.len()..text.len()));
         }
         Self {

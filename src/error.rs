@@ -262,7 +262,7 @@ impl SolveFault {
                 "look at the supports and loads at that time; take shorter steps or generalised-α, and if generalised-α fails, `spectral_radius = 1`"
             }
             Self::TooManySteps { .. } => {
-                "take a shorter duration, longer steps, softer springs or less damping, or say --allow-large"
+                "take a shorter duration, longer steps, softer springs or less damping, or use --allow-large"
             }
             Self::OfMeasured(_) => {
                 "check that the markers cover the whole mesh (else state what is known of its edges, or give a mesh that ends where the markers do), \

@@ -261,7 +261,7 @@ impl fmt::Display for QuantityFault {
                 let (name, space) = (dimension.name(), if unit.is_empty() { "" } else { " " });
                 write!(
                     f,
-                    "is no possible {name}: other than zero it lies between {least:e} and {most:e}{space}{unit}"
+                    "is not a possible {name}: its absolute value must be zero or lie between {least:e} and {most:e}{space}{unit}"
                 )
             }
             Self::WrongDimension { unit, found } => {

@@ -149,7 +149,7 @@ fn large_studies_pass_where_one_says_so_and_impossible_ones_never() {
         &["compare", "s.toml", "s.toml"],
     ] {
         let said = told(("s.toml", text), command, 2);
-        assert!(said.contains("or say --allow-large"), "{command:?}: {said}");
+        assert!(said.contains("or use --allow-large"), "{command:?}: {said}");
     }
     let text = study(
         "released_plate.toml",
@@ -236,7 +236,7 @@ fn markers_and_outlines_measure_what_specimens_do() {
     let said = told(("m.csv", &grid("")), &many, 2);
     assert!(
         said.contains("cells, and 1,000,000 are allowed")
-            && said.contains("choose a larger --cell-size, or say --allow-large"),
+            && said.contains("choose a larger --cell-size, or use --allow-large"),
         "{said}"
     );
 }
@@ -301,7 +301,7 @@ fn what_is_no_file_is_refused_by_every_reader() {
         let done = gelbench(folder.path(), &command).code(2);
         let said = one_line(&done.get_output().stderr);
         assert!(
-            said.contains("it is no file; save what it gives"),
+            said.contains("it is not a regular file; save its output"),
             "{command:?}: {said}"
         );
     }

@@ -129,7 +129,7 @@ fn test_data_that_cannot_be_trusted_are_refused_with_line_and_remedy() {
     fs::write(folder.path().join("b.csv"), b"stretch,\0\xff\n").unwrap();
     let arguments = ["materials", "fit", "b.csv", "--all"];
     let refused = gelbench(folder.path(), &arguments).code(2);
-    assert!(words(&refused.get_output().stderr).contains("is no text"));
+    assert!(words(&refused.get_output().stderr).contains("is not a text file"));
 }
 
 #[test]

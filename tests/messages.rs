@@ -343,7 +343,7 @@ fn a_card_with_two_laws_is_told_to_have_one() {
     let two = card.replacen("law = ", "law = \"gent\"\nlaw = ", 1);
     let mixed = card.replacen("[data]", "jm = 30.0\n[data]", 1);
     for (card, expected) in [
-        (two, "a card has one law: leave one out"),
+        (two, "a card has one law: remove one"),
         (
             mixed,
             "yeoh has no jm: leave it out, or take another law (gent)",

@@ -7,7 +7,7 @@ displacement field and finds the nearest one that satisfies equilibrium and what
 >>> plate = gb.Plate(length=150, width=50, thickness=2, material="pva-10")
 >>> plate.solve(model="corrected", factors=[0.5]).force
 
-Plain numbers are mm, N, MPa; texts with a unit and quantities of pint are taken too.
+Plain numbers are mm, N, MPa; texts with a unit and pint quantities are accepted too.
 """
 
 from . import corrector

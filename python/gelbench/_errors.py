@@ -1,4 +1,4 @@
-"""What can go wrong, sorted by who must act on it."""
+"""Exceptions and warnings, by who must act on them."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ __all__ = ["Fault", "InputError", "PerformanceWarning", "SolveError", "WriteErro
 
 
 class Fault(NamedTuple):
-    """One fault of an input: where it is, what is wrong, and what to do about it."""
+    """One fault of an input: its location, its description and a remedy."""
 
     message: str
     """What is wrong."""
     key: str = ""
-    """The key or argument, such as ``plate.length``; empty where there is none."""
+    """The key or argument, such as ``plate.length``; empty if there is none."""
     hint: str | None = None
     """What to do about it."""
     file: str | None = None
-    """The file, where there is one."""
+    """The file, if there is one."""
     line: int | None = None
     """The line of the file, from 1."""
     is_warning: bool = False
-    """Whether it alone would stop nothing."""
+    """Whether the computation could continue in spite of it."""
     text: str = ""
-    """All of it in one line."""
+    """The whole fault in one line."""
 
     def __str__(self) -> str:
         return self.text or self.message
@@ -47,24 +47,24 @@ class InputError(ValueError):
 
 
 class SolveError(RuntimeError):
-    """A model has no solution that could be found.
+    """No solution of a model was found.
 
     Attributes
     ----------
     model : str
         The model, such as ``finite elements``.
     step : str
-        Where on the path, such as ``load factor 0.75 (reached 0.6183)``.
+        Position on the load path, such as ``load factor 0.75 (reached 0.6183)``.
     load_factor : float or None
-        The first load factor, or stretch of a plate, that was asked for and not reached.
+        The first requested load factor, or stretch of a plate, that was not reached.
     cell : str or None
-        The cell or node where it happened, with its place.
+        The cell or node where it happened, with its position.
     cause : str
         What happened.
     advice : str
         What to try.
     solution : gelbench.Solution or None
-        What was reached before; None where the error comes from another process, since solutions cannot be pickled.
+        The part reached before; None if the error comes from another process, because solutions cannot be pickled.
     """
 
     def __init__(
@@ -96,18 +96,18 @@ class WriteError(OSError):
 
 
 class PerformanceWarning(UserWarning):
-    """Something works, but much slower than it could."""
+    """The computation works, but much more slowly than possible."""
 
 
 class InMemory:
-    """What the library holds in memory: it cannot be pickled, and says so."""
+    """An object in the library's memory, which cannot be pickled and says so."""
 
     __slots__ = ()
 
     def __reduce__(self) -> tuple[Any, ...]:
         raise TypeError(
-            f"a gelbench.{type(self).__name__} cannot be pickled or copied, the library holds it in memory: "
-            "hand over the arrays and figures that are needed"
+            f"a gelbench.{type(self).__name__} cannot be pickled or copied because the library holds it in memory: "
+            "pass the arrays and figures that you need"
         )
 
 

@@ -1,4 +1,4 @@
-"""Meshes and fields in the words of PyVista and meshio."""
+"""Meshes and fields for PyVista and meshio."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NAMES = {
     23: "quad8",
     28: "quad9",
 }
-"""Names of meshio by the numbers of VTK."""
+"""Cell names of meshio by VTK cell type."""
 
 NUMBERS = {name: number for number, name in NAMES.items()}
 
@@ -44,7 +44,7 @@ def _places(points: Floats) -> Floats:
 
 
 def _shaped(values: Floats) -> Floats:
-    """Vectors with a third component, tensors as they are."""
+    """Vectors with a third component, tensors unchanged."""
     if values.ndim == 2 and values.shape[1] == 2:
         return _places(values)
     return values
@@ -91,14 +91,14 @@ def read_mesh(
         return np.asarray(mesh.points), _of_pyvista(mesh), {}, {}
     if hasattr(mesh, "cells") and hasattr(mesh, "point_sets"):
         return np.asarray(mesh.points), *_of_meshio(mesh)
-    raise fault("points", f"{type(mesh).__name__} is no mesh", "give a meshio.Mesh, a pyvista.UnstructuredGrid, or points and cells")
+    raise fault("points", f"{type(mesh).__name__} is not a mesh", "give a meshio.Mesh, a pyvista.UnstructuredGrid, or points and cells")
 
 
 def _of_pyvista(grid: Any) -> dict[str, Integers]:
     own: dict[int, Integers] = grid.cells_dict
     unknown = [kind for kind in own if int(kind) not in NAMES]
     if unknown:
-        raise fault("points", f"the grid has cells of VTK's kind {unknown[0]}", "give triangles and quadrilaterals")
+        raise fault("points", f"the grid has cells of VTK type {unknown[0]}", "give triangles and quadrilaterals")
     return {NAMES[int(kind)]: np.asarray(points, dtype=np.int64) for kind, points in own.items()}
 
 

@@ -1,4 +1,4 @@
-"""Laws written in Python: what they return, and whether it is right."""
+"""Laws written in Python: their return values and how these are checked."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Rows: TypeAlias = "Callable[[Floats, Floats], Floats]"
 
 
 def rows_of(evaluate: Law, stretch_range: tuple[float, float]) -> Rows:
-    """A law as the library asks it, its derivatives compared with differences within a range of stretches."""
+    """A law as the library evaluates it, with its derivatives compared with finite differences within a range of stretches."""
 
     def rows(i1: Floats, i2: Floats) -> Floats:
         found = Derivatives(*evaluate(i1, i2))
@@ -61,7 +61,7 @@ def rows_of(evaluate: Law, stretch_range: tuple[float, float]) -> Rows:
 
 
 def checked_range(stretch_range: Sequence[float]) -> tuple[float, float]:
-    """The stretches within which a law is trusted."""
+    """The range of stretches in which a law is valid."""
     try:
         low, high = (float(one) for one in stretch_range)
     except (TypeError, ValueError):
@@ -72,7 +72,7 @@ def checked_range(stretch_range: Sequence[float]) -> tuple[float, float]:
 
 
 def card_in_place(title: str, shear_modulus: float, stretch_range: tuple[float, float]) -> str:
-    """The card that a study is read with whose material is a law in Python: neo-Hooke of the same modulus and range."""
+    """The placeholder card with which a study of a law in Python is read: neo-Hooke with the same modulus and range."""
     return toml(
         {
             "title": title or "a law in Python",
@@ -91,7 +91,7 @@ def card_in_place(title: str, shear_modulus: float, stretch_range: tuple[float, 
 
 
 def _check_rest(rows: Rows) -> None:
-    """At rest the energy is zero, and the material resists being sheared."""
+    """At rest the energy is zero and the shear modulus positive."""
     energy, d1, d2 = rows(np.array([3.0]), np.array([3.0]))[0, :3]
     modulus = 2.0 * (d1 + d2)
     if not modulus > 0.0:
@@ -102,7 +102,7 @@ def _check_rest(rows: Rows) -> None:
 
 
 def _check_derivatives(rows: Rows, stretch_range: tuple[float, float]) -> None:
-    """Compares the derivatives of a law with differences, where both stretches in the plane are within the range."""
+    """Compares the derivatives of a law with finite differences wherever both in-plane stretches are within the range."""
     stretches = np.geomspace(*stretch_range, 25)
     first, second = (own.ravel() for own in np.meshgrid(stretches, stretches))
     squares = np.stack([first, second, 1 / (first * second)]) ** 2
@@ -113,9 +113,9 @@ def _check_derivatives(rows: Rows, stretch_range: tuple[float, float]) -> None:
     here = rows(i1, i2)
     if not np.isfinite(here).all():
         place = int(np.flatnonzero(~np.isfinite(here).all(axis=1))[0])
-        message = f"returns values that are no numbers at I₁ = {i1[place]:.3f}, I₂ = {i2[place]:.3f}"
+        message = f"returns values that are not finite numbers at I₁ = {i1[place]:.3f}, I₂ = {i2[place]:.3f}"
         low, high = stretch_range
-        hint = f"it must hold for stretches from {low:g} to {high:g} in both directions: give another stretch_range"
+        hint = f"it must be valid for stretches from {low:g} to {high:g} in both directions: give another stretch_range"
         raise fault("evaluate", message, hint)
     step1, step2 = 1e-5 * i1 / 3, 1e-5 * i2 / 3
     along1 = (rows(i1 + step1, i2) - rows(i1 - step1, i2)) / (2 * step1[:, None])
@@ -135,6 +135,6 @@ def _check_derivatives(rows: Rows, stretch_range: tuple[float, float]) -> None:
             raise fault(
                 "evaluate",
                 f"{name} is {given[worst]:g} at I₁ = {i1[worst]:.3f}, I₂ = {i2[worst]:.3f}, "
-                f"and the difference of what it derives is {difference[worst]:g}",
+                f"and the finite difference that it must equal is {difference[worst]:g}",
                 "the derivatives must be those of the energy within stretch_range",
             )

@@ -38,7 +38,7 @@ class Correction(Results):
 
     @property
     def explained(self) -> bool:
-        """Whether intervals hold what they say."""
+        """Whether the intervals are valid."""
         return self._verdict.startswith("explained")
 
     @property
@@ -48,7 +48,7 @@ class Correction(Results):
 
     @property
     def markers(self) -> Field:
-        """The markers of the last frame with what is left of them."""
+        """The markers of the last frame with their residuals."""
         return self.fields["markers"][-1]
 
     @property
@@ -67,7 +67,7 @@ class Correction(Results):
 
     @property
     def parameters(self) -> dict[str, Estimate]:
-        """Parameters of the law that were found with the field of the last frame, by key; none without ``fit=``."""
+        """Parameters of the law estimated with the field of the last frame, by key; empty without ``fit=``."""
         return {str(one["key"]): _estimate(one["found"], str(one["unit"])) for one in self._last["parameters"]}
 
     @property
@@ -128,8 +128,8 @@ def correct(
     ----------
     markers : path, list of paths, DataFrame, mapping or array_like
         The field: files of image correlation programs, one for each frame; a table with ``x [mm]``, ``y [mm]``, ``ux [mm]``,
-        ``uy [mm]``, and, where they are known, ``standard_deviation [mm]`` and ``frame``; or an array n × 4 of these in mm. Rows with
-        NaN and masked entries are markers that were lost.
+        ``uy [mm]``, and, if known, ``standard_deviation [mm]`` and ``frame``; or an array n × 4 of these in mm. Rows with
+        NaN or masked entries are lost markers.
     material : Material, str or path
         The material, or its card.
     thickness : quantity
@@ -142,29 +142,31 @@ def correct(
     force : mapping, optional
         Measured forces of grips on the specimen [N]: ``{"right": {"x": 1.2, "x_deviation": 0.02}}``; without a deviation 1 %.
     noise : quantity, optional
-        Standard deviation of the displacement's components [mm]; estimated where it is not given.
+        Standard deviation of the displacement components [mm]; estimated if omitted.
     edge_gap : quantity, optional
-        How far inside of the specimen's edge the outermost markers lie [mm].
+        How far inside the specimen's edge the outermost markers lie [mm].
     scale_error : quantity, optional
-        Standard deviation of the scale of the pictures, such as ``"0.1 %"`` or 0.001: a specimen 1 mm nearer to a camera 1 m away seems to grow by so much.
+        Standard deviation of the scale of the pictures, such as ``"0.1 %"`` or 0.001: a specimen 1 mm nearer to a
+        camera 1 m away seems to grow by this much.
     robust : {"no", "huber", "tukey"}, optional
-        Weights of markers that are far off.
+        Weights of outlying markers.
     physics : {"exact", "weighted"}, optional
-        How far the physics holds.
+        How exactly equilibrium holds.
     fit : sequence of str
-        One or two parameters of the law that are found with the field, see `Correction.parameters`; a force must be measured.
+        Parameters of the law to estimate with the field, or ``["all"]``, see `Correction.parameters`; a force must be measured.
+        One frame seldom determines more than one.
     conditions : path, optional
-        A file that says what is known instead of the arguments from `free` to `fit`.
+        A file with the known conditions, instead of the arguments from `free` to `fit`.
     unit, array, grid, columns, ignore_columns, encoding, y_axis, places
-        How files are read: the options of ``gelbench correct``.
+        How files are read; see the options of ``gelbench correct``.
     mesh, mesh_unit, merge_nodes, allow, outline, cell_size, refine, cells, holes
-        The specimen's mesh or outline, and how it is meshed: likewise. `mesh_unit` is a length's unit.
+        The specimen's mesh or outline, and how it is meshed; see the same options. `mesh_unit` is a unit of length.
     forces : path, optional
-        A testing machine's table beside the frames; `conditions` names its columns.
+        A testing machine's table for the frames; `conditions` names its columns.
     progress : callable or tqdm bar, optional
-        Is told each frame.
+        Is called for each frame.
     allow_large : bool
-        Whether to let pass what needs more than a common machine has.
+        Whether to allow computations beyond a common machine.
 
     Returns
     -------
@@ -174,9 +176,9 @@ def correct(
     Raises
     ------
     gelbench.InputError
-        With what is wrong and what to do.
+        With all faults and their remedies.
     gelbench.SolveError
-        Where no corrected field was found.
+        If no corrected field was found.
     """
     own = _material(material)
     said = {
@@ -194,7 +196,7 @@ def correct(
         lists = {key: value for key, value in (("edges", listed), ("force", measured)) if value}
         what = toml({**wanted, **lists})
     elif listed or measured or any(value is not None for value in said.values()):
-        raise fault("conditions", "is given beside what the file says", "say everything in the file, or nothing")
+        raise fault("conditions", "is given in addition to the file", "state all conditions in the file, or none")
     else:
         try:
             what = Path(conditions).read_text(encoding="utf-8")
@@ -263,7 +265,7 @@ def _edges(
     ]
     for name, values in known.items():
         if not isinstance(values, Mapping):
-            hint = 'give the components that are known, such as {"ux": 0, "uy": 0}; edges that are held are given so too'
+            hint = 'give the known components, such as {"ux": 0, "uy": 0}; fixed edges are given this way too'
             raise fault(f"known.{name}", f"is {values!r}", hint)
         told = {axis: text(value, "mm", f"known.{name}.{axis}") for axis, value in values.items()}
         edges.append({"names": [name], "condition": "known", **told})
@@ -278,9 +280,9 @@ def _forces(force: Mapping[str, Mapping[str, Quantity]]) -> list[dict[str, Any]]
             raise fault(f"force.{edge}", f"is {values!r}", 'give its components, such as {"x": 2.88, "x_deviation": 0.05}')
         for key in values:
             if key not in keys:
-                raise fault(f"force.{edge}.{key}", "is no key of a force", f"keys are {', '.join(keys)}")
+                raise fault(f"force.{edge}.{key}", "is not a key of a force", f"keys are {', '.join(keys)}")
             if key.endswith("_deviation") and key[0] not in values:
-                raise fault(f"force.{edge}.{key}", "belongs to no force", f"give {key[0]} too")
+                raise fault(f"force.{edge}.{key}", "belongs to a force that is not given", f"give {key[0]} too")
         for axis in ("x", "y"):
             if axis in values:
                 row = {"edge": edge, "axis": axis, "force": text(values[axis], "N", f"force.{edge}.{axis}")}

@@ -33,7 +33,7 @@ class Parameter(NamedTuple):
 
 
 def materials() -> dict[str, str]:
-    """The cards that come along.
+    """The shipped cards.
 
     Returns
     -------
@@ -57,8 +57,8 @@ def laws() -> dict[str, str]:
 class Material:
     """A hyperelastic material of a thin sheet: a law with its parameters, and where they come from.
 
-    Make one with `from_card`, `from_text` or `from_law`; `gelbench.fit` makes one of test data. Materials are equal where the texts
-    of their cards are.
+    Create one with `from_card`, `from_text` or `from_law`; `gelbench.fit` creates one from test data. Materials are equal
+    if the texts of their cards are.
     """
 
     __slots__ = ("_card", "_reference")
@@ -74,7 +74,7 @@ class Material:
         Parameters
         ----------
         card : str or path
-            The name of a card that comes along (see `gelbench.materials`), or the path of a ``.toml`` file, which is read once.
+            The name of a shipped card (see `gelbench.materials`), or the path of a ``.toml`` file, which is read once.
 
         Raises
         ------
@@ -84,7 +84,7 @@ class Material:
         try:
             name = os.fspath(card)
         except TypeError:
-            raise fault("material", f"{card!r} is no card", "give a Material, the name of a card, or the path of one") from None
+            raise fault("material", f"{card!r} is not a card", "give a Material, the name of a card, or the path of one") from None
         own = _core.MaterialCard.load(name, ".")
         return cls(own, name if name in materials() else str(Path(name).resolve()))
 
@@ -108,10 +108,10 @@ class Material:
         stretch_range: tuple[float, float] = (0.5, 3.0),
         quiet: bool = False,
     ) -> Material:
-        """Makes a material of a law Ψ(I₁, I₂) that is written in Python.
+        """Creates a material from a law Ψ(I₁, I₂) written in Python.
 
-        The sheet keeps its volume, and is in plane stress. Before the law is taken, the derivatives are compared with
-        differences of the energy wherever both stretches in the plane are within `stretch_range`.
+        The sheet is incompressible and in plane stress. Before the law is accepted, the derivatives are compared with
+        finite differences of the energy wherever both in-plane stretches are within `stretch_range`.
 
         Parameters
         ----------
@@ -121,9 +121,9 @@ class Material:
         name : str
             For messages.
         stretch_range : tuple of float
-            The stretches within which the law is trusted, the smallest and the largest.
+            The smallest and the largest stretch for which the law is valid.
         quiet : bool
-            Whether to leave out the warning that such a law is slow.
+            Whether to suppress the warning that such a law is slow.
 
         Warns
         -----
@@ -133,8 +133,8 @@ class Material:
         Raises
         ------
         gelbench.InputError
-            Where the derivatives are not those of the energy or have a wrong shape, the energy at rest is not zero, the shear
-            modulus is not positive, or `stretch_range` is none.
+            If the derivatives are not those of the energy or have a wrong shape, the energy at rest is not zero, the shear
+            modulus is not positive, or `stretch_range` is invalid.
         """
 
         within = checked_range(stretch_range)
@@ -158,12 +158,12 @@ class Material:
         Returns
         -------
         Material
-            With a card of its own, which says nothing of a fit any more.
+            With a card of its own, without the record of a fit.
 
         Raises
         ------
         gelbench.InputError
-            Where the law has no such parameter, or is none of gelbench's.
+            If the law has no such parameter or is not one of gelbench's.
         """
         units = {key: own.unit.strip("–") for key, own in self.parameters.items()}
         return Material(self._card.with_parameters({key: text(value, units.get(key, ""), key) for key, value in values.items()}))
@@ -205,12 +205,12 @@ class Material:
 
     @property
     def stretch_range(self) -> tuple[float, float]:
-        """The stretches within which it was calibrated."""
+        """The range of stretches of its calibration."""
         return self._card.stretch_range
 
     @property
     def density(self) -> float | None:
-        """Mass density [tonne/mm³], where the card says it."""
+        """Mass density [tonne/mm³], if the card states it."""
         return self._card.density
 
     @property
@@ -225,7 +225,7 @@ class Material:
 
     @property
     def note(self) -> str:
-        """What a user must know; may be empty."""
+        """Remarks on the use of the card; may be empty."""
         return self._card.note
 
     @property
@@ -234,7 +234,7 @@ class Material:
         return self._card.text
 
     def stable_range(self, test: str = "uniaxial") -> tuple[float, float]:
-        """The stretches between which the material is stable in a test.
+        """The range of stretches in which the material is stable in a test.
 
         Parameters
         ----------
@@ -260,12 +260,12 @@ class Material:
         Returns
         -------
         numpy.ndarray or float
-            P₁₁ [MPa], P₁₂ of shear, in the shape of `stretch`; NaN where `stretch` is.
+            P₁₁ [MPa], P₁₂ of shear, in the shape of `stretch`; NaN where `stretch` is NaN.
 
         Raises
         ------
         gelbench.InputError
-            Where a stretch is not positive or is masked, or the test is unknown.
+            If a stretch is not positive or is masked, or the test is unknown.
         """
         array = array_of(stretch, "stretch")
         if test != "shear" and (array <= 0.0).any():
@@ -305,9 +305,9 @@ class Material:
         Raises
         ------
         gelbench.InputError
-            Where there is no card: the material is a law in Python.
+            If there is no card because the material is a law in Python.
         gelbench.WriteError
-            Where the file cannot be written.
+            If the file cannot be written.
         """
         if not self.text:
             raise fault("material", "a law in Python has no card", "save its code")
@@ -340,7 +340,7 @@ class Material:
 
     def __reduce__(self) -> tuple[Any, ...]:
         if not self.text:
-            raise TypeError("a law in Python cannot be pickled: make it anew of its code")
+            raise TypeError("a law in Python cannot be pickled: create it again from its code")
         return (_of_text, (self.text, self.name, self._reference))
 
 
@@ -354,12 +354,12 @@ def material(value: Material | PathLike) -> Material:
 
 
 def shipped(value: Material) -> str | None:
-    """The name of a card that comes along."""
+    """The name of a shipped card."""
     return None if value._reference is None or value._reference.endswith(".toml") else value._reference
 
 
 def in_memory(value: Material) -> tuple[str, dict[str, bytes]]:
-    """The card that a study's text names where it is computed here, and the files that this name stands for."""
+    """The card named in a study's text that is computed here, and the files that this name stands for."""
     name = shipped(value)
     if name is not None:
         return name, {}
@@ -369,19 +369,19 @@ def in_memory(value: Material) -> tuple[str, dict[str, bytes]]:
 
 
 def on_disk(value: Material) -> str:
-    """The card that a study's text names for whoever computes it elsewhere."""
+    """The card named in a study's text that is computed elsewhere."""
     name = shipped(value) or value._reference
     if name is None:
-        hint = 'take write_study("plate.toml"), which writes the card beside the study, or save the material and give its file as card='
-        raise fault("material", f"the card `{value.name}` is in no file that a study can name", needs_card(value) or hint)
+        hint = 'use write_study("plate.toml"), which writes the card beside the study, or save the material and give its file as card='
+        raise fault("material", f"the card `{value.name}` is not in a file that a study can name", needs_card(value) or hint)
     if shipped(value) is None and not _is_as_read(value):
-        raise fault("material", f"{name} has changed since it was read", "read it again, or take write_study, which writes the card as it was")
+        raise fault("material", f"{name} has changed since it was read", "read it again, or use write_study, which writes the card as it was read")
     return name
 
 
 def needs_card(value: Material) -> str | None:
-    """What to do where no file can hold the material."""
-    return None if value.text else "no study can name a law in Python: take a law of gelbench, or solve it here"
+    """The remedy if the material cannot be written to a file."""
+    return None if value.text else "a study cannot name a law in Python: use a law of gelbench, or solve it here"
 
 
 def _is_as_read(value: Material) -> bool:

@@ -16,7 +16,7 @@ __all__ = ["Plate"]
 
 
 ARGUMENTS = {
-    "kind": "take gelbench.run for studies of other kinds",
+    "kind": "use gelbench.run for studies of other kinds",
     "plate.length": "give it as length=",
     "plate.width": "give it as width=",
     "plate.thickness": "give it as thickness=",
@@ -24,7 +24,7 @@ ARGUMENTS = {
     "material.card": "give it as material=",
     "load.stretches": "give them as factors= of solve, run and study",
 }
-"""Settings that arguments say, and what to do."""
+"""Settings that are arguments, and the remedy."""
 
 
 class Plate(StudyInMemory):
@@ -33,14 +33,14 @@ class Plate(StudyInMemory):
     Parameters
     ----------
     length, width, thickness : quantity
-        Measures at rest [mm].
+        Dimensions at rest [mm].
     material : Material, str or path
         The material, or its card.
     cells : tuple of int
         Cells of the lattice along and across.
     settings : mapping, optional
         Other keys of a study, by section where they have one, such as ``{"title": "Gel", "corrector": {"scheme": "gauss"}}``;
-        ``gelbench keys`` and the guide list them. What arguments say is refused here.
+        ``gelbench keys`` and the guide list them. Settings that are arguments are refused here.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Plate(StudyInMemory):
     """
 
     STRETCHES = (0.15, 0.3, 0.5, 0.75, 1.0)
-    """Stretches where none are given."""
+    """Stretches if none are given."""
 
     def __init__(
         self,

@@ -43,7 +43,7 @@ def axes(ax: Axes | None) -> Axes:
 
 
 def inline(draw: Callable[[Axes], object]) -> str:
-    """A picture for a notebook; nothing where matplotlib is not installed."""
+    """A picture for a notebook, if matplotlib is installed."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
@@ -64,7 +64,7 @@ def triangles(cells: Cells) -> Any:
 
 
 def label(name: str) -> str:
-    """The words of an array's name: ``von_mises_stress_at_nodes_MPa`` → ``von mises stress [MPa]``."""
+    """The label from an array's name: ``von_mises_stress_at_nodes_MPa`` → ``von mises stress [MPa]``."""
     words = name.replace("_at_nodes", "").split("_")
     known = {"MPa", "mm", "N"}
     unit = f" [{words.pop()}]" if words[-1] in known else ""
@@ -73,7 +73,7 @@ def label(name: str) -> str:
 
 
 def _limits(places: Floats, values: Floats) -> tuple[float, float, str]:
-    """The values between which all but 0.2 % of the area lies at either end, and the ends beyond which values reach far, as of corners."""
+    """The values between which all but 0.2 % of the area lies at either end, and the ends that values far exceed, as at corners."""
     sides = places[:, 1:] - places[:, :1]
     areas = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
     means = values.mean(axis=1)
@@ -123,7 +123,7 @@ def forces(solution: Solution, ax: Axes | None) -> Axes:
 
 
 def band_over_steps(bands: Mapping[str, Band], ax: Axes | None) -> Axes:
-    """Medians, and the bands of 5 … 95 % of the runs."""
+    """Medians and bands of 5 … 95 % of the runs."""
     own: Any = axes(ax)
     for name, band in bands.items():
         (line,) = own.plot(band.at, band.median, "o-", label=f"{name}, median")

@@ -8,11 +8,11 @@ from typing import Any, TypeAlias
 __all__ = ["Progress", "callback"]
 
 Progress: TypeAlias = "Callable[[str], object] | Any"
-"""A callable that is told what is being done, or a bar of tqdm."""
+"""A callable that receives progress messages, or a tqdm bar."""
 
 
 def callback(progress: Progress | None) -> Callable[[str], object] | None:
-    """What the computation calls: the callable itself, or one that moves a bar of tqdm."""
+    """The callable for the computation: the one given, or one that advances a tqdm bar."""
     if progress is None or not hasattr(progress, "set_postfix_str"):
         return progress
     bar: Any = progress

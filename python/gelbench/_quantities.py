@@ -21,7 +21,7 @@ PathLike: TypeAlias = "str | os.PathLike[str]"
 
 @runtime_checkable
 class SupportsUnits(Protocol):
-    """What pint's quantities can do."""
+    """The interface of pint quantities that is used."""
 
     @property
     def magnitude(self) -> Any: ...
@@ -34,7 +34,7 @@ Quantity: TypeAlias = "float | str | SupportsUnits"
 
 
 def text(value: Any, unit: str, argument: str) -> str:
-    """A quantity as a study's text has it; `unit` is that of plain numbers."""
+    """A quantity as in a study's text; `unit` applies to plain numbers."""
     if isinstance(value, str):
         return value
     if isinstance(value, SupportsUnits):
@@ -43,7 +43,7 @@ def text(value: Any, unit: str, argument: str) -> str:
         plain = float(value)
     except (TypeError, ValueError):
         hint = f'a number in {unit or "1"}, or a text with a unit'
-        raise fault(argument, f"{value!r} is no quantity", hint) from None
+        raise fault(argument, f"{value!r} is not a quantity", hint) from None
     return f"{plain!r} {unit}".rstrip()
 
 
@@ -53,7 +53,7 @@ def number(value: Any, unit: str, argument: str) -> float:
 
 
 def converted(value: SupportsUnits, unit: str, argument: str) -> Any:
-    """The numbers of a quantity of pint in a unit; none, or ``-``, is that of plain numbers."""
+    """The numbers of a pint quantity in a unit; empty or ``-`` means dimensionless."""
     wanted = "dimensionless" if unit in ("", "-", "–") else unit
     try:
         return value.to(wanted).magnitude
@@ -71,14 +71,14 @@ def magnitudes(value: Any, argument: str, unit: str = "") -> Any:
 
 
 def refuse_masked(value: Any, argument: str) -> None:
-    """Refuses masked entries where each is needed."""
+    """Refuses masked entries where every entry is needed."""
     if np.ma.is_masked(value):
         count = int(np.sum(np.ma.getmaskarray(value)))
-        raise fault(argument, f"has {count} masked entries", "fill them in, or leave them out")
+        raise fault(argument, f"has {count} masked entries", "fill in the values, or leave out the entries")
 
 
 def array_of(value: Any, argument: str, unit: str = "", *, missing: bool = False) -> Floats:
-    """An array of floats; masked entries are NaN where some may be missing, and else refused."""
+    """An array of floats; masked entries become NaN where missing values are allowed, otherwise they are refused."""
     plain = magnitudes(value, argument, unit)
     is_masked = np.ma.isMaskedArray(plain)
     if is_masked and not missing:
@@ -87,7 +87,7 @@ def array_of(value: Any, argument: str, unit: str = "", *, missing: bool = False
         found: Floats = np.ma.filled(plain.astype(np.float64), np.nan) if is_masked else np.asarray(plain, dtype=np.float64)
         return found
     except (TypeError, ValueError):
-        raise fault(argument, "is no array of numbers", "give floats") from None
+        raise fault(argument, "is not an array of numbers", "give floats") from None
 
 
 def floats(
@@ -126,7 +126,7 @@ def whole(value: Any, argument: str, least: int = 0) -> int:
 
 
 def scalar(value: Any) -> str | None:
-    """A truth or a number as a study has it; nothing of anything else."""
+    """A boolean or a number as in a study; None for anything else."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
@@ -146,7 +146,7 @@ def _value(value: Any) -> str:
     if isinstance(value, Iterable):
         items: Iterable[Any] = value
         return "[" + ", ".join(_value(one) for one in items) + "]"
-    raise fault("settings", f"{value!r} cannot stand in a study", "give texts, numbers, truths, or lists of them")
+    raise fault("settings", f"{value!r} is not possible in a study", "give texts, numbers, booleans, or lists of them")
 
 
 def toml(sections: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""What studies find, as the command tells it."""
+"""Results of studies, as the command reports them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["Field", "Results"]
 
 
 class Field(InMemory):
-    """A mesh with arrays, as a VTK file holds it: the unit is part of each array's name."""
+    """A mesh with arrays, as in a VTK file: the unit is part of each array's name."""
 
     def __init__(self, core: _core.Results, series: int, number: int, time: float | None) -> None:
         self._core = core
@@ -77,9 +77,9 @@ class Field(InMemory):
 
 
 class Results(InMemory):
-    """What a study finds: figures, requirements, warnings, fields, tables, pictures.
+    """Results of a study: figures, requirements, warnings, fields, tables, pictures.
 
-    Results cannot be pickled, the library holds them in memory; `json` can.
+    Results cannot be pickled because the library holds them in memory; `json` can.
     """
 
     def __init__(self, core: _core.Results) -> None:
@@ -97,7 +97,7 @@ class Results(InMemory):
 
     @property
     def passed(self) -> bool:
-        """Whether all requirements are met, without a doubt, by models that did not end early."""
+        """Whether all requirements are met, without doubts, by models that did not end early."""
         return self._core.passed
 
     @property
@@ -107,12 +107,12 @@ class Results(InMemory):
 
     @property
     def warnings(self) -> list[str]:
-        """What deserves attention."""
+        """Warnings."""
         return self._core.warnings
 
     @property
     def doubts(self) -> list[str]:
-        """What makes the figures doubtful."""
+        """Reasons to doubt the figures."""
         return self._core.doubts
 
     @property
@@ -122,7 +122,7 @@ class Results(InMemory):
 
     @cached_property
     def json(self) -> dict[str, Any]:
-        """Everything in figures: what the command writes into ``report.json``."""
+        """All figures: what the command writes to ``report.json``."""
         found: dict[str, Any] = json.loads(self._core.json())
         return found
 
@@ -133,7 +133,7 @@ class Results(InMemory):
 
     @property
     def requirements(self) -> list[dict[str, Any]]:
-        """The requirements, and what comes of them."""
+        """The requirements and whether they are met."""
         found: list[dict[str, Any]] = self.json["requirements"]
         return found
 
@@ -147,14 +147,14 @@ class Results(InMemory):
 
     @cached_property
     def tables(self) -> dict[str, pandas.DataFrame]:
-        """Tables by the names of their files."""
+        """Tables by file name."""
         import pandas
 
         return {name: pandas.read_csv(io.StringIO(text), comment="#") for name, text in self._core.tables()}
 
     @property
     def pictures(self) -> Mapping[str, bytes]:
-        """Pictures as PNG by their names; each is drawn when it is asked for."""
+        """Pictures as PNG by name; each is drawn on access."""
         return _Pictures(self._core)
 
     def write(self, folder: PathLike | None = None) -> list[Path]:
@@ -164,7 +164,7 @@ class Results(InMemory):
         Parameters
         ----------
         folder : str or path, optional
-            By default the folder that the study names, else ``output/`` and the study's name.
+            By default the folder named in the study, otherwise ``output/`` and the study's name.
 
         Returns
         -------
@@ -174,7 +174,7 @@ class Results(InMemory):
         Raises
         ------
         gelbench.WriteError
-            Where a file cannot be written, another process writes into the folder, or the study's own file would be replaced.
+            If a file cannot be written, another process writes to the folder, or the study file itself would be replaced.
         """
         return [Path(path) for path in self._core.write(None if folder is None else os.fspath(folder))]
 

@@ -23,12 +23,12 @@ __all__ = ["AtPoints", "GroupForce", "Solution", "State"]
 
 
 class GroupForce(NamedTuple):
-    """What happens at a group of nodes that is held, loaded or measured."""
+    """Force, moment and displacement of a group of nodes that is supported, loaded or measured."""
 
     force: Floats
     """Force of the supports on the sheet, x and y [N]."""
     moment: float
-    """Moment of that force about the group's mean deformed place [N·mm], counter-clockwise."""
+    """Moment of that force about the group's mean deformed position [N·mm], counter-clockwise."""
     displacement: Floats
     """Mean displacement, x and y [mm]."""
 
@@ -41,7 +41,7 @@ class AtPoints(NamedTuple):
     stress: Floats
     """Cauchy stress σ₁₁, σ₂₂, σ₁₂ [MPa], n × 3."""
     stretches: Floats
-    """Principal stretches, the larger in the plane, the smaller, and that of the thickness, n × 3."""
+    """Principal stretches: larger in-plane, smaller in-plane, thickness, n × 3."""
 
 
 class State(InMemory):
@@ -53,7 +53,7 @@ class State(InMemory):
     __slots__ = ("_arrays", "_errors", "_solution", "_step", "factor")
 
     factor: float
-    """Load factor; the stretch of a plate."""
+    """Load factor, or the stretch of a plate."""
 
     def __init__(self, solution: Solution, step: int, factor: float, errors: dict[str, float]) -> None:
         self._solution = solution
@@ -64,7 +64,7 @@ class State(InMemory):
 
     @property
     def displacement(self) -> Floats:
-        """ux, uy of every node [mm], n × 2; read-only, the library's own memory: take a copy to change it."""
+        """ux, uy of every node [mm], n × 2; read-only, in the library's own memory: copy it to change it."""
         return self._solution._core.displacement(self._step)
 
     @property
@@ -79,7 +79,7 @@ class State(InMemory):
 
     @property
     def groups(self) -> dict[str, GroupForce]:
-        """What happens at each group that is held, loaded or measured."""
+        """Force, moment and displacement of each group that is supported, loaded or measured."""
         found = self._solution._core.at_groups(self._step)
         return {
             name: GroupForce(np.array(force), moment, np.array(displacement))
@@ -93,7 +93,7 @@ class State(InMemory):
 
     @property
     def balance(self) -> float:
-        """What is left of all forces and moments together, over the largest of them."""
+        """Residual of the balance of all forces and moments, relative to the largest of them."""
         return self._solution._core.balance(self._step)
 
     @property
@@ -108,10 +108,10 @@ class State(InMemory):
 
     @property
     def error(self) -> dict[str, float]:
-        """Errors in percent, where ``solve(..., reference=True)`` has found them.
+        """Errors in percent after ``solve(..., reference=True)``.
 
-        Of springs and corrected fields the deviation from the finite elements, of these their own error. The names are those
-        of ``report.json``.
+        For springs and corrected fields the deviation from the finite elements, for finite elements their own error. The
+        names are those of ``report.json``.
         """
         return dict(self._errors)
 
@@ -145,7 +145,7 @@ class State(InMemory):
         Raises
         ------
         gelbench.InputError
-            Where a point is not on the sheet.
+            If a point is not on the sheet.
         """
         own = array_of(points, "points", "mm")
         places = finite(floats(np.atleast_2d(own), "points", (None, 2)), "points")
@@ -170,7 +170,7 @@ class State(InMemory):
         Parameters
         ----------
         quantity : str
-            An array of `point_data`; of vectors and tensors the first component is drawn.
+            An array of `point_data`; for vectors and tensors the first component is drawn.
         ax : matplotlib.axes.Axes, optional
             Where to draw.
         **options
@@ -191,7 +191,7 @@ class State(InMemory):
 
     @property
     def solution(self) -> Solution:
-        """The solution that it is part of."""
+        """The solution that the state belongs to."""
         return self._solution
 
     def __repr__(self) -> str:
@@ -207,8 +207,8 @@ class State(InMemory):
 class Solution(InMemory, Sequence[State]):
     """The equilibria of one model, one `State` for each load factor.
 
-    What a state has, a solution has too: that of its last state. An `IndexError` says where there is none. Solutions cannot be
-    pickled: the library holds them in memory.
+    A solution has the attributes of a state, which refer to its last state. Without a state they raise an `IndexError`. Solutions
+    cannot be pickled because the library holds them in memory.
     """
 
     def __init__(self, core: _core.Solution, model: str, errors: dict[float, dict[str, float]]) -> None:
@@ -244,12 +244,12 @@ class Solution(InMemory, Sequence[State]):
 
     @property
     def seconds(self) -> float:
-        """Time that the library took [s]."""
+        """Computing time of the library [s]."""
         return self._core.seconds
 
     @property
     def warnings(self) -> list[str]:
-        """What deserves attention, such as stretches beyond those of the card."""
+        """Warnings, such as stretches beyond the range of the card."""
         return self._core.warnings
 
     @property

@@ -19,7 +19,7 @@ from ._study import Factors, Files, Settings, StudyInMemory, factor_texts, merge
 __all__ = ["Condition", "Specimen"]
 
 Condition: TypeAlias = "str | Mapping[str, Any]"
-"""How a group is held or loaded: a kind, or its keys, such as ``{"x": "45 mm", "y": 0}``."""
+"""How a group is supported or loaded: a kind, or its keys, such as ``{"x": "45 mm", "y": 0}``."""
 
 UNITS = {
     "x": "mm",
@@ -33,7 +33,7 @@ UNITS = {
 """Units of plain numbers in supports and loads."""
 
 LOADS = {"traction": "MPa", "force": "N"}
-"""Those of x and y in loads."""
+"""Units of x and y in loads."""
 
 MEASURES = (
     "length",
@@ -50,7 +50,7 @@ MEASURES = (
 )
 
 ARGUMENTS = {
-    "kind": "take gelbench.run for studies of other kinds",
+    "kind": "use gelbench.run for studies of other kinds",
     "specimen.shape": "give it as the first argument",
     "specimen.thickness": "give it as thickness=",
     "specimen.cells": "give them as cells=",
@@ -64,7 +64,7 @@ ARGUMENTS = {
     "support": "give them as supports=",
     "load": "give them as loads=",
 }
-"""Settings that arguments say, and what to do."""
+"""Settings that are arguments, and the remedy."""
 
 
 class Specimen(StudyInMemory):
@@ -79,10 +79,10 @@ class Specimen(StudyInMemory):
     material : Material, str or path
         The material, or its card.
     supports : mapping
-        How groups are held, by name: ``"clamp"``, ``"roller"``, ``"symmetry"``, or keys such as ``{"x": 45, "y": 0}`` and
-        ``{"kind": "grip", "x_force": 3, "y": 0}``. Plain numbers are mm, N and rad. Several of one group stand in a list.
+        Supports of groups, by name: ``"clamp"``, ``"roller"``, ``"symmetry"``, or keys such as ``{"x": 45, "y": 0}`` and
+        ``{"kind": "grip", "x_force": 3, "y": 0}``. Plain numbers are mm, N and rad. Several for one group form a list.
     loads : mapping, optional
-        How groups are loaded: ``{"kind": "force", "x": 3}`` [N], ``{"kind": "traction", "y": 0.01}`` [MPa],
+        Loads on groups: ``{"kind": "force", "x": 3}`` [N], ``{"kind": "traction", "y": 0.01}`` [MPa],
         ``{"kind": "pressure", "pressure": 0.01}`` [MPa].
     measured : str
         The group whose force is measured.
@@ -91,8 +91,8 @@ class Specimen(StudyInMemory):
     lattice : {"quadrilaterals", "triangles"}
         Cells of the lattice.
     settings : mapping, optional
-        Other keys of a study, by section where they have one, such as ``{"finite_element": {"element": "T2"}}``. What arguments
-        say is refused here.
+        Other keys of a study, by section where they have one, such as ``{"finite_element": {"element": "T2"}}``. Settings
+        that are arguments are refused here.
     **measures : quantity
         Measures of the shape [mm]: ``length``, ``width``, ``hole_diameter``, ``notch_depth``, ``notch_length``,
         ``narrow_length``, ``narrow_width``, ``shoulder_length``, ``inner_radius``, ``outer_radius``; ``angle`` [rad].
@@ -106,7 +106,7 @@ class Specimen(StudyInMemory):
     """
 
     FACTORS = (1.0,)
-    """Load factors where none are given."""
+    """Load factors if none are given."""
 
     def __init__(
         self,
@@ -124,7 +124,7 @@ class Specimen(StudyInMemory):
     ) -> None:
         unknown = [name for name in measures if name not in MEASURES]
         if unknown:
-            raise fault(unknown[0], "is no measure of a shape", f"measures are {', '.join(MEASURES)}")
+            raise fault(unknown[0], "is not a dimension of a shape", f"measures are {', '.join(MEASURES)}")
         own = {
             name: text(value, "rad" if name == "angle" else "mm", name) for name, value in measures.items()
         }
@@ -158,19 +158,19 @@ class Specimen(StudyInMemory):
             Nodes of the cells, m × k, counted from 0, by kind: ``triangle``, ``triangle6``, ``quad``, ``quad8``, ``quad9``.
         groups : mapping, optional
             Groups by name: numbers of nodes (n), or both ends of each line (n × 2). ``left``, ``right``, ``bottom``, ``top`` and
-            ``boundary`` are there by themselves.
+            ``boundary`` exist automatically.
         unit : str
             Unit of the points.
         merge_nodes : quantity, optional
-            Nodes not farther from each other become one [mm].
+            Nodes no farther apart than this are merged [mm].
         allowed : sequence of {"seams", "parts", "hinges", "polygons"}
-            What looks like a fault of the mesh but is meant.
+            Apparent faults of the mesh that are intended.
         thickness, material, supports, measured, loads, settings
             As of `Specimen`.
 
         Notes
         -----
-        Nodes of no cell are left out: fields have the order of `Solution.points`.
+        Nodes without a cell are left out: fields have the order of `Solution.points`.
         """
         nodes: dict[str, Any] = {}
         lines: dict[str, Any] = {}
@@ -254,7 +254,7 @@ def _entries(groups: Mapping[str, Any], argument: str) -> list[dict[str, Any]]:
     for group, given in groups.items():
         for one in given if isinstance(given, (list, tuple)) else [given]:
             if not isinstance(one, (str, Mapping)):
-                hint = 'give a kind, such as "clamp", or keys, such as {"x": 45, "y": 0}; leave out what is free'
+                hint = 'give a kind, such as "clamp", or keys, such as {"x": 45, "y": 0}; leave out free components'
                 raise fault(f"{argument}.{group}", f"is {one!r}", hint)
             own: dict[str, Any] = {"kind": one} if isinstance(one, str) else dict(one)
             kind = own.pop("kind", "displacement" if argument == "supports" else "force")

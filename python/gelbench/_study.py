@@ -26,7 +26,7 @@ Settings: TypeAlias = "Mapping[str, Any]"
 """Keys of a study, by section where they have one."""
 
 Files: TypeAlias = "dict[str, bytes]"
-"""What is in memory, by the names that a study has for it."""
+"""Objects in memory, by the names used in a study."""
 
 class StudyInMemory:
     """A study that is solved."""
@@ -36,7 +36,7 @@ class StudyInMemory:
     _mesh: _core.GivenMesh | None = None
 
     def study(self, factors: Factors | None = None, *, card: PathLike | None = None) -> str:
-        """The text of the study, which ``gelbench run`` computes to the same bits.
+        """The text of the study, which ``gelbench run`` computes with bit-identical results.
 
         Parameters
         ----------
@@ -49,8 +49,8 @@ class StudyInMemory:
         Raises
         ------
         gelbench.InputError
-            Where the material is in no file, or its file has changed since: `write_study` writes both. No study can name a law in
-            Python. A mesh in memory must be saved, and `specimen.file` of the text name it.
+            If the material is not in a file, or its file has changed since: `write_study` writes both. A study cannot name
+            a law in Python. A mesh in memory must be saved and named by `specimen.file` in the text.
         """
         if card is None:
             return self._text(factors, on_disk(self.material))
@@ -66,7 +66,8 @@ class StudyInMemory:
         Parameters
         ----------
         path : str or path
-            The file, such as ``plate.toml``; its card is then ``plate-card.toml``, and none is written where the card comes along.
+            The file, such as ``plate.toml``; its card is then ``plate-card.toml``, and none is written if
+            the card is shipped with gelbench.
         factors : array_like, optional
             As in `solve`.
 
@@ -78,9 +79,9 @@ class StudyInMemory:
         Raises
         ------
         gelbench.InputError
-            Where the material is a law in Python, or the mesh is in memory.
+            If the material is a law in Python, or the mesh is in memory.
         gelbench.WriteError
-            Where a file cannot be written.
+            If a file cannot be written.
         """
         self._refuse_meshes_in_memory()
         self._refuse_laws_in_python()
@@ -146,9 +147,9 @@ class StudyInMemory:
         reference : bool
             Whether to solve all models, so that `State.error` is known.
         progress : callable or tqdm bar, optional
-            Is told each step in a line of text, from another thread.
+            Receives a line of text for each step, from another thread.
         allow_large : bool
-            Whether to let pass what needs more than a common machine has.
+            Whether to allow computations beyond a common machine.
 
         Returns
         -------
@@ -160,13 +161,13 @@ class StudyInMemory:
         gelbench.InputError
             With every fault of the problem.
         gelbench.SolveError
-            Where a load factor is not reached; its `solution` holds the others.
+            If a load factor is not reached; its `solution` contains the others.
 
         Notes
         -----
-        Other Python threads go on meanwhile, and Ctrl-C stops the computation. What deserves attention, such as a stretch beyond
-        those of the card, stands in `Solution.warnings`. A single model has no memory of loads before: a material that softens is
-        refused, take `run`.
+        Other Python threads continue meanwhile, and Ctrl-C stops the computation. Warnings, such as a stretch beyond the range
+        of the card, are in `Solution.warnings`. A single model does not store the load history: a softening material is
+        refused, use `run`.
         """
         study, files = self._here(factors)
         told = callback(progress)
@@ -242,7 +243,7 @@ def merged(
         keys = [name, *(f"{name}.{key}" for key in own)] if isinstance(own, Mapping) else [name]
         for key in keys:
             if key in (arguments or {}):
-                raise fault(f"settings.{key}", "is said by an argument", (arguments or {})[key])
+                raise fault(f"settings.{key}", "is set by an argument", (arguments or {})[key])
         found[name] = {**found.get(name, {}), **own} if isinstance(own, Mapping) else own
     return found
 
@@ -255,21 +256,21 @@ def run(path: PathLike, *, progress: Progress | None = None, allow_large: bool =
     path : str or path
         The study.
     progress : callable or tqdm bar, optional
-        Is told each step in a line of text, from another thread.
+        Receives a line of text for each step, from another thread.
     allow_large : bool
-        Whether to let pass what needs more than a common machine has.
+        Whether to allow computations beyond a common machine.
 
     Returns
     -------
     Results
-        Everything that the command gives; `Results.write` writes its files.
+        All results of the command; `Results.write` writes its files.
 
     Raises
     ------
     gelbench.InputError
         With every fault of the study.
     gelbench.SolveError
-        Where no model has any solution.
+        If no model has any solution.
     """
     return Results(_core.run(os.fspath(path), callback(progress), allow_large))
 
@@ -282,7 +283,7 @@ def check(path: PathLike, *, allow_large: bool = False) -> tuple[str, list[str]]
     about : str
         What it will compute.
     warnings : list of str
-        What deserves attention.
+        Warnings.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Many runs of a study: its keys varied over grids, lists, distributions and points of one's own."""
+"""Many runs of a study: its keys varied over grids, lists, distributions and given points."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["SweepPlan", "salib_problem", "sweep"]
 
 Values: TypeAlias = "str | Sequence[Any] | NDArray[Any]"
-"""A text as behind ``--vary KEY=``, or the values themselves."""
+"""A text as after ``--vary KEY=``, or the values themselves."""
 
 Points: TypeAlias = "Mapping[str, ArrayLike] | pandas.DataFrame"
 """Columns by keys with their units, such as ``plate.width [mm]``."""
@@ -35,7 +35,7 @@ Drawing: TypeAlias = Literal["sobol", "random"]
 
 
 def _word(value: Any, key: str) -> str:
-    """One value as a text, as a study has it."""
+    """One value as a text, as in a study."""
     text = scalar(value)
     if text is not None:
         return text
@@ -43,11 +43,11 @@ def _word(value: Any, key: str) -> str:
         return f"{float(value.magnitude)!r} {_unit(value)}".rstrip()
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
-    raise fault(f"parameters.{key}", f"{value!r} is no value of a key", "give numbers, texts or quantities")
+    raise fault(f"parameters.{key}", f"{value!r} is not a value of a key", "give numbers, texts or quantities")
 
 
 def _unit(value: SupportsUnits) -> str:
-    """The unit of a quantity of pint as studies have it: ``N/mm^2``."""
+    """The unit of a pint quantity as in studies: ``N/mm^2``."""
     return f"{getattr(value, 'units', ''):~C}".replace("**", "^")
 
 
@@ -121,14 +121,14 @@ def salib_problem(parameters: Mapping[str, Values]) -> dict[str, Any]:
 
 
 def _program() -> str:
-    """The file of what computes: a sweep goes on only with the same."""
+    """The file of the program: a sweep is continued only by the same one."""
     return str(_core.__file__)
 
 
 class SweepPlan:
     """The runs of a sweep, which are computed here, or in parts by other processes and machines.
 
-    Plans can be pickled; the files that a study names, such as cards, must be where they are for whoever computes.
+    Plans can be pickled; the files that a study names, such as cards, must be at the same paths wherever it is computed.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ class SweepPlan:
 
     Examples
     --------
-    With a cluster of ``dask.distributed``, which computes parts of lost workers again:
+    With a cluster of ``dask.distributed``, which recomputes the parts of lost workers:
 
     >>> plan = gb.SweepPlan("plate.toml", {"material.c10": "0.05+-0.002 MPa"}, samples=256)
     >>> parts = client.map(plan.part, range(1, 65), parts=64, pure=False)
@@ -163,7 +163,7 @@ class SweepPlan:
             path, text, files = study._in_memory(factors)
         else:
             if factors is not None:
-                raise fault("factors", "a study file has its own", "vary its keys, such as load.stretches.0")
+                raise fault("factors", "a study file states its own", "vary its keys, such as load.stretches.0")
             path = os.path.abspath(os.fspath(study))
             text = _core.text_of_file(path)
             read.append(path)
@@ -198,7 +198,7 @@ class SweepPlan:
 
     @property
     def settings(self) -> dict[str, Column]:
-        """What is set in each run, by keys with their units."""
+        """Values set in each run, by keys with their units."""
         return dict(self._core.settings())
 
     def run(
@@ -218,24 +218,24 @@ class SweepPlan:
         return SweepTable(found)
 
     def part(self, part: int, parts: int) -> SweepTable:
-        """Computes one part of so many, and writes nothing: a function for schedulers such as Dask.
+        """Computes one of several parts, and writes nothing: a function for schedulers such as Dask.
 
         Parameters
         ----------
         part : int
             The part, from 1.
         parts : int
-            How many there are; with ``len(plan)`` each is one run.
+            Number of parts; with ``len(plan)`` each is one run.
         """
         return self.run(shard=(part, parts))
 
     def join(self, tables: Iterable[SweepTable]) -> SweepTable:
-        """The tables of all parts as one, the same as of one `run`.
+        """The tables of all parts joined, identical to the table of one `run`.
 
         Raises
         ------
         gelbench.InputError
-            Where they are not the parts of this plan, or some are missing.
+            If they are not the parts of this plan, or some are missing.
         """
         return SweepTable(self._core.join([table._core for table in tables]))
 
@@ -259,7 +259,7 @@ def sweep(
     factors: Factors | None = None,
     allow_large: bool = False,
 ) -> SweepTable:
-    """Computes a study many times, some of its keys changed, as ``gelbench sweep`` does.
+    """Computes a study many times with some of its keys varied, as ``gelbench sweep`` does.
 
     Parameters
     ----------
@@ -292,9 +292,9 @@ def sweep(
     progress : callable or tqdm bar, optional
         Is told each run that has ended, from another thread.
     factors : array_like, optional
-        Load factors of a plate or specimen, as in `Plate.solve`; a study file has its own.
+        Load factors of a plate or specimen, as in `Plate.solve`; a study file states its own.
     allow_large : bool
-        Whether to let pass what needs more than a common machine has.
+        Whether to allow computations beyond a common machine.
 
     Returns
     -------
@@ -306,11 +306,11 @@ def sweep(
     gelbench.InputError
         With every fault of the study and of what is varied. A run without a solution is none: it stands in `SweepTable.faults`.
     gelbench.WriteError
-        Where files cannot be written.
+        If files cannot be written.
 
     Notes
     -----
-    Runs are computed beside one another, other Python threads go on meanwhile, and Ctrl-C stops the computation.
+    Runs are computed in parallel, other Python threads continue meanwhile, and Ctrl-C stops the computation.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What many runs of a study have found."""
+"""Results of many runs of a study."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ class Band(NamedTuple):
     high: Floats
     """95 % of them."""
     runs: NDArray[np.int64]
-    """How many runs have the figure at each step."""
+    """Number of runs that have the figure at each step."""
 
 
 class SweepTable:
-    """What many runs of a study have found: one row for each.
+    """Results of many runs of a study: one row for each.
 
     ``table["corrected.force_N@0.5"]`` is a column: figures are named by model, quantity with its unit, and the step, and are
     NaN where a run has none; what was varied is found by its key, with or without the unit. ``in`` and loops take names of columns,
@@ -64,7 +64,7 @@ class SweepTable:
 
     @cached_property
     def settings(self) -> dict[str, Column]:
-        """What was set in each run, by keys with their units: numbers as arrays, others as lists of texts."""
+        """Values set in each run, by keys with their units: numbers as arrays, others as lists of texts."""
         return dict(self._core.settings())
 
     @cached_property
@@ -79,17 +79,17 @@ class SweepTable:
 
     @property
     def passed(self) -> NDArray[np.bool_]:
-        """Whether each run meets all that the study requires."""
+        """Whether each run meets all requirements of the study."""
         return self._core.passed()
 
     @property
     def faults(self) -> list[str]:
-        """Why a run has no solution, or where a model ended early; empty texts where neither is the case."""
+        """Why a run has no solution, or where a model ended early; otherwise an empty text."""
         return self._core.faults()
 
     @property
     def run_warnings(self) -> list[str]:
-        """What deserves attention in each run, as ``sweep.csv`` has it: its warnings with `` | `` between them."""
+        """Warnings of each run, as in ``sweep.csv``, separated by `` | ``."""
         return self._core.run_warnings()
 
     @property
@@ -99,7 +99,7 @@ class SweepTable:
 
     @property
     def warnings(self) -> list[str]:
-        """What deserves attention: pictures that could not be drawn, and what is said of the runs, the same once."""
+        """Warnings: pictures that could not be drawn, and the warnings of the runs, each once."""
         return self._core.warnings
 
     def __getitem__(self, name: str) -> Any:
@@ -215,17 +215,17 @@ class SweepTable:
         Raises
         ------
         gelbench.WriteError
-            Where it cannot be written; there is never half a file.
+            If it cannot be written; a partial file is never left.
         """
         _written(path, lambda place: place.write_bytes(self._core.csv()))
 
     def to_parquet(self, path: PathLike) -> None:
-        """Writes the table as Parquet, with pyarrow; figures that a run has not are null.
+        """Writes the table as Parquet, with pyarrow; figures missing in a run are null.
 
         Raises
         ------
         gelbench.WriteError
-            Where it cannot be written; there is never half a file.
+            If it cannot be written; a partial file is never left.
         """
         import pyarrow
         from pyarrow import parquet

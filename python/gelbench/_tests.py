@@ -32,13 +32,13 @@ class Estimate(NamedTuple):
     unit: str
     """Unit; ``–`` for a plain number."""
     standard_error: float | None
-    """Standard error; None where there is none."""
+    """Standard error, or None."""
     interval: tuple[float, float] | None
-    """95 % interval; None where there is none."""
+    """95 % interval, or None."""
 
 
 UNITS_OF_COLUMNS = ("", "MPa", "mm", "N", "s")
-"""What a column of pint's quantities is converted into where its head says no unit; the first one that fits."""
+"""Units for a column of pint quantities whose header states none; the first that fits is used."""
 
 
 def _column(head: str, column: Any) -> tuple[str, Any]:
@@ -54,11 +54,11 @@ def _column(head: str, column: Any) -> tuple[str, Any]:
             return f"{head} [{unit or '-'}]", array_of(column, argument, unit, missing=True)
         except InputError:
             continue
-    raise fault(argument, "has a unit that no column takes", f"give one of {', '.join(UNITS_OF_COLUMNS[1:])}")
+    raise fault(argument, "has a unit that does not suit any column", f"give one of {', '.join(UNITS_OF_COLUMNS[1:])}")
 
 
 def _of_array(data: Any, columns: Sequence[str]) -> dict[str, Any]:
-    """The columns of an array; its unit, if it has one, must be that of all of them."""
+    """The columns of an array; its unit, if any, applies to all of them."""
     units = {column.rpartition("[")[2].rstrip("]") for column in columns}
     if isinstance(data, SupportsUnits) and len(units) > 1:
         raise fault("data", "is one array with one unit", f"give a mapping of columns, such as {columns[0]} and {columns[1]}")
@@ -95,7 +95,7 @@ class Fit:
         text, own, picture = found
         self._picture: bytes = picture
         self.json: dict[str, Any] = json.loads(text)
-        """Everything in figures, as ``gelbench materials fit`` writes it."""
+        """All figures, as ``gelbench materials fit`` writes it."""
         self.material = Material(own)
         """The material."""
 
@@ -121,24 +121,24 @@ class Fit:
 
     @property
     def covariance(self) -> Floats:
-        """Covariance of the parameters, n × n; NaN where there is none."""
+        """Covariance of the parameters, n × n; NaN if there is none."""
         errors = np.array([one.standard_error for one in self.parameters.values()], dtype=np.float64)
         return self.correlation * np.outer(errors, errors)
 
     @property
     def verdict(self) -> str | None:
-        """What the law leaves of the data: ``white noise``, ``correlated noise``, ``systematic`` (no intervals), ``rounding`` (likewise)."""
+        """Nature of the residuals: ``white noise``, ``correlated noise``, ``systematic`` (no intervals), ``rounding`` (likewise)."""
         found: Mapping[str, Any] | None = self.json["verdict"]
         return None if found is None else str(found["answer"])
 
     @property
     def rmse(self) -> float:
-        """Root of the mean square of the residuals [MPa]."""
+        """Root mean square of the residuals [MPa]."""
         return float(self.json["rmse_MPa"])
 
     @property
     def warnings(self) -> list[str]:
-        """What deserves attention."""
+        """Warnings."""
         return list(self.json["warnings"])
 
     @property
@@ -201,38 +201,38 @@ def fit(
         ``"nominal strain [-]"`` and ``"nominal stress [MPa]"``; of an array n × 2 they are `columns`. Rows with NaN and masked
         entries are left out; columns of pint are converted.
     law : str or None
-        Name of the law (see `gelbench.laws`); None takes the best of all.
+        Name of the law (see `gelbench.laws`); None selects the best of all.
     name : str
         Name of the material.
     test : {"uniaxial", "planar", "equibiaxial", "biaxial"}, optional
-        The test, where the data do not say it. Of several tests this, and whatever else the data do not say, may be a list with one
-        for each: ``test=["uniaxial", "planar"]``.
+        The test, if the data do not state it. For several tests this, and anything else the data do not state, may be a
+        list with one entry for each: ``test=["uniaxial", "planar"]``.
     stress : {"nominal", "cauchy"}, optional
-        Measure of stress, where the data do not say it.
+        Measure of stress, if the data do not state it.
     strain : {"stretch", "nominal", "logarithmic"}, optional
-        Measure of deformation, where the data do not say it.
+        Measure of deformation, if the data do not state it.
     stress_unit, strain_unit : str, optional
-        Units, where the data do not say them.
+        Units, if the data do not state them.
     weighting : {"absolute", "relative"}
-        What residuals are measured by.
+        Weighting of the residuals.
     bounds : mapping, optional
-        Limits of parameters by key [MPa, or plain], the lower and the upper one: ``{"c10": ("20 kPa", 0.06)}``.
+        Lower and upper limits of parameters by key [MPa, or dimensionless]: ``{"c10": ("20 kPa", 0.06)}``.
     starts : int
-        Starts of the search that are improved, 1 or more.
+        Number of starts that are optimised, 1 or more.
     relaxation : bool or int
-        A Prony series too, to tests with a column of times such as ``"time [s]"``: with as many terms as AICc asks for (True), or so
-        many. The law is that of long times.
+        Also fits a Prony series, to tests with a column of times such as ``"time [s]"``: with the number of terms selected
+        by AICc (True), or with this number. The law is that of long times.
     softening : bool
-        How the material softens by its largest load (Mullins effect), to loading and unloading. The law is that of the first
-        loading.
+        Also fits softening by the largest previous load (Mullins effect), to loading and unloading. The law is that of the
+        first loading.
     columns : tuple of str
         Heads of an array's columns.
     progress : callable or tqdm bar, optional
-        Is told what is being done.
+        Receives progress messages.
     **reading : str or quantity
-        What else the data do not say, by the keys of ``gelbench materials fit`` with ``_``: ``direction``, ``strain_ratio``, ``area``
-        [mm²], ``length``, ``width``, ``thickness`` [mm], ``time_unit``, ``cycle``, ``zero``, ``ramp``; such as ``cycle="last"`` or
-        ``area="8 mm^2"``.
+        Anything else the data do not state, by the keys of ``gelbench materials fit`` with ``_``: ``direction``,
+        ``strain_ratio``, ``area`` [mm²], ``length``, ``width``, ``thickness`` [mm], ``time_unit``, ``cycle``, ``zero``, ``ramp``;
+        such as ``cycle="last"`` or ``area="8 mm^2"``.
 
     Returns
     -------
@@ -242,7 +242,7 @@ def fit(
     Raises
     ------
     gelbench.InputError
-        With what is wrong with the data; nothing is guessed.
+        With all faults of the data; nothing is guessed.
     """
     several = isinstance(data, (list, tuple)) and len(data) > 0 and not np.isscalar(data[0]) and _are_tests(data)
     all_data = list(data) if several else [data]
@@ -264,9 +264,9 @@ def fit(
 
 
 def _history(law: str | None, relaxation: bool | int, softening: bool) -> str | None:
-    """What is fitted on top of a law."""
+    """Extensions fitted on top of a law."""
     if softening and relaxation is not False:
-        raise fault("softening", "relaxation and softening are fitted apart", "leave one of them out")
+        raise fault("softening", "relaxation and softening cannot be fitted together", "leave one of them out")
     if law is None and (softening or relaxation is not False):
         raise fault("law", "relaxation and softening are fitted on top of a law", 'name it, such as "yeoh"')
     if relaxation is not False:
@@ -275,18 +275,18 @@ def _history(law: str | None, relaxation: bool | int, softening: bool) -> str | 
 
 
 PLAIN = {"area": "mm^2", "length": "mm", "width": "mm", "thickness": "mm", "mass": "tonne"}
-"""Units of plain numbers in what is said of data."""
+"""Units of plain numbers in statements about data."""
 
 
 def _said(key: str, value: Any) -> str:
-    """What is said of data as a text."""
+    """A statement about data as a text."""
     if isinstance(value, (str, bool)) or (key not in PLAIN and not isinstance(value, SupportsUnits)):
         return str(value)
     return text(value, PLAIN.get(key, ""), key)
 
 
 def _statements(given: Mapping[str, Any], count: int) -> tuple[dict[str, str], list[str]]:
-    """What is said of all tests, and the lines above the table of each."""
+    """The statements about all tests, and the lines above the table of each."""
     said: dict[str, str] = {}
     heads = [""] * count
     for key, value in given.items():
@@ -335,16 +335,16 @@ class Identification:
         """The functions as TOML, as ``gelbench identify`` writes them."""
         self._picture: bytes = picture
         self.json: dict[str, Any] = json.loads(text)
-        """Everything in figures, as ``gelbench identify`` writes it."""
+        """All figures, as ``gelbench identify`` writes it."""
 
     @property
     def misfit(self) -> float:
-        """1 where force, motion and forms fit together."""
+        """1 if force, motion and forms are consistent."""
         return float(self.json["misfit"])
 
     @property
     def picture(self) -> bytes:
-        """The functions with their bands, and what is left of the signals, as a PNG."""
+        """The functions with their bands, and the residuals of the signals, as a PNG."""
         return self._picture
 
     def __repr__(self) -> str:
@@ -378,21 +378,21 @@ def identify(
     stiffness, damping : str
         Forms: ``"spline"``, ``"constant"``, ``"polynomial-3"`` and the like.
     stiffness_shape, damping_shape : {"free", "increasing", "decreasing"}
-        What is known of the functions.
+        Known shape of the functions.
     damping_over : {"extension", "rate"}
-        What D is a function of.
+        Argument of D.
     mass, length, area : quantity, optional
-        Mass that the force moves [tonne], length [mm] and cross-section [mm²] at rest, where the data do not say them; such as
+        Mass that the force moves [tonne], length [mm] and cross-section [mm²] at rest, if the data do not state them; such as
         ``"20 g"``.
     columns : tuple of str
         Heads of an array's columns.
     progress : callable or tqdm bar, optional
-        Is told what is being done.
+        Receives progress messages.
 
     Raises
     ------
     gelbench.InputError
-        Where the recording does not determine the functions.
+        If the recording does not determine the functions.
     """
     given = {"mass": mass, "length": length, "area": area}
     said = {key: _said(key, value) for key, value in given.items() if value is not None}

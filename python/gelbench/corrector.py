@@ -4,9 +4,9 @@ Of all fields that satisfy conditions, the one nearest to a given field is found
 
     minimise ½ ‖u − ū‖²_W   subject to   F(u) = 0,  T(u) = 0
 
-F is the governing equation at some unknowns, T what is known besides; both are `Condition` objects, whose values and Jacobians come
-from any program. Where there are as many conditions as unknowns, ū has a say in the multipliers only; where there are fewer, the
-data and the physics decide together.
+F is the governing equation at some unknowns, T the other known conditions; both are `Condition` objects, whose values and
+Jacobians come from any program. With as many conditions as unknowns, ū affects only the multipliers; with fewer, data and physics
+together determine the field.
 
 Examples
 --------
@@ -46,20 +46,20 @@ Csr: TypeAlias = "tuple[NDArray[np.int64], NDArray[np.int64], Floats]"
 
 
 class Condition:
-    """Conditions c(u) = 0 on a field of n unknowns, with one multiplier a row.
+    """Conditions c(u) = 0 on a field of n unknowns, with one multiplier per row.
 
     Parameters
     ----------
     name : str
         Name, for messages and multipliers.
     values : callable
-        Of a field (n), the m values c(u). A value that is no number says that the field is inadmissible: a shorter step is tried.
+        Of a field (n), the m values c(u). A NaN value marks the field as inadmissible: a shorter step is tried.
     jacobian : callable or matrix
-        Of a field, ∂c/∂u, m × n, sparse or dense; a matrix if it is always the same.
+        Of a field, ∂c/∂u, m × n, sparse or dense; a matrix if it is constant.
     curvature : callable, optional
-        Of a field and m multipliers ψ, Σ ψᵢ ∂²cᵢ/∂u∂u, n × n; it saves steps where c is not linear.
+        Of a field and m multipliers ψ, Σ ψᵢ ∂²cᵢ/∂u∂u, n × n; it saves steps if c is non-linear.
     unknowns : array_like of int, optional
-        The unknown that each row belongs to, where each belongs to one. Where all conditions together name each unknown once, the
+        The unknown that each row belongs to, if each belongs to one. If all conditions together name each unknown once, the
         system is solved as a square one.
     """
 
@@ -89,19 +89,19 @@ class Condition:
         return self._jacobian(np.asarray(u, dtype=np.float64))
 
     def check(self, u: ArrayLike, *, step: float = 1e-6, seed: int = 0) -> float:
-        """Compares the Jacobian with differences along a random direction.
+        """Compares the Jacobian with finite differences along a random direction.
 
         Parameters
         ----------
         u : array_like
             The field.
         step : float
-            Length of the direction over that of the field, or 1.
+            Length of the direction relative to that of the field, or to 1.
 
         Returns
         -------
         float
-            The deviation over the larger of both; some 1e-8 where all is well.
+            The deviation relative to the larger of both; about 1e-8 if the Jacobian is right.
         """
         field = finite(floats(u, "u", (None,)), "u")
         direction = np.random.default_rng(seed).standard_normal(field.size)
@@ -118,7 +118,7 @@ class Condition:
         def linearise(u: Floats) -> tuple[Floats, Csr]:
             values = self.values(u)
             if values.size != rows:
-                raise fault("conditions", f"`{self.name}` has {values.size} values, and had {rows}", "return as many each time")
+                raise fault("conditions", f"`{self.name}` has {values.size} values, and had {rows}", "return equally many each time")
             return values, _csr(self._jacobian(u), (rows, size), f"the Jacobian of `{self.name}`")
 
         def curvature(u: Floats, multipliers: Floats) -> Csr:
@@ -224,18 +224,18 @@ class Estimate(NamedTuple):
 
 
 class Corrected(NamedTuple):
-    """A corrected field, and how it was found."""
+    """A corrected field and its iterations."""
 
     field: Floats
     """u, n."""
     multipliers: dict[str, Floats]
     """Multipliers by condition: −∂(½ ‖u − ū‖²_W)/∂b of each row c(u) = b."""
     residuals: Floats
-    """The largest residual, as a distance over the largest entry, of the start and after each step."""
+    """The largest residual, as a distance relative to the largest entry, at the start and after each step."""
     lengths: Floats
-    """The share of the linearised step that was taken to get there; 1 for the start."""
+    """The fraction of the linearised step taken in each step; 1 for the start."""
     estimates: dict[int, Estimate]
-    """Unknowns that were asked for, with their uncertainty."""
+    """Requested unknowns with their uncertainty."""
 
     @property
     def steps(self) -> int:
@@ -265,34 +265,34 @@ def correct(
     conditions : sequence of Condition
         F and T.
     start : array_like, optional
-        Where the search begins, n; ū by default. Never begin at noisy data: the conditions are linearised there.
+        Start of the search, n; ū by default. Never start from noisy data: the conditions are linearised there.
     weights : array_like, optional
-        The diagonal of W, n: inverse variances of ū; 1 by default. An entry with the weight 0 has no data: it is a parameter that
-        is found with the field.
+        The diagonal of W, n: inverse variances of ū; 1 by default. An entry with weight 0 has no data: it is a parameter
+        that is estimated with the field.
     estimate : iterable of int
-        Unknowns whose uncertainty is wanted; the variance of the data follows from what is left of them.
+        Unknowns whose uncertainty is requested; the variance of the data follows from their residuals.
     tolerance : float
-        Largest residual as a distance over the largest entry of the field.
+        Largest residual, as a distance relative to the largest entry of the field.
     movement : float
-        Largest further move that is left undone, over the largest entry.
+        Largest remaining step that is not taken, relative to the largest entry.
     max_steps : int
-        Steps allowed.
+        Largest number of steps.
     solver : {"automatic", "dense", "cholesky", "kkt", "symmetric"}
         Form of the projection.
     progress : callable or tqdm bar, optional
-        Reserved for what takes long.
+        Reserved for long computations.
 
     Returns
     -------
     Corrected
-        The field, the multipliers, the way to it.
+        The field, the multipliers and the iterations.
 
     Raises
     ------
     gelbench.InputError
-        Where shapes do not fit, or numbers are none.
+        If shapes do not match, or values are not finite.
     gelbench.SolveError
-        Where no field is found, or conditions depend on each other: its rows are named.
+        If no field is found, or conditions are linearly dependent: the rows are named.
     """
     given = finite(floats(field, "field", (None,)), "field")
     begin = given if start is None else finite(floats(start, "start", (given.size,)), "start")
@@ -311,8 +311,8 @@ def correct(
     }
     listed = [condition._given(begin) for condition in conditions]
     if not (own > 0.0).any() and sum(one["rows"] for one in listed) < given.size:
-        hint = "give what is measured a positive weight, or as many conditions as unknowns"
-        raise fault("weights", "are all zero, and the conditions alone do not say the field", hint)
+        hint = "give measured entries a positive weight, or state as many conditions as unknowns"
+        raise fault("weights", "are all zero, and the conditions alone do not determine the field", hint)
     found = _core.corrected(given, begin, own, listed, settings, wanted, callback(progress))
     u, residuals, lengths, multipliers, estimates = found
     return Corrected(
@@ -329,13 +329,13 @@ def _refuse_equal_names(conditions: Sequence[Condition]) -> None:
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         message = f"two are named `{twice}`"
-        raise fault("conditions", message, "name each differently: multipliers are found by the names")
+        raise fault("conditions", message, "give each its own name: multipliers are accessed by name")
 
 
 def _not_negative(value: float, argument: str) -> float:
     found = float(array_of(value, argument).reshape(-1)[0])
     if not 0.0 <= found < np.inf:
-        raise fault(argument, f"is {value!r}", "it must be a number, and not negative")
+        raise fault(argument, f"is {value!r}", "it must be a number that is not negative")
     return found
 
 

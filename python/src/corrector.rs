@@ -24,7 +24,7 @@ fn sparse_rows(name: &str, columns: usize, matrix: &Csr<'_>) -> PyResult<SparseR
     let (begins, places, values) = (begins.as_slice()?, places.as_slice()?, values.as_slice()?);
     let wrong = |what: String| {
         let message = format!("conditions: a matrix of `{name}` {what}");
-        let hint = "indptr ascends from 0 to the number of entries, indices are columns from 0 on";
+        let hint = "indptr must ascend from 0 to the number of entries; indices are columns counted from 0";
         Python::attach(|py| Err(exception(py, &input(message, hint))))
     };
     let mut rows = SparseRows::new(columns);
@@ -153,7 +153,7 @@ impl Settings {
             let known = SOLVERS.map(|(name, _)| name).join(", ");
             input(
                 format!("there is no solver `{}`", self.solver),
-                format!("take one of {known}"),
+                format!("use one of {known}"),
             )
         };
         Ok(CorrectorSettings {

@@ -98,7 +98,7 @@ impl Options {
             "quadrilateral4" => CellShape::Quad4,
             "quadrilateral9" => CellShape::Quad9,
             other => {
-                let hint = "take triangle3, triangle6, quadrilateral4 or quadrilateral9";
+                let hint = "use triangle3, triangle6, quadrilateral4 or quadrilateral9";
                 return Err(input(format!("cells `{other}` are not known"), hint));
             }
         })
@@ -120,7 +120,7 @@ fn either(what: &str, chosen: Option<&str>, [yes, no]: [&str; 2]) -> Result<Opti
         Some(name) if name == no => Ok(Some(false)),
         Some(other) => Err(input(
             format!("{what} `{other}` is not known"),
-            format!("take {yes} or {no}"),
+            format!("use {yes} or {no}"),
         )),
     }
 }

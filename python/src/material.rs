@@ -40,7 +40,7 @@ impl MaterialCard {
             let message = format!("{} is a law in Python, without parameters", card.name);
             return Err(input(
                 message,
-                "make it anew of a function with other values",
+                "create it again from a function with other values",
             ));
         }
         let mut document = EditedDocument::parse(&card.text).map_err(refused)?;
@@ -192,7 +192,10 @@ impl MaterialCard {
     fn stable_range(&self, py: Python<'_>, test: &str) -> PyResult<(f64, f64)> {
         let mode = mode(test).map_err(|error| exception(py, &error))?;
         let Some(mode) = mode else {
-            let error = input("simple shear has no stable range here", "take another test");
+            let error = input(
+                "the stable range of simple shear is not computed",
+                "use another test",
+            );
             return Err(exception(py, &error));
         };
         caught(py, || stable_range(&*self.card.law, mode).into())
@@ -225,7 +228,7 @@ fn mode(name: &str) -> Result<Option<Mode>, Error> {
     let found = Mode::ALL.iter().find(|(known, _)| *known == name);
     found.map(|(_, mode)| Some(*mode)).ok_or_else(|| {
         let known = Mode::ALL.map(|(_, mode)| name_of(&Mode::ALL, mode));
-        let hint = format!("take {} or shear", known.join(", "));
+        let hint = format!("use {} or shear", known.join(", "));
         input(format!("there is no test `{name}`"), hint)
     })
 }

@@ -29,7 +29,7 @@ pub struct Results {
 #[derive(Default)]
 pub struct OfFrames {
     pub series: Vec<GridSeries>,
-    /// Tables by the names of their files.
+    /// Tables by file name.
     pub tables: Vec<(String, String)>,
 }
 

@@ -38,7 +38,7 @@ fn model_kind(name: &str) -> Result<ModelKind, Error> {
     let found = ModelKind::NAMES.iter().find(|(known, _)| *known == name);
     found.map(|(_, kind)| *kind).ok_or_else(|| {
         let known = ModelKind::NAMES.map(|(known, _)| known);
-        let hint = format!("take one of {}", known.join(", "));
+        let hint = format!("use one of {}", known.join(", "));
         input(format!("there is no model `{name}`"), hint)
     })
 }
@@ -179,7 +179,10 @@ impl GivenMesh {
             let wrong = nodes.iter().find(|node| number(node).is_none());
             let message = |node| format!("the mesh has no node {node}: it has {count}");
             match wrong {
-                Some(node) => Err(exception(py, &input(message(node), "nodes count from 0"))),
+                Some(node) => Err(exception(
+                    py,
+                    &input(message(node), "nodes are counted from 0"),
+                )),
                 None => Ok(nodes.iter().filter_map(number).collect::<Vec<_>>()),
             }
         };
@@ -212,9 +215,9 @@ impl GivenMesh {
 /// The kind of a cell by VTK's number.
 fn shape(kind: u8) -> Result<CellShape, Error> {
     CellShape::of_vtk_number(kind).ok_or_else(|| {
-        let message = format!("cells of VTK's kind {kind} are not known");
+        let message = format!("cells of VTK type {kind} are not supported");
         let hint =
-            "take triangles of 3 or 6 nodes (5, 22) and quadrilaterals of 4, 8 or 9 (9, 23, 28)";
+            "use triangles of 3 or 6 nodes (5, 22) and quadrilaterals of 4, 8 or 9 (9, 23, 28)";
         input(message, hint)
     })
 }

@@ -47,8 +47,8 @@ pub fn distributions(py: Python<'_>, vary: Vec<(String, Varied)>) -> PyResult<Ve
             Values::Between(ends, unit) => Ok((variable.key, false, ends, unit)),
             Values::Normal(normal, unit) => Ok((variable.key, true, normal, unit)),
             Values::Listed(_) => {
-                let hint = "give LOW..HIGH or MEAN+-DEVIATION, with a unit behind";
-                Err(input(format!("`{key}` is no distribution"), hint))
+                let hint = "give LOW..HIGH or MEAN+-DEVIATION, followed by a unit";
+                Err(input(format!("`{key}` is not a distribution"), hint))
             }
         }
     };
@@ -195,9 +195,12 @@ fn share(part: Option<(usize, usize)>, join: Option<usize>) -> Result<Share, Err
         (None, Some(parts)) => Ok(Share::Join(parts)),
         (Some((part, parts)), None) => Shard::new(part, parts).map(Share::Shard).ok_or_else(|| {
             let message = format!("there is no part {part} of {parts}");
-            input(message, "give the part, from 1 on, and how many there are")
+            input(
+                message,
+                "give the part, counted from 1, and the number of parts",
+            )
         }),
-        (Some(_), Some(_)) => Err(refused("either one part is computed, or all are joined")),
+        (Some(_), Some(_)) => Err(refused("compute one part or join all parts, not both")),
     }
 }
 
@@ -207,7 +210,7 @@ fn drawing(name: &str) -> Result<Method, Error> {
         "random" => Ok(Method::Random),
         other => {
             let message = format!("there is no method `{other}`");
-            Err(input(message, "take one of sobol, random"))
+            Err(input(message, "use one of sobol, random"))
         }
     }
 }

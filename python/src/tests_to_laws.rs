@@ -54,7 +54,7 @@ pub fn fit(
             .find(|key| !calibration::KEYS.contains(&key.as_str()))
         {
             let hint = suggestion(key, &calibration::KEYS, "one of");
-            return Err(input(format!("`{key}` says nothing of test data"), &hint));
+            return Err(input(format!("`{key}` is not a key of test data"), &hint));
         }
         if history.is_some() {
             // What relaxes or softens is the whole record.
@@ -109,7 +109,7 @@ fn with_history(
             let number = text.parse().ok().filter(|terms| *terms <= Terms::MOST);
             let told = || {
                 input(
-                    format!("relaxation={text} is no number of terms"),
+                    format!("relaxation={text} is not a number of terms"),
                     "True, or 0 to 6",
                 )
             };

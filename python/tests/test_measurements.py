@@ -180,7 +180,7 @@ def test_a_history_needs_a_law_and_is_of_one_kind(root):
     data = root / "examples/cyclic_loading.csv"
     with pytest.raises(gb.InputError, match="name it"):
         gb.fit(data, None, softening=True)
-    with pytest.raises(gb.InputError, match="fitted apart"):
+    with pytest.raises(gb.InputError, match="fitted together"):
         gb.fit(data, "neo-hooke", softening=True, relaxation=2)
     with pytest.raises(gb.InputError, match="number of terms"):
         gb.fit(root / "examples/ramp_and_hold.csv", "neo-hooke", relaxation=9)

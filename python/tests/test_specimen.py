@@ -103,7 +103,7 @@ def test_meshes_of_meshio_and_pyvista_pass_straight_in():
         (lambda points, cells: (points, {"hexahedron": cells}), "hexahedron"),
         (lambda points, cells: (np.where(points == 60.0, np.nan, points), {"quad": cells}), "not a number"),
         (lambda points, cells: (points, {"quad": cells}, {"end": [[1, 2, 3]]}), "end"),
-        (lambda points, cells: ("mesh.msh",), "no mesh"),
+        (lambda points, cells: ("mesh.msh",), "not a mesh"),
     ],
 )
 def test_what_is_no_mesh_is_refused_in_words(change, told):

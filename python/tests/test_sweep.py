@@ -166,10 +166,10 @@ def test_runs_without_a_solution_stand_in_the_table(study):
         ({"parameters": {"plate.lenght": ["1 mm", "2 mm"]}}, "did you mean `length`"),
         ({"parameters": {"material.c10": "0.05+-0.01 MPa"}}, "samples"),
         ({"parameters": {"plate.width": []}}, "there are no values"),
-        ({"parameters": {"plate.width": [None]}}, "no value of a key"),
+        ({"parameters": {"plate.width": [None]}}, "not a value of a key"),
         ({"parameters": {"plate.width": "45 mm,50 mm"}, "method": "halton"}, "sobol, random"),
         ({"parameters": {"plate.width": "45 mm,50 mm"}, "join": 3}, "output="),
-        ({"parameters": {"plate.width": "45 mm,50 mm"}, "factors": [0.5]}, "has its own"),
+        ({"parameters": {"plate.width": "45 mm,50 mm"}, "factors": [0.5]}, "states its own"),
     ],
 )
 def test_what_is_amiss_is_told(study, arguments, expected):
@@ -306,7 +306,7 @@ def test_salib_finds_the_variance_that_is_known():
     both = (c[1] * t[1]) ** 2
     assert found["S1"] == pytest.approx(alone / (alone.sum() + both), abs=0.05)
     assert found["ST"] == pytest.approx((alone + both) / (alone.sum() + both), abs=0.05)
-    with pytest.raises(gb.InputError, match="no distribution"):
+    with pytest.raises(gb.InputError, match="not a distribution"):
         gb.salib_problem({"plate.width": "45 mm,50 mm"})
 
 

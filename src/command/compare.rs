@@ -29,24 +29,24 @@ use crate::units::{self, Dimension};
 /// What the command line says about a comparison.
 #[derive(Args)]
 pub struct Options {
-    /// The study file: a plate, or one of the kind specimen
+    /// The study file, of kind plate or specimen
     pub study: PathBuf,
     /// The field: .vtu, .vtk, CalculiX' .frd, or .csv with X, Y, ux, uy
     pub field: PathBuf,
-    /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study where it is not given
+    /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study if omitted
     #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio, allow_hyphen_values = true)]
     pub factor: Option<f64>,
-    /// The file's unit of length: mm where neither the file nor this says it. It corrects the head of a table whose columns
-    /// all name one other unit
+    /// The file's unit of length, mm if neither the file nor this option states it. It corrects the header of a table whose
+    /// columns all state one other unit
     #[arg(long, value_name = "UNIT", value_parser = length)]
     pub unit: Option<f64>,
-    /// Columns of a table that are to be passed over; those that are not known are refused else
+    /// Columns of a table to ignore; other unknown columns are refused
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     pub ignore_columns: Vec<String>,
     /// The array of a VTK file
     #[arg(long, value_name = "NAME")]
     pub array: Option<String>,
-    /// The time of the step in a .frd file or of the rows in a column `time`, where it is not the load factor
+    /// The time of the step in a .frd file or of the rows in a column `time`, if it differs from the load factor
     #[arg(long, value_name = "TIME")]
     pub time: Option<f64>,
     /// Write a report and VTU files with the differences into this folder

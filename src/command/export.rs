@@ -22,24 +22,24 @@ use crate::studies::{Kind, specimen};
 pub enum Level {
     /// The coarsest
     Coarse,
-    /// The one between
+    /// The middle one
     Middle,
-    /// The finest of the three; `run` of a specimen may halve it once more where it is too coarse to judge
+    /// The finest of the three; `run` of a specimen may refine it once more if it is too coarse to judge the tolerances
     Fine,
 }
 
 /// What the command line says about an export.
 #[derive(Args)]
 pub struct Options {
-    /// The study file: a plate, or one of the kind specimen
+    /// The study file, of kind plate or specimen
     pub study: PathBuf,
-    /// The code
+    /// The code to write for
     #[arg(long = "to", value_name = "CODE", value_parser = one_of(&Code::NAMES))]
     pub code: Code,
-    /// Write this file instead of one in output/
+    /// File to write instead of one in output/
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Which of the three finite-element meshes
+    /// Which of the three finite-element meshes to write
     #[arg(long = "mesh", value_enum, default_value = "fine")]
     pub level: Level,
     /// Bulk modulus over the initial shear modulus, for CalculiX and FEBio

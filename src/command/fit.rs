@@ -27,36 +27,36 @@ use crate::results::{fit_json, fit_picture};
 #[derive(Args)]
 #[command(group = ArgGroup::new("laws").required(true))]
 pub struct FitArguments {
-    /// Files of test data; all of them are fitted together
+    /// Files of test data, all fitted together
     #[arg(required = true)]
     data: Vec<PathBuf>,
     /// The law
     #[arg(long, group = "laws", value_parser = a_law())]
     law: Option<&'static Law>,
-    /// Fit all laws, rank them, and write the first one that is stable over the data and whose parameters they all tell
+    /// Fit all laws, rank them, and write the first one that is stable over the data and whose parameters are all identifiable
     #[arg(long, group = "laws")]
     all: bool,
-    /// Fit a Prony series too, to tests with a column of times: relaxation, creep, cycles, several rates; with as many terms as AICc
-    /// asks for, or so many
+    /// Also fit a Prony series, to tests with a column of times (relaxation, creep, cycles, several rates), with this
+    /// number of terms; selected by AICc if no number is given
     #[arg(long, value_name = "TERMS", num_args = 0..=1, default_missing_value = "automatic", conflicts_with = "all")]
     relaxation: Option<String>,
-    /// Fit how the material softens by its largest load (Mullins effect, after Ogden and Roxburgh), to loading and unloading
+    /// Fit softening by the largest previous load (Mullins effect, after Ogden and Roxburgh) to loading and unloading
     #[arg(long, conflicts_with_all = ["all", "relaxation"])]
     softening: bool,
     /// Fit the softening alone, on top of the law of this card
     #[arg(long, group = "laws", requires = "softening")]
     card: Option<String>,
-    /// absolute: differences of stress count alike; relative: relative differences do, where a stress below 1 % of its test's
-    /// largest counts as that 1 %
+    /// absolute: equal weight for stress differences; relative: equal weight for relative differences, with stresses below
+    /// 1 % of the test's largest taken as that 1 %
     #[arg(long, default_value = "absolute", value_parser = one_of(&Weighting::NAMES))]
     weighting: Weighting,
     /// Keep a parameter within limits, in MPa, rad or as a ratio
     #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
     bounds: Vec<String>,
-    /// How many starts are improved
+    /// Number of starts that are optimised
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
-    /// Name of the files that are written; the first file's and the law's where it is not given
+    /// Name of the written files; the first file's and the law's if omitted
     #[arg(long)]
     name: Option<String>,
     /// Write into this folder
@@ -81,7 +81,7 @@ pub struct ConvertArguments {
     /// Unit of stress to write
     #[arg(long, value_name = "UNIT", default_value = "MPa")]
     to_unit: String,
-    /// The file to write; standard output where it is not given
+    /// The file to write; standard output if omitted
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]

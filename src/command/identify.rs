@@ -42,7 +42,7 @@ Samples:
 /// What the command line says about an identification.
 #[derive(Args)]
 pub struct Options {
-    /// The recording
+    /// The recording to identify from
     #[arg(required_unless_present = "sample")]
     data: Option<PathBuf>,
     /// The mass that the force moves
@@ -51,7 +51,7 @@ pub struct Options {
     /// The length at rest
     #[arg(long)]
     length: Option<String>,
-    /// The cross-section at rest: with it and the length the law is one of the material, for springs of any length
+    /// The cross-section at rest: with it and the length, the law is a material law, for springs of any length
     #[arg(long)]
     area: Option<String>,
     /// Form of K(·): constant, polynomial-N, spline or spline-N
@@ -60,19 +60,19 @@ pub struct Options {
     /// Form of D(·)
     #[arg(long, value_name = "FORM", default_value = "spline", value_parser = Form::parse)]
     damping: Form,
-    /// What is known of K(·)
+    /// Known shape of K(·)
     #[arg(long, value_enum, default_value = "free")]
     stiffness_shape: KnownShape,
-    /// What is known of D(·)
+    /// Known shape of D(·)
     #[arg(long, value_enum, default_value = "free")]
     damping_shape: KnownShape,
-    /// What D(·) is a function of
+    /// Argument of D(·)
     #[arg(long, value_enum, default_value = "extension")]
     damping_over: Over,
     /// Write the law, the picture and the figures into this folder instead of output/NAME/
     #[arg(long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Write a computed recording of known functions into this file, and do no more
+    /// Write a computed recording of known functions to this file and stop
     #[arg(long, value_name = "FILE", conflicts_with = "data")]
     sample: Option<PathBuf>,
     /// Seed of the computed recording's noise
@@ -86,11 +86,11 @@ pub struct Options {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum KnownShape {
-    /// Nothing
+    /// Nothing is known
     Free,
-    /// It nowhere falls
+    /// It does not decrease anywhere
     Increasing,
-    /// It nowhere rises
+    /// It does not increase anywhere
     Decreasing,
 }
 

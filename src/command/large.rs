@@ -7,8 +7,8 @@ use crate::budget::Budget;
 /// What a command may use.
 #[derive(Args, Debug)]
 pub struct Large {
-    /// Let pass what needs more than a common machine has: over a million cells, 20,000 instants or 8 GB of memory, as
-    /// estimated before anything is built
+    /// Allow computations beyond a common machine: over a million cells, 20,000 instants or 8 GB of memory, as estimated
+    /// before anything is built
     #[arg(long)]
     allow_large: bool,
 }

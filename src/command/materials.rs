@@ -14,30 +14,30 @@ use crate::results::{Drawing, card_curves, comparison_chart};
 
 #[derive(Subcommand)]
 pub enum Materials {
-    /// List the cards that come along, and the laws
+    /// List the shipped cards and the laws
     List,
     /// Show one card: law, parameters, moduli, curves, stable range, source
     #[command(after_help = "Sample: gelbench materials show pva-10")]
     Show {
-        /// Name of a card that comes along, or path of one ending in .toml
+        /// Name of a shipped card, or path of a card ending in .toml
         card: String,
     },
-    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear; where it softens, loading and unloading; where it relaxes, its modulus over time, and
-    /// storage and loss modulus over frequency
+    /// Plot the curves of a card: uniaxial, planar and equibiaxial tension, simple shear; loading and unloading if it
+    /// softens; modulus against time, storage and loss modulus against frequency if it relaxes
     #[command(
         after_help = "Sample: gelbench materials plot pva-10    writes output/materials/pva-10_curves.png"
     )]
     Plot {
-        /// Name of a card that comes along, or path of one ending in .toml
+        /// Name of a shipped card, or path of a card ending in .toml
         card: String,
-        /// The picture; output/materials/ and the card's name with _curves.png where it is not given
+        /// The picture; output/materials/ and the card's name with _curves.png if omitted
         #[arg(long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
-    /// Draw the uniaxial curves of several cards in one picture and tell their moduli
+    /// Plot the uniaxial curves of several cards in one picture and print their moduli
     #[command(after_help = "Sample: gelbench materials compare pva-10 pva-10-cauchy neo-hooke")]
     Compare {
-        /// Names of cards that come along, or paths of ones ending in .toml
+        /// Names of shipped cards, or paths of cards ending in .toml
         #[arg(required = true, num_args = 2..)]
         cards: Vec<String>,
         /// The picture
@@ -51,10 +51,10 @@ pub enum Materials {
     /// Fit a law to measured curves and write a card, a picture and the figures
     #[command(after_help = FIT_HELP)]
     Fit(Box<FitArguments>),
-    /// Fit a card again to the data that it names, and tell whether the parameters are the same
+    /// Refit a card to the data that it names, and report whether the parameters agree
     #[command(after_help = "Sample: gelbench materials refit treloar-ogden-3")]
     Refit {
-        /// Name of a card that comes along, or path of one ending in .toml
+        /// Name of a shipped card, or path of a card ending in .toml
         card: String,
     },
     /// Write test data in another stress measure, strain measure or unit

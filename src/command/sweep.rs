@@ -35,28 +35,28 @@ Samples:
 pub struct Options {
     /// The study
     study: PathBuf,
-    /// A key with its values; given once for each
+    /// A key with its values; repeat it for each key
     #[arg(long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
     /// Draw the parameters of the study's card from a fit: the JSON file of `materials fit`
     #[arg(long, value_name = "FILE")]
     fit: Option<PathBuf>,
-    /// Points that another program has chosen: a table with a column for each key, as `plate.width [mm]`
+    /// Points chosen by another program: a table with a column for each key, such as `plate.width [mm]`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["fit", "samples"])]
     points: Option<PathBuf>,
-    /// How many points of the distributions are drawn
+    /// Number of points drawn from the distributions
     #[arg(long, value_name = "COUNT")]
     samples: Option<usize>,
-    /// How they are drawn
+    /// Sampling method
     #[arg(long, value_enum, default_value = "sobol")]
     method: Drawing,
-    /// What tells one drawing from another
+    /// Seed of the random numbers
     #[arg(long, default_value_t = 1)]
     seed: u32,
-    /// Compute only the runs of one part of so many, into a folder of their own
+    /// Compute only the runs of this part, such as 3/100, into a folder of its own
     #[arg(long, value_name = "PART/PARTS", value_parser = shard, conflicts_with = "join")]
     shard: Option<Shard>,
-    /// Put the tables of so many parts together
+    /// Join the tables of this many parts
     #[arg(long, value_name = "PARTS")]
     join: Option<usize>,
     /// Write into this folder instead of output/STUDY_sweep
@@ -71,9 +71,9 @@ pub struct Options {
 /// How points are drawn.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Drawing {
-    /// Sobol's sequence, scrambled: more even than chance
+    /// Scrambled Sobol' sequence: more even than random points
     Sobol,
-    /// By chance
+    /// Independent random points
     Random,
 }
 

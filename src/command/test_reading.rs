@@ -7,7 +7,7 @@ use crate::document::Statements;
 
 /// What the files of test data do not say themselves.
 #[derive(Args)]
-#[command(next_help_heading = "What the files do not say")]
+#[command(next_help_heading = "What the files do not state")]
 pub struct ReadingArguments {
     /// uniaxial, planar, equibiaxial, biaxial or compression
     #[arg(long, allow_hyphen_values = true)]
@@ -18,25 +18,25 @@ pub struct ReadingArguments {
     /// stretch, nominal or logarithmic
     #[arg(long, allow_hyphen_values = true)]
     strain: Option<String>,
-    /// Unit of the stresses, or of the force
+    /// Unit of the stress, or of the force
     #[arg(long, value_name = "UNIT")]
     stress_unit: Option<String>,
-    /// Unit of the strains, `-` or `%`, or of the displacement
+    /// Unit of the strain, `-` or `%`, or of the displacement
     #[arg(long, value_name = "UNIT", allow_hyphen_values = true)]
     strain_unit: Option<String>,
-    /// Axis of the stress: 1 as the strain, 2 across
+    /// Axis of the stress: 1 along the strain, 2 transverse
     #[arg(long, allow_hyphen_values = true)]
     direction: Option<String>,
-    /// ε₂/ε₁ of a biaxial test: of nominal strains, whatever the column holds
+    /// ε₂/ε₁ of a biaxial test, in nominal strains whatever the column contains
     #[arg(long, allow_hyphen_values = true)]
     strain_ratio: Option<String>,
-    /// Cross-section of the specimen, where the file has forces
+    /// Cross-section of the specimen, if the file has forces
     #[arg(long, allow_hyphen_values = true)]
     area: Option<String>,
-    /// Length of the specimen, where the file has displacements
+    /// Length of the specimen, if the file has displacements
     #[arg(long, allow_hyphen_values = true)]
     length: Option<String>,
-    /// Width of the specimen; with the thickness in place of the cross-section
+    /// Width of the specimen; with the thickness it replaces the cross-section
     #[arg(long, allow_hyphen_values = true)]
     width: Option<String>,
     /// Thickness of the specimen
@@ -45,13 +45,13 @@ pub struct ReadingArguments {
     /// Unit of the times
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
-    /// Of several cycles: first, last, a number, or all rows; the last one's loading branch where forces and displacements have cycles
+    /// Cycle to use: first, last, a number, or all rows; by default the loading branch of the last one if forces and displacements have cycles
     #[arg(long, allow_hyphen_values = true)]
     cycle: Option<String>,
-    /// Where the specimen begins to be stretched: automatic, none (as the file has it), a displacement, or a force
+    /// Where stretching begins: automatic, none (as in the file), a displacement, or a force
     #[arg(long, allow_hyphen_values = true)]
     zero: Option<String>,
-    /// How long the strain took to the first row, in a file of relaxation that begins stretched
+    /// Duration of the ramp before the first row, if a relaxation file begins already stretched
     #[arg(long, value_name = "TIME")]
     ramp: Option<String>,
 }

@@ -105,7 +105,7 @@ fn set_within(
             let place = rest[0].parse::<usize>().ok();
             let place = place.and_then(|place| list.get_mut(place)).ok_or_else(|| {
                 format!(
-                    "`{name}` is a list of {count}, in which `{}` is no place",
+                    "`{name}` is a list of {count} entries, and `{}` is not one of them",
                     rest[0]
                 )
             })?;
@@ -117,6 +117,6 @@ fn set_within(
                 _ => set_within(place, (rest[0], &rest[1..]), value),
             }
         }
-        _ => Err(format!("`{name}` is a value and no section")),
+        _ => Err(format!("`{name}` is a value, not a section")),
     }
 }

@@ -24,10 +24,10 @@ pub enum FileFault {
     #[error("it is a folder; name a file in it")]
     Folder,
     /// A pipe, a device: how much it holds nobody knows.
-    #[error("it is no file; save what it gives as a file first")]
+    #[error("it is not a regular file; save its output as a file first")]
     NoFile,
     /// It holds more than belongs into such a file.
-    #[error("it has more than {0} MiB, which is too large for what it should be")]
+    #[error("it is larger than {0} MiB, the limit for this kind of file")]
     TooLarge(u64),
     /// What the system says.
     #[error("{0}")]

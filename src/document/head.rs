@@ -85,7 +85,7 @@ impl<'a> Head<'a> {
         if let Some((value, place)) = self.pairs.get(key) {
             // A remark may follow the word: `nominal (first Piola-Kirchhoff)`.
             let word = value.split(['(', ',']).next().unwrap_or_default().trim();
-            said.push(("the head", word, place.clone()));
+            said.push(("the header", word, place.clone()));
         }
         if let Some(value) = self.given.get(key) {
             said.push(("the command line", value.trim(), 0..0));
@@ -95,8 +95,10 @@ impl<'a> Head<'a> {
                 continue;
             };
             if first != second {
-                let message = format!("the {key} is {first} by {one} and {second} by {other}");
-                return Err(self.fault(place.clone(), message, "say it once, or alike"));
+                let message = format!(
+                    "the {key} is {first} according to {one} and {second} according to {other}"
+                );
+                return Err(self.fault(place.clone(), message, "state it once, or identically"));
             }
         }
         Ok(said.first().map(|(_, value, _)| (*value).to_owned()))
@@ -210,8 +212,8 @@ pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnost
             let (key, value) = (plain_key(key), value.trim().to_owned());
             match pairs.get(&key) {
                 Some((first, _)) if known(&key) && *first != value => {
-                    let message = format!("the {key} is said twice in different ways");
-                    faults.push(table.fault(place.clone(), message, "say it once"));
+                    let message = format!("the {key} is stated twice with different values");
+                    faults.push(table.fault(place.clone(), message, "state it once"));
                 }
                 Some(_) => {}
                 None => {

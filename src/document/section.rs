@@ -206,7 +206,7 @@ impl<'a> Section<'a> {
                 continue;
             }
             let hint = remedy(key).unwrap_or_else(|| match known.is_empty() {
-                true => "nothing is expected here".to_owned(),
+                true => "no key is expected here".to_owned(),
                 false => suggestion(key, &known, "known here:"),
             });
             let span = name.span().start..name.span().end.max(name.span().start + 1);
@@ -272,10 +272,10 @@ impl<'a> Section<'a> {
         let hint = match (self.required.contains(&key), self.path.is_empty()) {
             (false, _) => format!("add `{key} = {example}`"),
             (true, true) => {
-                format!("only what a study says is done: add `{key} = {example}`, for example")
+                format!("add `{key} = {example}`, for example; it has no default")
             }
             (true, false) => format!(
-                "only what a study says is done: add `{key} = {example}`, for example, under [{}]",
+                "add `{key} = {example}`, for example, under [{}]; it has no default",
                 self.path
             ),
         };

@@ -7,16 +7,16 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
     if message.contains("duplicate key") {
         let key = text.get(place.clone()).unwrap_or_default().trim();
         return Some(match key {
-            "law" => "a card has one law: leave one out, or write a card for each".to_owned(),
+            "law" => "a card has one law: remove one, or write a card for each".to_owned(),
             _ => {
-                "a key and a [table] stand once: leave one out; lists of tables are written [[key]]"
+                "a key or a [table] may appear only once: remove one; lists of tables are written [[key]]"
                     .to_owned()
             }
         });
     }
     if let Some(quote) = typographic_quote(text, place.start) {
         return Some(format!(
-            "{quote} is a quote of word processors: write the straight \" around texts"
+            "{quote} is a typographic quote: use the straight \" around texts"
         ));
     }
     let (key, value) = unquoted(text, place.start)?;
@@ -47,7 +47,7 @@ pub(super) fn advice(message: &str) -> Option<String> {
         _ => return None,
     };
     Some(format!(
-        "{closing} has to be closed: look here and in the lines before"
+        "{closing} must be closed: check this line and the lines before"
     ))
 }
 
@@ -118,8 +118,8 @@ mod tests {
             ),
             ("density = 1020 kg/m³\n", "density = \"1020 kg/m³\""),
             ("law = \"yeoh\"\nlaw = \"gent\"\n", "a card has one law"),
-            ("[plate]\na = 1\na = 2\n", "leave one out"),
-            ("[plate]\na = 1\n[plate]\nb = 2\n", "stand once"),
+            ("[plate]\na = 1\na = 2\n", "remove one"),
+            ("[plate]\na = 1\n[plate]\nb = 2\n", "only once"),
         ] {
             let told = told(text);
             assert!(told.contains(expected), "{text}: {told}");
@@ -158,6 +158,6 @@ mod tests {
     fn a_text_that_is_no_toml_at_all_is_told_in_a_few_lines() {
         let told = told(&"1,2,3,4\n".repeat(500));
         assert!(told.lines().count() <= 6, "{told}");
-        assert!(told.contains("more faults of syntax"), "{told}");
+        assert!(told.contains("further syntax errors"), "{told}");
     }
 }

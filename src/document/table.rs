@@ -38,7 +38,7 @@ pub struct Table {
 
 impl Table {
     /// What a table is, for those who gave something else.
-    pub const HINT: &str = "a table is CSV: a line of names with units and rows of numbers";
+    pub const HINT: &str = "a table is CSV: a header line of names with units, and rows of numbers";
 
     /// The lines by which names, units and rows are told apart.
     const SURVEYED: usize = 1000;
@@ -95,7 +95,7 @@ impl Table {
             true => Err(table.refuse(
                 0..0,
                 "there are no rows of numbers",
-                "a table has a line of names with units and rows of numbers",
+                "a table has a header line of names with units, and rows of numbers",
             )),
             false => Ok(table),
         }
@@ -124,7 +124,7 @@ impl Table {
             let record = match record {
                 Ok(record) => record,
                 Err(cause) => {
-                    return faults.push(self.fault(0..0, cause.to_string(), "mend this line"));
+                    return faults.push(self.fault(0..0, cause.to_string(), "correct this line"));
                 }
             };
             if record.iter().all(str::is_empty) {
@@ -195,9 +195,9 @@ impl Table {
         }
         let columns = self.columns.len();
         if count != columns {
-            let message = format!("{count} fields where there are {columns} columns");
-            let hint = "every row needs as many fields as the head; numbers with decimal commas need semicolons or tabs between the columns, and \
-                        lines above the head a # in front";
+            let message = format!("{count} fields, but the header has {columns} columns");
+            let hint = "every row needs as many fields as the header; numbers with decimal commas need semicolons or tabs \
+                        between the columns, and lines above the header must begin with #";
             return faults.push(self.fault(place, message, hint));
         }
         self.faults.resize(count, None);

@@ -19,9 +19,9 @@ pub fn read_data(
     decode(&bytes, wanted).ok_or_else(|| {
         let name = path.display();
         match wanted {
-            None => Error::input(format!("{name} is no text"), hint),
+            None => Error::input(format!("{name} is not a text file"), hint),
             Some(wanted) => Error::input(
-                format!("{name} is no text in {}", wanted.name()),
+                format!("{name} is not text encoded in {}", wanted.name()),
                 "leave out --encoding, or name the one in which the file was saved",
             ),
         }

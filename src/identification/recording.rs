@@ -250,7 +250,7 @@ mod tests {
         let table = Table::parse("a.csv", &format!("# length: 4 mm\n{head}{}", rows(40))).unwrap();
         let told = Recording::of_table(&table, &given).unwrap_err().to_string();
         assert!(
-            told.contains("4 mm by the head and 5 mm by the command line"),
+            told.contains("4 mm according to the header and 5 mm according to the command line"),
             "{told}"
         );
     }

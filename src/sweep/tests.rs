@@ -237,7 +237,7 @@ fn faults_name_what_to_write() {
     }
     for (vary, expected) in [
         ("plate.cells.2=3,4", "list of 2"),
-        ("title.x=3,4", "is a value and no section"),
+        ("title.x=3,4", "is a value, not a section"),
         ("plate.lenght=3 cm,4 cm", "lenght"),
         ("material.c01=1 MPa,2 MPa", "c01"),
     ] {

@@ -48,7 +48,7 @@ impl fmt::Display for LinearFault {
             Self::NotAPlace(text) => {
                 write!(
                     f,
-                    "has the factor `{text}`, which is neither X nor Y, the place at rest"
+                    "has the factor `{text}`, which is neither X nor Y (the position at rest)"
                 )
             }
             Self::Quantity(text, _, fault) => write!(f, "has the term `{text}`, which {fault}"),

@@ -56,9 +56,9 @@ struct Bench<'a> {
 }
 
 /// Where the times are, and what the finite elements of this comparison are not.
-const TIMES: &str = "The times of a run are under Times: they differ from machine to machine, and with what else it does. These finite \
-                     elements have equal cells and begin at the affine stretch: graded meshes and better guesses make them quicker; the \
-                     bench `corrected_plate` measures the climb beside the quickest of them";
+const TIMES: &str = "The times of a run are listed under Times; they depend on the machine and on its other load. These \
+                     finite elements have equal cells and start from the affine stretch: graded meshes and better initial \
+                     guesses make them faster; the bench `corrected_plate` compares the climb with the fastest of them";
 
 impl<'a> Bench<'a> {
     fn new(plate: &'a Plate, repetitions: usize, progress: Progress<'a>) -> Result<Self, Error> {
@@ -156,7 +156,8 @@ impl Beside {
     }
 
     fn check(&self, quantity: &str) -> Check {
-        let quantity = format!("consistency: departure of {quantity} elements at equal nodes");
+        let quantity =
+            format!("consistency: departure error of {quantity} elements at equal nodes");
         check(quantity, "–", self.departure()).at_most(EQUAL, "the same equations")
     }
 }
@@ -183,7 +184,7 @@ fn outcome(springs: Way, paths: [Beside; 2]) -> Outcome {
             number(way.departure),
         ]
     };
-    let head = "way to the field | nodes | departure from affine [%]";
+    let head = "method | nodes | error of the departure from affine [%]";
     let times = ways.iter().map(|way| (way.name.to_owned(), way.seconds));
     Outcome {
         checks,

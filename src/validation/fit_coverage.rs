@@ -224,9 +224,10 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
 const HEAD: &str = "fitted law and curves | points of each curve | autocorrelation of the noise | white noise [%] | \
                     correlated noise [%] | systematic [%] | effective points, mean | parameters in their intervals [%]";
 
-const EXPLANATION: &str = "Curves of known laws as files hold them, fitted as `materials fit` does. Behind the answers, in percent of all \
-    seeds, stands the share of true parameters within their 95 % intervals, of the seeds that have intervals. In the uneven curves points \
-    crowd at small strains. The last law of each group is wrong: what it leaves has to be told from noise.";
+const EXPLANATION: &str = "Synthetic test curves of known laws, fitted as `materials fit` does. The verdicts are in percent \
+    of all seeds; the last column is the share of true parameters within their 95 % intervals, over the seeds that have \
+    intervals. In the uneven curves the points are concentrated at small strains. The last law of each group is wrong: its \
+    misfit has to be distinguished from noise.";
 
 fn told(trials: &[Trial], answer: Answer) -> f64 {
     share(trials.iter().map(|trial| trial.answer == answer))
@@ -257,7 +258,7 @@ fn row(subject: &Subject, kind: Kind, trials: &[Trial]) -> Vec<String> {
 }
 
 fn checks(kind: Kind, right: &[Trial], wrong: &[Trial]) -> [Check; 3] {
-    const SOURCE: &str = "95 %, less what chance allows";
+    const SOURCE: &str = "95 %, less sampling error";
     let Kind {
         points,
         correlation,
@@ -271,6 +272,6 @@ fn checks(kind: Kind, right: &[Trial], wrong: &[Trial]) -> [Check; 3] {
     [
         held().at_least(90.0, SOURCE),
         held().at_most(99.0, SOURCE),
-        check(of("a wrong law is told"), "%", wrong).at_least(95.0, "aim"),
+        check(of("a wrong law is detected"), "%", wrong).at_least(95.0, "aim"),
     ]
 }

@@ -148,18 +148,20 @@ fn share(climbed: &ClimbSolution, direct: &[f64]) -> f64 {
 fn outcome(found: &[Found]) -> Outcome {
     let lost = found.iter();
     let lost = lost.filter(|found| found.direct && found.climbed.is_err());
-    let missing = "plates without a climbed field where the direct method has one";
+    let missing = "plates where the direct method converges and the climb does not";
     let distance = "largest distance to the direct method's field over the discretisation error";
-    let explanation = "What the climb began with, and the largest distance of its field to that of Newton's method on the same \
-                       equations, root mean square over the nodes, over the discretisation error that the climb states:";
+    let explanation = "What each climb started from, and the largest distance between its field and that of Newton's method \
+                       on the same equations (root mean square over the nodes), relative to the discretisation error that \
+                       the climb states:";
     let mut blocks = vec![Block::paragraph(explanation), table_of_laws(found)];
     let places = lost
         .clone()
-        .map(|lost| format!("No climbed field: {}", lost.place));
+        .map(|lost| format!("No field from the climb: {}", lost.place));
     blocks.extend(places.map(Block::paragraph));
     Outcome {
         checks: vec![
-            check(missing, "–", lost.count() as f64).at_most(0.0, "the start does not matter"),
+            check(missing, "–", lost.count() as f64)
+                .at_most(0.0, "result independent of the start"),
             check(distance, "–", worst_share(found.iter())).at_most(0.1, "the same equations"),
         ],
         blocks,
@@ -204,6 +206,6 @@ fn table_of_laws(found: &[Found]) -> Block {
             number(worst_share(own())),
         ]
     };
-    let head = "law | plates | start | no field by the direct method | largest distance over discretisation error";
+    let head = "law | plates | start | direct method without a field | largest distance over discretisation error";
     table(head, laws.iter().map(row))
 }

@@ -111,11 +111,12 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-const EXPLANATION: &str = "Displacements of markers with normal noise, read from converged biquadratic finite elements on \
-    another mesh; of the grips nothing is known, the long edges are free. Each cell shows the median of all seeds and, in \
-    brackets, the worst one. Displacements are compared at the markers, stresses in the middle of all cells farther than a \
-    fifth of the width from a corner, both as root mean squares; the raw stress comes from differences of neighbouring \
-    markers. Coverage is the share of all nodes and stresses, and of all seeds, that lie within their 95 % intervals.";
+const EXPLANATION: &str = "Marker displacements with Gaussian noise, interpolated from converged biquadratic finite elements \
+    on another mesh; the grips are unknown, the long edges are free. Each cell shows the median over all seeds and, in \
+    brackets, the worst seed. Displacements are compared at the markers, stresses at the centres of all cells more than a \
+    fifth of the width from a corner, both as root mean squares; the raw stress comes from finite differences between \
+    neighbouring markers. Coverage is the share of true values, over all nodes or stresses and all seeds, that lie within \
+    their 95 % intervals.";
 
 /// What the data tell in addition to the field: which edges are free, and the modulus.
 fn infer(

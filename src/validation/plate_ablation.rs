@@ -58,8 +58,8 @@ fn plain_newton(fields: &Fields, blocks: &mut Vec<Block>) -> Result<Check, Error
         })
         .map_err(|fault| plate.fault(fault))?;
     blocks.push(Block::paragraph(format!(
-        "With all of T imposed there are as many conditions as unknowns and each step is a Newton step. From the \
-         mass-spring field it takes {} steps; plain Newton on the same equations from the affine stretch takes {}.",
+        "With all of T imposed there are as many conditions as unknowns, so each step is a Newton step. From the mass-spring \
+         field it takes {} steps; plain Newton on the same equations from the affine stretch takes {}.",
         fields.corrected.steps.len() - 1,
         log.iterations()
     )));

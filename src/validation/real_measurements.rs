@@ -1,4 +1,4 @@
-//! Fields that other people measured: is what is wrong with them told?
+//! Fields measured by other groups: is what is wrong with them told?
 
 use std::path::Path;
 
@@ -148,7 +148,7 @@ impl Estimated {
                 "%",
                 100.0 * told / count,
             )
-            .at_least(100.0, "every frame has the same faults"),
+            .at_least(100.0, "all frames share the same faults"),
             check(
                 format!("{name}: sum of all forces over the largest"),
                 "",
@@ -161,9 +161,9 @@ impl Estimated {
 
 const HEAD: &str = "field | frame | markers | noise [mm] | correlation length [mm] | verdict | why | best alternative";
 
-const EXPLANATION: &str = "Each field is corrected with a law that keeps its volume, a thickness that is assumed, and conditions \
-    that hold in part: as a user who knows no better would. The verdict must be that the data are not explained; no \
-    interval is given then. Each alternative that would explain it is computed in one linearised step.";
+const EXPLANATION: &str = "Each field is corrected with an incompressible law, an assumed thickness and conditions that are \
+    only partly true, as an uninformed user would do. The verdict must be that the data are not explained; no intervals are \
+    then given. Each alternative that might explain the misfit is evaluated in one linearised step.";
 
 fn compute(fields: Vec<MeasuredField>, progress: Progress) -> Outcome {
     let mut outcome = Outcome::default();

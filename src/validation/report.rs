@@ -22,7 +22,7 @@ pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {
         "source",
         "computed",
         "error [%]",
-        "own error of what it is compared with [%]",
+        "uncertainty of the expected value [%]",
         "tolerance [%]",
         "result",
     ];
@@ -64,7 +64,7 @@ fn balance(cases: &[Results]) -> Option<String> {
     let known = known.filter_map(|case| Some((case.kind, case.outcome.balance?)));
     let (kind, worst) = known.max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(format!(
-        "Balance of forces and moments, supports and loads together: the worst of all boundary value problems leaves \
+        "Balance of forces and moments of supports and loads: the largest residual of all boundary value problems is \
          {worst:.1e} of the largest force or moment ({kind})."
     ))
 }
@@ -107,7 +107,8 @@ pub fn times(cases: &[Results]) -> Vec<Block> {
     vec![
         Block::Heading(1, "Times".into()),
         Block::Paragraph(
-            "Times differ from run to run; those of one case were measured side by side.".into(),
+            "Times vary from run to run; the times within one case were measured side by side."
+                .into(),
         ),
         Block::table(&head, rows),
     ]

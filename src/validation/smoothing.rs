@@ -92,11 +92,11 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-const EXPLANATION: &str = "Relative L2 distance to converged finite elements, weighted by area; for the coarse \
-    finite elements that of the departure from affine, for noisy fields that of the displacement. Corrections of noisy \
-    fields begin at the uncorrected mass-spring field of the stretched plate, never at the noisy data. A seed whose \
-    correction does not converge counts as the worst: where nothing is known of the grips, noise that is a good part \
-    of a cell's size nearly folds the cells there.";
+const EXPLANATION: &str = "Relative L2 distance to converged finite elements, weighted by area: of the departure from affine \
+    for the coarse finite elements, of the displacement for noisy fields. Corrections of noisy fields start from the \
+    uncorrected mass-spring field of the stretched plate, never from the noisy data. A seed whose correction does not \
+    converge counts as the worst: where the grips are unknown, noise comparable with the cell size nearly folds the cells \
+    there.";
 
 /// What is known of the grips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,7 +121,7 @@ struct Coarse {
     before: f64,
     /// With everything known.
     known: f64,
-    /// With rigid grips that moved unknown ways.
+    /// With rigid grips of unknown motion.
     rigid: f64,
 }
 
@@ -135,8 +135,11 @@ impl Coarse {
             row
         };
         vec![
-            row("grips known (the data have no say)", self.known),
-            row("rigid grips that moved unknown ways", self.rigid),
+            row(
+                "grips known (the data do not affect the result)",
+                self.known,
+            ),
+            row("rigid grips of unknown motion", self.rigid),
         ]
     }
 
@@ -168,7 +171,7 @@ impl Noisy {
     fn rows(&self) -> [Vec<String>; 2] {
         [&self.rigid, &self.unknown].map(|summary| {
             let grips = match summary.grips {
-                Grips::Rigid => "rigid grips that moved unknown ways",
+                Grips::Rigid => "rigid grips of unknown motion",
                 Grips::Unknown => "grips unknown",
             };
             let (noise, seeds) = (self.noise, self.seeds);

@@ -141,7 +141,7 @@ fn median_error(trials: &[Trial], index: usize) -> f64 {
 fn checks(trials: &[Trial], good: usize) -> Vec<Check> {
     let count = trials.len();
     let what = format!("trials of {count} with K(·) and D(·) within the 95 % band at all places");
-    let chance = "95 %, less what chance allows";
+    let chance = "95 %, less sampling error";
     let good = check(what, "%", 100.0 * good as f64 / count as f64);
     let mut checks = vec![good.at_least(90.0, chance)];
     for (index, name) in ["K(·)", "D(·)"].into_iter().enumerate() {
@@ -159,7 +159,7 @@ fn checks(trials: &[Trial], good: usize) -> Vec<Check> {
                 "%",
                 error,
             )
-            .at_most(5.0, "the noise of one instant"),
+            .at_most(5.0, "noise at one instant"),
         ]);
     }
     checks
@@ -179,10 +179,10 @@ fn claim(settings: &Settings, good: usize) -> Claim {
 
 fn explanation(settings: &Settings) -> Block {
     Block::Paragraph(format!(
-        "White noise of {} % of the root mean square lies on force and extension; the seeds are {} to {}. A band holds \
-         for both functions at all places together, an interval at one place. At the ends of the range the motion turns: \
-         its velocity vanishes there, the recording does not determine D(·), and single \
-         trials stray far there, which the means of the table show. The error that is checked is therefore the median.",
+        "Force and extension have white noise of {} % of their root mean square; the seeds are {} to {}. A band applies to \
+         both functions at all places simultaneously, an interval to one place. At the ends of the range the motion \
+         reverses: its velocity vanishes there, the recording does not determine D(·), and individual trials deviate \
+         strongly, which the means in the table show. The median error is therefore checked.",
         limit(100.0 * settings.sample.noise),
         settings.sample.seed,
         settings.sample.seed + settings.trials as u64 - 1

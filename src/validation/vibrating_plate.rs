@@ -26,7 +26,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
         if cells.len() < 3 || !cells.iter().all(whole) || !doubled {
             mesh.fault(
                 "cells",
-                "must be three or more numbers, each twice the one before and a multiple of 3",
+                "must be three or more numbers, each twice the previous one and a multiple of 3",
                 "such as [6, 12, 24]",
             );
         }

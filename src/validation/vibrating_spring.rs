@@ -70,7 +70,7 @@ fn read_motion(section: &Section) -> (Motion, f64) {
     if damping * damping >= 4.0 * motion.stiffness {
         section.fault(
             "damping",
-            "leaves no oscillation: c² must be below 4 k",
+            "gives no oscillation: c² must be below 4 k",
             "make it smaller",
         );
     }
@@ -141,7 +141,7 @@ fn drawn_motion(settings: &Settings, outcome: &mut Outcome) -> Result<(), SolveF
     let after = percent(correction.field(), &exact);
     let removed = removed_percent(before, after);
     outcome.checks.extend([
-        check("disturbance of the drawn motion", "%", before)
+        check("disturbance of the plotted motion", "%", before)
             .at_least(20.0, "publication: more than 20 %"),
         check("deviation after the correction", "%", after)
             .at_most(10.0, "publication: within 10 %"),
@@ -253,7 +253,7 @@ impl Regressed {
                 "%",
                 self.coverage,
             )
-            .at_least(90.0, "95 %, less what chance allows"),
+            .at_least(90.0, "95 %, less sampling error"),
         ]
     }
 }

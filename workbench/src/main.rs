@@ -58,8 +58,8 @@ mod desktop {
     use gelbench_workbench::views::app::Workbench;
 
     const USAGE: &str = "gelbench-workbench [FILE …] [--frames NUMBER] [--size WIDTHxHEIGHT] [--dark | --light]\n\n\
-        Opens the workbench with studies and cards on the table.\n\
-        --frames  pulls by itself, times so many frames, and ends";
+        Opens the workbench with studies and cards.\n\
+        --frames  pulls automatically, times this many frames, and exits";
 
     #[derive(Default)]
     struct Options {

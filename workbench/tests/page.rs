@@ -326,14 +326,14 @@ fn the_first_two_minutes() {
     page.picture("newcomer_2_while_it_follows");
     page.until(settled);
     page.picture("newcomer_3_pulled");
-    page.press_button("let go");
+    page.press_button("release");
     page.until(|told| told["moving"][0].as_f64().is_some_and(|clock| clock > 0.01));
     page.picture("newcomer_4_let_go");
     page.press("Escape");
     for (number, scene) in [
         "1 Why springs are wrong",
-        "2 What one correction does",
-        "3 What T decides",
+        "2 Effect of one correction",
+        "3 Effect of T",
         "5 Few springs, then climb",
         "4 Noisy field",
     ]

@@ -188,7 +188,7 @@ fn a_dropped_test_is_fitted_and_the_sheet_is_made_of_it() {
     let ranking = state(&bench).materials().found().unwrap().as_ref().unwrap();
     assert!(ranking.fits.len() > 5, "{}", ranking.fits.len());
     bench.step();
-    bench.get_by_label("make the sheet of it").click();
+    bench.get_by_label("use it for the sheet").click();
     bench.step();
     assert!(state(&bench).table.scene().card.name.starts_with("fitted-"));
 }

@@ -10,7 +10,7 @@ use crate::studies::pictures::{Pictures, Shown};
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Pictures")]
 pub struct PictureOptions {
-    /// Fields of the corrected sheet that are shown
+    /// Fields of the corrected sheet to show
     #[arg(long, value_name = "FIELD", value_delimiter = ',', value_parser = names(&SheetField::NAMES),
         default_values = ["von-mises", "largest-principal-stress"])]
     picture_fields: Vec<String>,
@@ -18,10 +18,10 @@ pub struct PictureOptions {
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = names(&PictureFormat::NAMES),
         default_value = "png")]
     picture_formats: Vec<String>,
-    /// How wide they are: one column of a journal is 85 mm wide, two are 180 mm
+    /// Width of the pictures: one column of a journal is 85 mm wide, two are 180 mm
     #[arg(long, value_name = "WIDTH", value_parser = names(&PictureWidth::NAMES), default_value = "screen")]
     picture_width: String,
-    /// Their colours: dark for slides, print where lightness alone distinguishes them
+    /// Colours of the pictures: dark for slides, print if lightness alone must distinguish them
     #[arg(long, value_name = "NAME", value_parser = names(&Palette::NAMES), default_value = "default")]
     palette: String,
 }

@@ -42,9 +42,9 @@ pub enum Places {
 /// What gaps among markers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Holes {
-    /// Holes of the specimen, where they are much wider than the spacing
+    /// Holes of the specimen, if much wider than the spacing
     Found,
-    /// Markers that were lost
+    /// Lost markers
     Closed,
 }
 
@@ -53,9 +53,9 @@ pub enum Holes {
 pub enum Weights {
     /// Full weight
     No,
-    /// Less weight the farther they are off
+    /// Weight that decreases with the residual
     Huber,
-    /// Zero weight beyond a distance
+    /// Zero weight beyond a certain residual
     Tukey,
 }
 
@@ -64,7 +64,7 @@ pub enum Weights {
 pub enum Holds {
     /// Equilibrium holds exactly
     Exact,
-    /// Equilibrium holds up to smooth forces that are weighted against the data, for a law that is not exactly right
+    /// Equilibrium holds up to smooth forces that are weighted against the data, for a law that is not exact
     Weighted,
 }
 

@@ -45,7 +45,7 @@ fn bad_tables_are_refused_with_line_and_reason() {
         ("a,b\n", "no rows"),
         (
             "a,b\n1,5,0,2\n",
-            "a.csv:2: 4 fields where there are 2 columns",
+            "a.csv:2: 4 fields, but the header has 2 columns",
         ),
         ("a\tb\n1,050\t2\n950\t3\n", "group thousands"),
     ] {
@@ -93,6 +93,6 @@ fn remarks_old_line_ends_and_citations_are_read() {
     assert!(
         faults[0]
             .to_string()
-            .contains("a.csv:2: the test is said twice")
+            .contains("a.csv:2: the test is stated twice")
     );
 }

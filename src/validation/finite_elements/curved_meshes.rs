@@ -51,7 +51,7 @@ fn bodies() -> [Body; 2] {
             mesh: half_ring,
         },
         Body {
-            name: "strip with a hole, pulled",
+            name: "strip with a hole in tension",
             problem: strip,
             measured: "right",
             mesh: |cells, kind| hole::quarter(10.0, cells, kind),
@@ -89,9 +89,9 @@ fn compute(cells: usize, exact: usize, progress: Progress) -> Result<Outcome, Er
             }
         }
     }
-    let head = "specimen | cells of the file | force [N] | true force [N] | stated error [%] | true error [%] | \
-                stated over true";
-    let text = "The force on the finest of three meshes, each cut out of the cells of the file along their curved sides.";
+    let head = "specimen | cells of the file | force [N] | true force [N] | stated error [%] | true error [%] | stated error \
+                over true error";
+    let text = "The force on the finest of three meshes, each made by subdividing the cells of the file along their curved sides.";
     outcome.blocks = vec![Block::paragraph(text), table(head, rows)];
     outcome.figures.push(mesh_figure(
         "curved_meshes.png",
@@ -151,11 +151,11 @@ impl Stated {
 
     fn check(&self) -> Check {
         let what = format!(
-            "{}, {}: stated over true error or its inverse",
+            "{}, {}: stated over true error or its inverse, whichever is larger",
             self.body, self.cells
         );
         let ratio = self.ratio();
-        check(what, "–", ratio.max(1.0 / ratio)).at_most(2.0, "the force on circles")
+        check(what, "–", ratio.max(1.0 / ratio)).at_most(2.0, "force on meshes with exact circles")
     }
 
     fn row(&self) -> Vec<String> {

@@ -54,7 +54,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let mesh = quarter(0.5 * HALF, 6, CellShape::Quad9);
     outcome.figures.push(mesh_figure(
         "hole.png",
-        "A quarter of the strip with a hole; the right side is pulled.",
+        "One quarter of the strip with a hole; the right side is pulled.",
         "Strip with a hole",
         &mesh,
     ));

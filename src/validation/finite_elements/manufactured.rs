@@ -100,7 +100,7 @@ fn compute(coarsest: usize, amplitude: f64, progress: Progress) -> Result<Outcom
     let y = Axis::logarithmic("relative error [–]");
     outcome.figures.push(Figure::new(
         "manufactured_solution.png",
-        "Error of every element over the size of its cells.",
+        "Error of each element type against cell size.",
         LineChart::new("Manufactured solution", x, y, lines),
     ));
     Ok(outcome)

@@ -52,7 +52,7 @@ fn element_checks(
     let what = format!("simple shear γ = {shear}, force");
     let found = error(&what, simple_shear(shape, cells, shear)?);
     checks.push(found.at_most(1e-12, "closed form"));
-    let turn = error("rigid turn by 90°, field", turn(shape, cells)?);
+    let turn = error("rigid rotation by 90°, field", turn(shape, cells)?);
     checks.push(turn.at_most(1e-12, "rigid turn"));
     let [residual, tangent] = derivatives(shape, cells);
     checks.extend([

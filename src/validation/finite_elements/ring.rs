@@ -59,7 +59,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let [grown, round] = inflate(&mesh, LARGE_PRESSURE * modulus, 6)?;
     let bore = 1.0 + grown / INNER;
     let what = format!("inflated to {bore:.2} of the inner radius: out of round");
-    let source = "symmetry of a pressure that follows the surface";
+    let source = "axisymmetry under a follower pressure";
     outcome
         .checks
         .push(check(what, "–", round).at_most(1e-5, source));
@@ -68,7 +68,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     }
     outcome.figures.push(mesh_figure(
         "ring.png",
-        "A quarter of the ring; the pressure acts inside.",
+        "One quarter of the ring; the pressure acts inside.",
         "Ring under pressure",
         &quarter(6, CellShape::Quad9),
     ));
@@ -93,7 +93,7 @@ fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> 
         )
     };
     let beside = |what, unit, expected, computed| {
-        let source = "one-dimensional solution by Runge and Kutta";
+        let source = "one-dimensional solution by Runge-Kutta";
         check(what, unit, computed).equal(expected, 0.01, source)
     };
     let [across, along] = solved.forces.map(|force| -force);
@@ -104,12 +104,7 @@ fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> 
             INNER * stretch,
             radius("inside"),
         ),
-        beside(
-            "radius of the outside",
-            "mm",
-            OUTER + outside,
-            radius("outside"),
-        ),
+        beside("outer radius", "mm", OUTER + outside, radius("outside")),
         beside("force on the vertical line of symmetry", "N", force, across),
         beside(
             "force on the horizontal line of symmetry",
@@ -122,7 +117,7 @@ fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> 
             "–",
             solved.unbalanced,
         )
-        .at_most(1e-9, "equilibrium of the whole"),
+        .at_most(1e-9, "global equilibrium"),
     ])
 }
 

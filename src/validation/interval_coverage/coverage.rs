@@ -1,4 +1,4 @@
-//! How often the 95 % intervals hold the truth, or the verdict says that they mean nothing: white noise, noise that correlates over
+//! How often the 95 % intervals hold the truth, or the verdict says that they mean nothing: white noise, noise correlated over
 //! some spacings of the markers, and equations that are wrong in law, thickness or edge.
 
 use std::path::Path;
@@ -83,7 +83,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     let plate = Subject::plate(&settings.data)?.with_markers_inside(settings.data.markers);
     let white = (None, "white noise".to_owned(), Wrong::Nothing);
     let correlated = LENGTHS.map(|length| {
-        let name = format!("noise that correlates over {length} spacings");
+        let name = format!("noise correlated over {length} spacings");
         (Some(length), name, Wrong::Nothing)
     });
     let wrong = [
@@ -113,14 +113,15 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
 const HEAD: &str = "data | explained [%] | with correlated noise [%] | not explained [%] | displacements [%] | stresses [%] | \
                     stresses near the hole [%] | force [%] | parameter [%]";
 
-const EXPLANATION: &str = "Displacements of markers that end half a spacing inside of the edges, of converged finite elements, on \
-    a strip with a hole (for the wrong edge on a plate); nothing is known of the grips. Behind the verdicts stand the shares of \
-    truths within their 95 % intervals, of the seeds that are explained and so have intervals: displacements of all nodes, stresses farther than a fifth of the width from a corner, \
-    those within 1.6 radii of the hole's centre, the force and the law's first parameter, which is found in a second estimate \
-    with the force measured to 1 %. The wrong law is neo-Hookean, its parameter found with the force; the wrong thickness and the \
-    right law stand beside a measured force; the wrong edge is a rigid grip that is said to be at 70 % of the plate. Noise that correlates over \
-    three spacings and more leaves so few independent values of these 209 markers that it cannot be told from a misfit: \
-    with fewer than a hundred of them a field is not explained.";
+const EXPLANATION: &str = "Marker displacements from converged finite elements on a strip with a hole (for the wrong edge, \
+    on a plate); the outermost markers lie half a spacing inside the edges, and the grips are unknown. After the verdicts \
+    come the shares of true values within their 95 % intervals, over the seeds that are explained and therefore have \
+    intervals: displacements of all nodes, stresses more than a fifth of the width from a corner, stresses within 1.6 radii \
+    of the hole's centre, the force and the law's first parameter, which is estimated in a second correction with the force \
+    measured to 1 %. The wrong law is neo-Hookean, with its parameter fitted to the force; the wrong thickness is combined \
+    with the right law and a measured force; the wrong edge is a rigid grip stated at 70 % of the plate. Noise correlated \
+    over three spacings or more leaves so few independent values of these 209 markers that it cannot be distinguished from a \
+    misfit: with fewer than a hundred of them a field is judged not explained.";
 
 fn row(name: &str, shares: &Shares) -> Vec<String> {
     let answers = shares.answers.map(number);
@@ -134,7 +135,7 @@ fn row(name: &str, shares: &Shares) -> Vec<String> {
 /// Coverage of at least 90 %, or a verdict of "not explained" in 95 % of all seeds.
 fn checks(name: &str, shares: &Shares, right: bool) -> Vec<Check> {
     let [.., not] = shares.answers;
-    let told = || check(format!("{name}: told to be not explained"), "%", not);
+    let told = || check(format!("{name}: judged not explained"), "%", not);
     if !right || not >= 95.0 {
         return vec![told().at_least(95.0, AIM)];
     }

@@ -27,7 +27,7 @@ pub fn free_edges(subject: &Subject, seeds: u64) -> Result<Check, Error> {
         Ok(right.clone().count() == 4 && right.all(|right| right))
     };
     let right: Result<Vec<bool>, Error> = (0..seeds).into_par_iter().map(right).collect();
-    let what = "seeds whose data tell the free edges from the grips";
+    let what = "seeds whose data distinguish the free edges from the grips";
     Ok(check(format!("{}: {what}", subject.name), "%", share(right?)).at_least(90.0, AIM))
 }
 
@@ -72,6 +72,6 @@ pub fn modulus(
             coverage,
         )
         .at_least(90.0, AIM),
-        check(format!("{name}: mean error of {key}"), "%", error).at_most(2.0, AIM),
+        check(format!("{name}: mean relative error of {key}"), "%", error).at_most(2.0, AIM),
     ])
 }

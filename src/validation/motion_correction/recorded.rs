@@ -90,7 +90,7 @@ impl Recording {
             "recorded motion of {instants} instants: noise removed, worst of {seeds} seeds"
         );
         let worst = check(what, "%", Spread::of(removed).least);
-        let source = "√(2/n) of white noise would be left";
+        let source = "a fraction √(2/n) of white noise would remain";
         outcome.checks.push(worst.at_least(50.0, source));
         let noise = format!("with {} % noise", limit(100.0 * self.noise));
         let rows = [

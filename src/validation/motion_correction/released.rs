@@ -47,8 +47,8 @@ impl Release {
         outcome.checks.extend(self.checks(&motions));
         outcome.claims.push(self.claim(&motions));
         outcome.blocks.push(Block::paragraph(format!(
-            "Period {} s, step {} s; {work}. With the start, the supports and all loads known the correction is Newton's \
-             method in time: its result does not depend on the springs.",
+            "Period {} s, step {} s; {work}. With the initial state, the supports and all loads known, the correction is \
+             Newton's method in time: its result does not depend on the springs.",
             number(period),
             number(step)
         )));
@@ -107,15 +107,15 @@ impl Release {
     fn checks(&self, motions: &Motions) -> [Check; 3] {
         let [before, after] = motions.deviations();
         let gain = format!(
-            "error of the springs over the corrected one, {} periods",
+            "error of the springs over error of the corrected motion, {} periods",
             self.periods
         );
-        let half = "reference: change by half the step, over the corrected deviation";
+        let half = "reference: change on halving the step, over the corrected deviation";
         let change = percent(&motions.coarse, &motions.exact);
         [
             check(gain, "–", before / after).at_least(5.0, "finite elements on another mesh"),
             check("springs: deviation over space and time", "%", before)
-                .at_least(1.0, "there is something to correct"),
+                .at_least(1.0, "springs must deviate for the test"),
             check(half, "–", change / after).at_most(0.5, "converged in time"),
         ]
     }
@@ -179,11 +179,11 @@ impl Motions {
             line("springs", &self.springs, PALETTE[1]),
             line("corrected", &self.corrected, PALETTE[0]),
         ];
-        let title = "Deviation from the finite elements over the size of the motion";
+        let title = "Deviation from the finite elements over the amplitude of the motion";
         let (x, y) = (Axis::linear("time [s]"), Axis::logarithmic("deviation [%]"));
         Figure::new(
             "motion_correction_error.png",
-            "Deviation from the finite elements over time.",
+            "Deviation from the finite elements against time.",
             LineChart::new(title, x, y, lines),
         )
     }

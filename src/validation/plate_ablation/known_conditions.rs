@@ -1,4 +1,4 @@
-//! What is known decides: the same correction with more and more known conditions T.
+//! The known conditions decide: the same correction with more and more known conditions T.
 
 use super::fields::{Fields, GRIPS};
 use crate::corrector::plate::KnownConditions;
@@ -105,7 +105,7 @@ impl Correction {
 
     fn checks(&self) -> Vec<Check> {
         let displacement = "corrected displacement compared with converged finite elements";
-        let left = "departure left over without the traction-free edges";
+        let left = "remaining departure error without the traction-free edges";
         match self.ablation.known {
             KnownConditions::ALL => vec![
                 check(displacement, "%", self.displacement).at_most(0.1, "publication: below 5 %"),
@@ -146,7 +146,7 @@ pub fn compare(fields: &Fields, progress: Progress, outcome: &mut Outcome) -> Re
         .push(corrections[corrections.len() - 1].claim());
     let head = "known conditions T | before [%] | after one step [%] | after two [%] | at the end [%] | \
                 displacement at the end [%] | steps";
-    let text = "Departure from affine, relative L2 distance to the converged finite elements, for the known conditions T \
+    let text = "Departure from affine: relative L2 distance to the converged finite elements, for the known conditions T \
                 that are imposed in addition to equilibrium inside:";
     let rows = corrections.iter().map(Correction::row);
     outcome
@@ -159,8 +159,8 @@ pub fn compare(fields: &Fields, progress: Progress, outcome: &mut Outcome) -> Re
     let lines: Vec<Line> = corrections.iter().map(Correction::line).collect();
     outcome.figures.push(Figure::new(
         "plate_ablation.png",
-        "Deviation of each iterate for the known conditions T that are imposed.",
-        LineChart::new("What is known decides", x, y, lines),
+        "Deviation of each iterate, by the known conditions T that are imposed.",
+        LineChart::new("The known conditions decide", x, y, lines),
     ));
     Ok(())
 }

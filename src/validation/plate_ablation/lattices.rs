@@ -82,8 +82,7 @@ pub fn compare(
         row.push(last.to_string());
         rows.push(row);
     }
-    let text =
-        "The same correction from wrong springs and from other topologies, departure from affine:";
+    let text = "The same correction from wrong springs and other lattice topologies, departure from affine:";
     let head = "lattice | before [%] | after one step [%] | after two [%] | at the end [%] | steps";
     outcome
         .blocks

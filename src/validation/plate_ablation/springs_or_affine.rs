@@ -51,11 +51,11 @@ impl Pair {
 pub fn compare(fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
     let all = Pair::new(fields, KnownConditions::ALL)?;
     let grips = Pair::new(fields, GRIPS)?;
-    let head = "known conditions T | fields apart [%] | multipliers apart [%] | from springs, to finite elements [%] | \
-                from the affine stretch, to finite elements [%]";
-    let text = "What the springs decide: the same correction once from their field and once from the affine stretch, departure \
-         from affine. With as many conditions as unknowns ū has a say in the multipliers alone, with fewer it decides the \
-         field (the affine stretch is in equilibrium inside already and stays as it is):";
+    let head = "known conditions T | difference of the fields [%] | difference of the multipliers [%] | from springs, to \
+                finite elements [%] | from the affine stretch, to finite elements [%]";
+    let text = "Influence of the springs: the same correction of their field and of the affine stretch, departure from \
+         affine. With as many conditions as unknowns, ū affects only the multipliers; with fewer it determines the field \
+         (the affine stretch already satisfies equilibrium inside and stays unchanged):";
     let rows = vec![
         all.row("grips and traction-free edges: as many as unknowns", fields),
         grips.row("grips: fewer than unknowns", fields),
@@ -68,19 +68,19 @@ pub fn compare(fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
     let beside = "field corrected from springs compared with field corrected from affine";
     outcome.checks.extend([
         check(format!("everything known: {beside}"), "%", far)
-            .at_most(1e-6, "ū has no say in the field"),
+            .at_most(1e-6, "ū does not affect the field"),
         check(
             "everything known: multipliers of the two fields compared",
             "%",
             all.multipliers_percent(),
         )
-        .at_least(1.0, "ū decides the multipliers"),
+        .at_least(1.0, "ū determines the multipliers"),
         check(
             format!("grips alone known: {beside}"),
             "%",
             grips.fields_percent(fields),
         )
-        .at_least(10.0, "ū decides the field"),
+        .at_least(10.0, "ū determines the field"),
     ]);
     Ok(())
 }

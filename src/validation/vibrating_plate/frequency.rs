@@ -143,14 +143,14 @@ pub fn compare(cells: &[usize], outcome: &mut Outcome) -> Result<(), Error> {
     };
     let meshes = [coarse, middle, fine];
     let converged = richardson(meshes.map(|plate| plate.clamped.mode.frequency));
-    let head = "Q2 cells along | clamped [Hz] | over a rod of L' [–] | free to contract [Hz] | over a rod of L [–]";
+    let head = "Q2 cells along | clamped [Hz] | over a rod of length L' [–] | free to contract [Hz] | over a rod of length L [–]";
     let rows = plates.iter().map(Plate::row);
     outcome
         .blocks
         .extend([explanation(&converged, fine), table(head, rows)]);
     outcome.checks.extend(checks(&converged, fine));
     let what =
-        "clamped plate: frequency from its motion over that of inverse iteration, on the same mesh";
+        "clamped plate: frequency from its motion over frequency by inverse iteration, same mesh";
     let expected = plates[0].clamped.mode.frequency;
     let found = from_motion(plates[0].along, expected)?;
     let from_motion = check(what, "–", found / expected);
@@ -163,9 +163,9 @@ pub fn compare(cells: &[usize], outcome: &mut Outcome) -> Result<(), Error> {
 fn explanation(converged: &Richardson, fine: &Plate) -> Block {
     let length = fine.clamped.length;
     Block::paragraph(format!(
-        "First longitudinal vibration of a plate that is clamped at one end, at small strain, by inverse iteration: {} Hz \
-         after Richardson, with an observed order of {:.2} (the clamped corners are singular). A rod of the plate's length \
-         has {} Hz; the plate is as stiff as a rod of L' = {} mm, which has {} Hz.",
+        "First longitudinal vibration of a plate clamped at one end, at small strain, by inverse iteration: {} Hz by \
+         Richardson extrapolation, with an observed order of {:.2} (the clamped corners are singular). A rod of the plate's \
+         length has {} Hz; the plate is as stiff as a rod of length L' = {} mm, which has {} Hz.",
         number(converged.extrapolated),
         converged.order.unwrap_or(f64::NAN),
         number(rod(SIZE[0])),
@@ -176,9 +176,9 @@ fn explanation(converged: &Richardson, fine: &Plate) -> Block {
 
 fn checks(converged: &Richardson, fine: &Plate) -> [Check; 2] {
     let clamped =
-        "clamped plate: first longitudinal frequency, converged, over that of a rod of L'";
+        "clamped plate: first longitudinal frequency, converged, over that of a rod of length L'";
     let over_rod = converged.extrapolated / rod(fine.clamped.length);
-    let free = "plate free to contract at its support: first longitudinal frequency over that of a rod of L";
+    let free = "plate free to contract at its support: first longitudinal frequency over that of a rod of length L";
     let lowered = 1.0 - lateral_inertia();
     [
         check(clamped, "–", over_rod).equal(

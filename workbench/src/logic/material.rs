@@ -93,7 +93,10 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
     let (fits, without) = match &question.law {
         Some(name) => {
             let law = Law::named(name).ok_or_else(|| {
-                Error::input(format!("there is no law `{name}`"), "take one of the list")
+                Error::input(
+                    format!("there is no law `{name}`"),
+                    "choose one from the list",
+                )
             })?;
             (vec![calibration::fit(law, &tests, &settings)?], Vec::new())
         }

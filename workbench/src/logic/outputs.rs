@@ -136,7 +136,7 @@ fn picture(name: &str, drawing: &Drawing, format: Format) -> Result<NamedFile, F
         Ok(bytes) => Ok((format!("{name}.{}", format.ending()), bytes)),
         Err(fault) => Err(Fault {
             message: format!("the picture cannot be drawn: {fault}"),
-            advice: "its numbers go out as a table".to_owned(),
+            advice: "its numbers can be saved as a table".to_owned(),
         }),
     }
 }

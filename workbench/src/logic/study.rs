@@ -112,7 +112,7 @@ impl Scene {
             Some(kind) => {
                 return Err(Error::input(
                     format!(
-                        "a study of the kind `{}` is no sheet between two grips",
+                        "a study of the kind `{}` is not a sheet between two grips",
                         kind.name
                     ),
                     "run it in the view Study, or with `gelbench run`",
@@ -218,7 +218,7 @@ fn of_specimen(kind: &Kind, file: &Path, text: &str) -> Result<Scene, Error> {
     let read = specimen::load(kind, file, text, Budget::USUAL)?.made;
     let other = |what: &str| Error::input(what, "run it in the view Study, or with `gelbench run`");
     let specimen::Outline::Shape { shape, cells, .. } = read.outline else {
-        return Err(other("the specimen is a mesh of a file"));
+        return Err(other("the specimen is a mesh from a file"));
     };
     let (outline, size) = match shape {
         Shape::Strip { size } => (Outline::Plate, size),
@@ -246,11 +246,13 @@ fn of_specimen(kind: &Kind, file: &Path, text: &str) -> Result<Scene, Error> {
             },
             size,
         ),
-        Shape::RingSector { .. } => return Err(other("a sector of a ring has no two grips")),
+        Shape::RingSector { .. } => {
+            return Err(other("a sector of a ring does not have two grips"));
+        }
     };
     let grip = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());
     let grip = grip.ok_or_else(|| {
-        other("the specimen is not held by a clamp `left` and a rigid grip `right` alone")
+        other("the specimen must have a clamp `left` and a rigid grip `right`, and no other supports or loads")
     })?;
     let along = (size[0] / size[1] * cells as f64).round() as usize;
     Ok(Scene {
@@ -351,6 +353,6 @@ mod tests {
         };
         assert!(open("kind = \"plate\"\n[plate]\nlenght = \"3 cm\"").contains("lenght"));
         let example = include_str!("../../../examples/released_plate.toml");
-        assert!(open(example).contains("no sheet between two grips"));
+        assert!(open(example).contains("not a sheet between two grips"));
     }
 }

@@ -170,7 +170,7 @@ impl Workbench {
             text: text.clone(),
         });
         match self.table.message() {
-            None => self.told = format!("{name} lies on the table"),
+            None => self.told = format!("{name} is open"),
             Some(_) if is_card => (),
             Some(_) => self.studies.put(name, text),
         }
@@ -336,7 +336,7 @@ impl Workbench {
         self.studies.stop();
         self.table.forget_tasks();
         if busy && !moved {
-            self.told = "stopped; what is changed next is computed anew".to_owned();
+            self.told = "stopped; the next change starts a new computation".to_owned();
         }
     }
 

@@ -143,7 +143,7 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
     let response = ui.add(
         Slider::new(&mut degrees, -60.0..=60.0)
             .suffix(" °")
-            .text("turn"),
+            .text("rotation"),
     );
     if response.changed() {
         scene.grip.angle = degrees.to_radians();
@@ -151,7 +151,7 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
     hold(response);
     if ui
         .button("straight")
-        .on_hover_text("takes motion across and turn back")
+        .on_hover_text("resets transverse motion and rotation")
         .clicked()
     {
         scene.grip.displacement[1] = 0.0;
@@ -166,8 +166,8 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
         ui.checkbox(&mut look.models[model as usize], model.name());
     }
     ui.horizontal(|ui| {
-        ui.selectable_value(&mut look.layout, Layout::Beside, "by themselves");
-        ui.selectable_value(&mut look.layout, Layout::Over, "one over the other");
+        ui.selectable_value(&mut look.layout, Layout::Beside, "side by side");
+        ui.selectable_value(&mut look.layout, Layout::Over, "superimposed");
     });
     ComboBox::from_label("colour")
         .selected_text(look.colour.name())
@@ -179,7 +179,7 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
             }
         });
     ui.checkbox(&mut look.multipliers, "multipliers as arrows")
-        .on_hover_text("where the springs contradict the physics: the derivative of the smallest ½‖u − ū‖² by the forces at the nodes");
+        .on_hover_text("where the springs violate equilibrium: the derivative of the smallest ½‖u − ū‖² with respect to the nodal forces");
     ui.checkbox(&mut look.cells, "cells");
     if scene.outline == Outline::Plate {
         ui.label("The corrector knows");

@@ -212,7 +212,7 @@ impl Fields {
         });
     }
 
-    /// What is said of the field, and what is seen of it.
+    /// What is stated about the field, and what is seen of it.
     fn question(
         &mut self,
         ui: &mut Ui,
@@ -238,7 +238,7 @@ impl Fields {
             let ink = ui.visuals().warn_fg_color;
             ui.colored_label(
                 ink,
-                "What is said has changed since: `correct` takes it into account.",
+                "The stated conditions have changed since: press `correct` to apply them.",
             );
         }
         self.frames(ui, frames);
@@ -252,8 +252,8 @@ impl Fields {
         ui.heading("Measured field");
         if self.question.files.is_empty() {
             ui.label(
-                "Drop the file of your markers here: a table with x, y, ux, uy, or what DICe, VIC, MatchID, GOM, pyALDIC or muDIC \
-                 write. Several files are frames. Nothing leaves this machine.",
+                "Drop the file of your markers here: a table with x, y, ux, uy, or an export of DICe, VIC, MatchID, GOM, \
+                 pyALDIC or muDIC. Several files are frames. No data leave this machine.",
             );
         }
         let mut gone = None;
@@ -263,7 +263,7 @@ impl Fields {
             }
             for (number, (name, _)) in self.question.files.iter().enumerate() {
                 ui.label(name);
-                if ui.small_button("take away").clicked() {
+                if ui.small_button("remove").clicked() {
                     gone = Some(number);
                 }
             }
@@ -284,7 +284,7 @@ impl Fields {
             table.take_card(chosen, false);
             self.question.card = table.scene().card.clone();
         }
-        Grid::new("said of the field")
+        Grid::new("stated about the field")
             .num_columns(4)
             .show(ui, |ui| {
                 let texts = settings::TEXTS.iter().zip(self.question.texts());
@@ -331,17 +331,17 @@ impl Fields {
         }
         ui.add_space(4.0);
         ui.label(format!(
-            "The mesh: {}. Click an edge and say what is known of it:",
+            "The mesh: {}. Click an edge and state what is known about it:",
             preview.mesh
         ));
         self.mesh(ui, preview);
         self.edges(ui, preview);
-        ui.collapsing("how the file was understood", |ui| {
+        ui.collapsing("how the file was read", |ui| {
             for line in &preview.understood {
                 ui.label(line);
             }
         });
-        ui.collapsing("the same with the command", |ui| {
+        ui.collapsing("the same on the command line", |ui| {
             ui.monospace(self.question.command());
         });
     }

@@ -63,8 +63,8 @@ pub fn table(ui: &mut Ui, table: &Table) {
     });
     ui.label(
         RichText::new(
-            "Deviations from the finite elements: of the displacement, of its departure from the motion that is linear \
-             between the grips (the strict measure), of the force.",
+            "Deviations from the finite elements: displacement, its departure from the linear motion between the grips (the \
+             strict measure), force.",
         )
         .small()
         .weak(),

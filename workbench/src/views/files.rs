@@ -14,7 +14,7 @@ pub fn save(name: &str, content: &[u8]) -> Result<String, String> {
         std::path::absolute(name).map_err(|cause| format!("cannot write {name}: {cause}"))?;
     std::fs::write(&path, content).map_err(|cause| {
         format!(
-            "cannot write {}: {cause}; start the workbench in a folder that you may write to",
+            "cannot write {}: {cause}; start the workbench in a folder with write permission",
             path.display()
         )
     })?;
@@ -38,7 +38,7 @@ pub fn give(name: &str, files: &[NamedFile]) -> Result<String, String> {
         let written = std::fs::create_dir_all(parent).and_then(|()| std::fs::write(&path, content));
         written.map_err(|cause| {
             format!(
-                "cannot write {}: {cause}; start the workbench in a folder that you may write to",
+                "cannot write {}: {cause}; start the workbench in a folder with write permission",
                 path.display()
             )
         })?;
@@ -79,6 +79,6 @@ pub fn save(name: &str, content: &[u8]) -> Result<String, String> {
     };
     match given() {
         Ok(()) => Ok(format!("{name} is among your downloads")),
-        Err(cause) => Err(format!("the browser did not take {name}: {cause:?}")),
+        Err(cause) => Err(format!("the browser did not save {name}: {cause:?}")),
     }
 }

@@ -24,45 +24,48 @@ pub struct Guided {
 }
 
 /// What the workbench is, in three sentences.
-pub const THREE_SENTENCES: &str = "A sheet of gel is held between two grips, and you pull the right one. It is computed three \
-    times: by springs, by the same springs corrected to satisfy equilibrium, and by finite elements, which the other two are \
-    compared with. Everything is computed here, on your own machine, and no data leave it.";
+pub const THREE_SENTENCES: &str = "A sheet of gel is held between two grips, and you pull the right one. Three models are \
+    solved: springs, the same springs corrected to satisfy equilibrium, and finite elements as the reference. Everything is \
+    computed on your own machine, and no data leave it.";
 
 /// The guided scenes.
 pub const SCENES: [Guided; 5] = [
     Guided {
         title: "Why springs are wrong",
-        text: "The colours say how far the springs are from the finite elements, and the arrows (multipliers) where they contradict \
-               the physics: at the clamps, and over the width, because a lattice of springs has a Poisson's ratio of ⅓ and the gel \
-               one of ½. Pull the grip: the departure hardly gets better. Take another card: it stays.",
+        text: "The colours show how far the springs are from the finite elements, and the arrows (multipliers) show where \
+               they violate equilibrium: at the clamps and across the width, because a spring lattice has a Poisson's ratio \
+               of ⅓ and the gel ½. Pull the grip: the departure error hardly decreases. Choose another card: it remains.",
         shows: Shows::Sheet(why_springs_are_wrong),
     },
     Guided {
-        title: "What one correction does",
-        text: "The same nodes, before and after the correction, on one colour scale. The corrected field is the nearest one that is \
-               in equilibrium: its departure is a hundred times nearer to the finite elements. Turn the knob of the grip and pull \
-               across: springs and corrected springs follow in every frame, the finite elements as soon as they are solved.",
+        title: "Effect of one correction",
+        text: "The same nodes, before and after the correction, on one colour scale. The corrected field is the nearest one \
+               in equilibrium: its departure is a hundred times closer to the finite elements. Turn the knob of the grip and \
+               pull it sideways: springs and corrected springs follow in every frame, the finite elements as soon as they \
+               are solved.",
         shows: Shows::Sheet(what_one_correction_does),
     },
     Guided {
-        title: "What T decides",
-        text: "T is what is known at the boundary: where the grips are, and that nothing pulls at the long edges. Here the corrector \
-               is not told of the edges, and its field is hardly nearer to the finite elements than the springs'. Tick `that the \
-               long edges are free` at the lower end of the controls: not the springs decide, but what is known.",
+        title: "Effect of T",
+        text: "T is what is known at the boundary: the position of the grips, and that the long edges are traction-free. \
+               Here the corrector does not know about the edges, and its field is hardly closer to the finite elements than \
+               the springs. Tick `that the long edges are free` at the bottom of the controls: the known conditions matter, \
+               not the springs.",
         shows: Shows::Sheet(what_t_decides),
     },
     Guided {
         title: "Noisy field",
-        text: "Markers of a camera, with noise and some that were lost from sight, and the field nearest to them that is in \
-               equilibrium: forces with intervals come out, although no force was measured. Click the right edge of the mesh, say \
-               that it is free, and correct again: it was held, the data are not explained any more, and the verdict says so.",
+        text: "Camera markers with noise, some of them lost, and the nearest field in equilibrium: it gives forces with \
+               intervals, although no force was measured. Click the right edge of the mesh, state that it is free, and \
+               correct again: it was in fact gripped, so the data are no longer explained, and the verdict says so.",
         shows: Shows::MeasuredField,
     },
     Guided {
         title: "Few springs, then climb",
-        text: "A lattice of 12 × 4 cells. Move the slider `cells across` to the right: more springs do not come nearer to the finite \
-               elements, because what is wrong is not their number; the corrected field does, with about the third power of it. \
-               It climbs from a few springs to any number of cells in milliseconds.",
+        text: "A lattice of 12 × 4 cells. Move the slider `cells across` to the right: more springs do not come closer to \
+               the finite elements, because their number is not the cause of the error; the error of the corrected field \
+               does decrease, with about the third power of the number. It climbs from a few springs to any number of cells \
+               in milliseconds.",
         shows: Shows::Sheet(few_springs_then_climb),
     },
 ];

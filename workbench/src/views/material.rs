@@ -164,13 +164,13 @@ impl Materials {
     fn tests(&mut self, ui: &mut Ui, table: &mut Table) {
         ui.heading("Fit to tests");
         if self.question.tests.is_empty() {
-            ui.label("Drop the CSV of a test here: stretch or strain, and stress or force.");
+            ui.label("Drop the CSV file of a test here: stretch or strain, and stress or force.");
         }
         let mut gone = None;
         for (number, file) in self.question.tests.iter().enumerate() {
             ui.horizontal(|ui| {
                 ui.label(&file.name);
-                if ui.small_button("take away").clicked() {
+                if ui.small_button("remove").clicked() {
                     gone = Some(number);
                 }
             });
@@ -188,7 +188,7 @@ impl Materials {
             None => (),
             Some(Err(fault)) => {
                 figures::fault(ui, fault);
-                ui.label("What the file does not say is stated above.");
+                ui.label("Anything the file does not state is stated above.");
             }
             Some(Ok(ranking)) => {
                 ranked(ui, ranking, &mut self.chosen);
@@ -200,7 +200,7 @@ impl Materials {
     }
 
     fn reading(&mut self, ui: &mut Ui) {
-        ui.collapsing("what the files do not say", |ui| {
+        ui.collapsing("not stated in the files", |ui| {
             Grid::new("reading").num_columns(2).show(ui, |ui| {
                 for key in KEYS {
                     let label = ui.label(key);
@@ -316,7 +316,7 @@ fn ranked(ui: &mut Ui, ranking: &Ranking, chosen: &mut usize) {
 fn result(ui: &mut Ui, fit: &Fitted, table: &mut Table) {
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(&fit.law).strong());
-        if ui.button("make the sheet of it").clicked() {
+        if ui.button("use it for the sheet").clicked() {
             let name = format!("fitted-{}", fit.law);
             table.put_card(CardFile {
                 name,

@@ -73,7 +73,7 @@ fn table(ui: &mut Ui, name: &str, head: &[String], rows: &[Vec<String>]) {
         });
     });
     if rows.len() > ROWS {
-        ui.label(format!("… and {} rows more", rows.len() - ROWS));
+        ui.label(format!("… and {} more rows", rows.len() - ROWS));
     }
 }
 

@@ -1,4 +1,4 @@
-//! The sheets of the models, each by itself or one over the other.
+//! The sheets of the models, each by itself or superimposed.
 
 use std::sync::Arc;
 
@@ -213,7 +213,7 @@ fn label(place: &Place, model: Model, at: Pos2) {
     };
     let follows = match table.drawn(model) {
         Some(drawn) if drawn.follows => "",
-        _ if fault.is_some() => " – no solution here, as is said",
+        _ if fault.is_some() => " – no solution here, see the message",
         _ => " – follow …",
     };
     let ink = match table.scene().look.layout {

@@ -150,7 +150,7 @@ impl Studies {
         }
         if !self.files.is_empty() {
             let names: Vec<_> = self.files.iter().map(|(name, _)| name.as_str()).collect();
-            ui.label(format!("files that a study may name: {}", names.join(", ")));
+            ui.label(format!("files that a study can name: {}", names.join(", ")));
         }
         let text = CollapsingHeader::new("text of the study").default_open(true);
         text.show(ui, |ui| {

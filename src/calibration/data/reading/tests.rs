@@ -65,11 +65,11 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
     for (text, message) in [
         (
             "# test: uniaxial; stress measure: cauchy\nstretch [-],nominal_stress [MPa]\n1.1,1",
-            "the stress measure is nominal by the name of a column and cauchy by the head",
+            "the stress measure is nominal according to the name of a column and cauchy according to the header",
         ),
         (
             "# test: uniaxial; stress unit: kPa\nstretch [-],nominal_stress [MPa]\n1.1,1",
-            "the stress unit is MPa by the name of a column and kPa by the head",
+            "the stress unit is MPa according to the name of a column and kPa according to the header",
         ),
         (
             "# test: uniaxal\nstretch [-],nominal_stress [MPa]\n1.1,1",
@@ -149,7 +149,7 @@ fn columns_that_do_not_fit_together_are_refused() {
         ),
         (
             "# test: uniaxial\n# test: planar\nstretch [-],nominal_stress [MPa]\n1.1,1",
-            "the test is said twice",
+            "the test is stated twice",
         ),
         (
             "# test: compression\nnominal_strain [-],nominal_stress [MPa]\n0.1,1",

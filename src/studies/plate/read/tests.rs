@@ -81,7 +81,7 @@ fn of_many_faults_the_first_are_told_and_the_others_counted() {
     let keys: String = (0..3000).map(|key| format!("k{key} = 1\n")).collect();
     let told = faults(&format!("[plate]\n{keys}"));
     assert_eq!(told.len(), 51);
-    assert_eq!(told[50], "and 2950 more findings");
+    assert_eq!(told[50], "2950 further findings are not listed");
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn settings_that_contradict_each_other_are_refused() {
     assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take [60, 20]"));
     assert!(faults("[plate]\ncells = [2, 2]\n")[0].contains("take [6, 2]"));
     assert!(faults("[plate]\ncells = [3000, 1000]\n")[0].contains(
-        "needs about 3,000,000 cells, and 1,000,000 are allowed (take fewer, or say --allow-large)"
+        "needs about 3,000,000 cells, and 1,000,000 are allowed (take fewer, or use --allow-large)"
     ));
     assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
     assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));

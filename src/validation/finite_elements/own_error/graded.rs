@@ -137,9 +137,9 @@ impl Plate {
 }
 
 fn report(series: &[Series], exact: Exact) -> [Block; 2] {
-    let text = "The clamped plate at 50 % stretch. True errors are those from the extrapolated graded Q2 plates; that of the \
-                field is the root of twice the surplus of the potential. Beside a singular corner a recovered gradient is \
-                no better than the elements' own: there the estimate is less exact, and no check is made of it.";
+    let text = "The clamped plate at 50 % stretch. True errors refer to the extrapolated graded Q2 plates; the error of the \
+                field is the square root of twice the excess of the potential. Near a singular corner a recovered gradient \
+                is no better than that of the elements: there the estimate is less accurate and is not checked.";
     let head = "clamped plate | force [N] | its error [%] | the same by recovery [%] | \
                 error of the field by recovery, energy norm [%] | estimated over true error of the field";
     let plates = series.iter().flat_map(|series| &series.plates);

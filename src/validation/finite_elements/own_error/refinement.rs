@@ -107,7 +107,7 @@ impl Rounds {
         let (uniform, local) = (last(&self.uniform), last(&self.local));
         let (most, error) = (uniform.cells(), number(uniform.force_percent));
         let what = format!(
-            "plate, T2: cells of local over {most} of uniform refinement, at {error} % error of the force"
+            "plate, T2: cells of local over {most} of uniform refinement, at {error} % force error"
         );
         let share = local.cells() as f64 / most as f64;
         check(what, "–", share).at_most(0.25, "the same error with fewer cells")
@@ -135,13 +135,13 @@ impl Rounds {
             Axis::logarithmic("error of the force [%]"),
         );
         let chart = LineChart::new("Force of the clamped plate, T2", x, y, lines);
-        let caption = "Error of the plate's force over the number of cells.";
+        let caption = "Error of the plate's force against the number of cells.";
         [
             Figure::new("own_error.png", caption, chart),
             mesh_figure(
                 "own_error_mesh.png",
                 "The last mesh of the local refinement.",
-                "Refined where the estimated error is",
+                "Refined where the estimated error is large",
                 &last(&self.local).triangles,
             ),
         ]

@@ -101,7 +101,7 @@ impl Force {
 
 /// The forces of all elements.
 pub fn force_table(forces: &[Force]) -> [Block; 2] {
-    let text = "The force of the right side of a manufactured solution between four rollers. No check is made of T2: the two \
+    let text = "The force on the right side for a manufactured solution between four rollers. T2 is not checked: the two \
                 integrals of its estimate nearly cancel.";
     let head = "element | exact force [N] | error of the force [%] | the same by recovery [%] | estimated over true error";
     [

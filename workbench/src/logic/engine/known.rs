@@ -18,8 +18,8 @@ impl Bodies {
         let plate = self.plate().filter(|_| stretched).cloned();
         let plate = plate.ok_or_else(|| {
             Error::input(
-                "what is known is left out of plates alone, and of those that are only stretched",
-                "take a plate with a straight grip, or let the corrector know everything",
+                "conditions can be left out only for plates that are only stretched, without shear or rotation",
+                "use a plate with a straight grip, or give the corrector all conditions",
             )
         })?;
         let sheet = self.sheet.clone();

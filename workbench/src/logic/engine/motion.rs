@@ -164,8 +164,8 @@ fn viscosity(card: &Card, damping: f64) -> Result<ViscousMaterial, Error> {
     match !viscosity.is_none() && card.bulk_modulus().is_some() {
         false => Ok(viscosity),
         true => Err(Error::input(
-            "the viscous stress is that of an incompressible sheet, and this card is compressible",
-            "set the damping to zero, or take an incompressible card",
+            "the viscous stress assumes an incompressible sheet, but this card is compressible",
+            "set the damping to zero, or choose an incompressible card",
         )),
     }
 }
@@ -182,8 +182,8 @@ impl Body {
         let MotionQuestion { from, .. } = question;
         if from.displacement.len() != self.displacement.len() {
             return Err(Error::input(
-                "the motion begins on another mesh",
-                "let go again",
+                "the motion began on another mesh",
+                "release the grip again",
             ));
         }
         let dashpots = DashpotLaw::Material(viscosity.clone());

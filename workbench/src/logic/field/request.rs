@@ -25,7 +25,7 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
     let thickness = length("the thickness", &question.thickness)?;
     let thickness = thickness.filter(|value| *value > 0.0).ok_or_else(|| {
         Error::input(
-            "the thickness at rest is not said",
+            "the thickness at rest is not stated",
             "write it with its unit, such as \"2 mm\"",
         )
     })?;

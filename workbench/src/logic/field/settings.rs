@@ -38,7 +38,7 @@ pub const TEXTS: [Setting; 5] = [
 ];
 
 impl FieldQuestion {
-    /// What is said of the field as text, in the order of [`TEXTS`].
+    /// What is stated about the field as text, in the order of [`TEXTS`].
     pub fn texts(&mut self) -> [&mut String; 5] {
         [
             &mut self.thickness,

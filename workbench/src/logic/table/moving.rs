@@ -38,14 +38,14 @@ impl Table {
         let starts = Model::ALL.map(start);
         if starts.iter().all(Option::is_none) {
             self.message = Some(Fault {
-                message: "no model is solved where the grip is".to_owned(),
-                advice: "wait until one follows, then let go".to_owned(),
+                message: "no model is solved at the position of the grip".to_owned(),
+                advice: "wait until a model has followed, then release the grip".to_owned(),
             });
             return;
         }
         if scene.grip == Grip::default() {
             self.message = Some(Fault {
-                message: "the sheet is at rest, and nothing moves".to_owned(),
+                message: "the sheet is at rest, so there is no motion to compute".to_owned(),
                 advice: "pull the grip first".to_owned(),
             });
             return;

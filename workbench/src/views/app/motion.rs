@@ -44,23 +44,23 @@ impl Workbench {
     /// Lets go, and what it is let go with.
     pub(super) fn motion_controls(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| {
-            let hint = "opens the grip: the sheet moves by its own inertia; Escape holds it again";
+            let hint = "releases the grip: the sheet moves freely; Escape grips it again";
             match self.table.moving() {
                 None => {
-                    let response = ui.button("let go").on_hover_text(hint);
+                    let response = ui.button("release").on_hover_text(hint);
                     self.places
-                        .insert("let go".to_owned(), response.rect.center());
+                        .insert("release".to_owned(), response.rect.center());
                     if response.clicked() {
                         self.lets_go = true;
                     }
                 }
                 Some(_) => {
-                    if ui.button("hold again").clicked() {
+                    if ui.button("grip again").clicked() {
                         self.table.act(Action::Hold);
                     }
                 }
             }
-            ui.checkbox(&mut self.springs_back, "when the mouse does");
+            ui.checkbox(&mut self.springs_back, "when the mouse button is released");
         });
         let slider = Slider::new(&mut self.damping, DAMPING)
             .logarithmic(true)
@@ -70,7 +70,7 @@ impl Workbench {
             .text("damping");
         let response = ui
             .add(slider)
-            .on_hover_text("shear viscosity besides that of the card");
+            .on_hover_text("shear viscosity in addition to the card's");
         let released = response.drag_stopped() || (response.changed() && !response.dragged());
         if released && self.table.moving().is_some() {
             self.let_go();
@@ -97,21 +97,21 @@ impl Workbench {
             if ui.button(word).clicked() {
                 running = !running;
             }
-            if ui.button("hold again").on_hover_text("Escape").clicked() {
+            if ui.button("grip again").on_hover_text("Escape").clicked() {
                 self.table.act(Action::Hold);
                 return;
             }
             let slider = Slider::new(&mut time, 0.0..=duration)
                 .custom_formatter(|time, _| format!("{time:.1}"))
                 .suffix(" ms");
-            wound = ui.add(slider.text("since it was let go")).changed();
+            wound = ui.add(slider.text("since the release")).changed();
             let slower = Slider::new(&mut slowness, 1.0..=1000.0)
                 .logarithmic(true)
                 .custom_formatter(|times, _| format!("{times:.0}"))
                 .suffix(" ×");
-            ui.add(slower.text("slower than it is"));
+            ui.add(slower.text("slower than real time"));
             if complete {
-                ui.label(format!("energy kept to {strayed:.2} %"));
+                ui.label(format!("energy error {strayed:.2} %"));
             } else {
                 ui.spinner();
                 ui.label(format!("{:.0} % computed", 100.0 * computed / duration));

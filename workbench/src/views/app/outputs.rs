@@ -30,7 +30,7 @@ impl Workbench {
             self.told = match link {
                 Some(link) => {
                     ui.ctx().copy_text(link);
-                    "the link is in the clipboard, and is this page's address now".to_owned()
+                    "the link is in the clipboard and is now the address of this page".to_owned()
                 }
                 None => "the browser gives this page no address".to_owned(),
             };
@@ -38,13 +38,13 @@ impl Workbench {
         }
         let offers = self.offers();
         if offers.is_empty() {
-            ui.label("There is nothing to go out yet.");
+            ui.label("There is nothing to export yet.");
         }
         for (name, wanted) in offers {
             let response = ui.button(&name);
             self.places.insert(name, response.rect.center());
             if response.clicked() {
-                self.told = "being written …".to_owned();
+                self.told = "writing …".to_owned();
                 self.exports.ask(wanted);
                 ui.close();
             }

@@ -75,8 +75,7 @@ impl Workbench {
             {
                 self.table.act(Action::Redo);
             }
-            let hint =
-                "Ctrl+S: the study that `gelbench run` takes, and its card where it is your own";
+            let hint = "Ctrl+S: saves the study for `gelbench run`, and its card if it is your own";
             if ui.button("save study").on_hover_text(hint).clicked() {
                 self.save();
             }

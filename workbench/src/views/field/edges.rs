@@ -54,7 +54,7 @@ impl Fields {
             Sense::click(),
         );
         response.widget_info(|| {
-            let label = "mesh of the field: click an edge and say what is known of it";
+            let label = "mesh of the field: click an edge and state what is known about it";
             WidgetInfo::labeled(Role::Image, true, label)
         });
         markers(ui, (view, area), preview);
@@ -112,11 +112,11 @@ fn kinds(ui: &mut Ui, edge: &mut Edge) {
     for kind in Edge::all() {
         let chosen = edge.is_like(&kind);
         let hint = match kind {
-            Edge::Unnamed => "nothing is said: the data tell whether it is free",
+            Edge::Unnamed => "not stated: the data determine whether it is free",
             Edge::Free => "no traction acts on it",
-            Edge::Rigid => "it moved as a rigid body, by unknown amounts: a grip",
+            Edge::Rigid => "it moved as a rigid body by unknown amounts: a grip",
             Edge::Known(_) => "its displacement is known",
-            Edge::Unknown => "it is loaded in an unknown way and moved smoothly",
+            Edge::Unknown => "its load is unknown and its displacement smooth",
         };
         let label = ui.selectable_label(chosen, kind.name()).on_hover_text(hint);
         if label.clicked() && !chosen {
@@ -165,7 +165,7 @@ fn markers(ui: &mut Ui, (view, area): (View, Rect), preview: &Preview) {
         painter.line_segment([from, to], Stroke::new(1.0, ink.gamma_multiply(0.6)));
     }
     let words = match shown < 1.0 {
-        true => format!("their displacements, {shown:.2} times as long"),
+        true => format!("displacements magnified {shown:.2} times"),
         false => "their displacements".to_owned(),
     };
     let words = format!("points: the markers of the last frame at rest; lines: {words}");

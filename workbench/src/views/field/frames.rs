@@ -76,7 +76,7 @@ fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
         return;
     };
     let enlarged = 0.04 * (high - low) / largest.max(1e-12);
-    ui.label(format!("residuals of the markers at rest, {enlarged:.1} times as long; far off in the colour of faults"));
+    ui.label(format!("residuals of the markers at their rest positions, magnified {enlarged:.1} times; outliers in the colour of faults"));
     let (view, area) = report::room(ui, places.iter());
     let painter = ui.painter().with_clip_rect(area);
     for (place, left, trust) in &frame.residuals {
