@@ -1,4 +1,5 @@
-//! One budget for what grows with what a user writes: it is estimated before anything is built, and refused where it is too much.
+//! Limits for memory and work, which grow with a user's input: the need is estimated before anything is built, and refused where it exceeds the
+//! budget.
 //!
 //! | quantity | usual | what counts |
 //! |---|---|---|
@@ -8,11 +9,11 @@
 //! | unknowns | 3,000,000 | of the largest system of equations |
 //! | bytes | 8 GB | memory at its peak |
 //!
-//! [`Budget::LARGE`] is what the option `--allow-large` stands for.
+//! [`Budget::LARGE`] is the budget with the option `--allow-large`.
 
 use std::fmt;
 
-/// What may be used at most.
+/// The most that may be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Cells of the largest mesh.
@@ -28,7 +29,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// What fits into a common machine and ends within hours.
+    /// For a common machine and a run of hours.
     pub const USUAL: Self = Self {
         cells: 1e6,
         instants: 2e4,
@@ -37,7 +38,7 @@ impl Budget {
         bytes: 8e9,
     };
 
-    /// What can be addressed: beyond it nothing could be computed on any machine.
+    /// The limit of what can be addressed: no machine could compute more.
     pub const LARGE: Self = Self {
         cells: 1e9,
         instants: 1e7,
@@ -46,10 +47,10 @@ impl Budget {
         bytes: 1e12,
     };
 
-    /// Whether a need keeps within the budget.
+    /// Checks that a need is within the budget.
     ///
     /// # Errors
-    /// The first quantity that does not.
+    /// The first quantity that exceeds it.
     pub fn afford(&self, need: Need) -> Result<(), Excess> {
         let excess = |budget: &Self| {
             let quantities = [
@@ -59,7 +60,7 @@ impl Budget {
                 ("unknowns", need.unknowns, budget.unknowns),
                 ("bytes of memory", need.bytes, budget.bytes),
             ];
-            // What is no number is too much.
+            // NaN counts as too much.
             quantities
                 .into_iter()
                 .find(|(_, needed, allowed)| needed.is_nan() || needed > allowed)
@@ -83,7 +84,7 @@ impl Default for Budget {
     }
 }
 
-/// What something will use, as estimated from its measures.
+/// The estimated need of a computation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Need {
     /// See [`Budget::cells`].
@@ -99,7 +100,7 @@ pub struct Need {
 }
 
 impl Need {
-    /// States of a system with so many unknowns, solved by factorisation and kept with what is reported of them.
+    /// Need of the states of a system with so many unknowns, solved by factorisation and kept with their results.
     ///
     /// ```text
     /// bytes = unknowns (3,000 + 200 instants)
@@ -115,29 +116,29 @@ impl Need {
         }
     }
 
-    /// With so many cells.
+    /// The same need with so many cells.
     #[must_use]
     pub fn on_cells(self, cells: f64) -> Self {
         Self { cells, ..self }
     }
 }
 
-/// A quantity of which too much is needed.
+/// A quantity that exceeds the budget.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("needs about {} {what}, and {} are allowed", Amount(*.needed), Amount(*.allowed))]
 pub struct Excess {
     /// The quantity.
     pub what: &'static str,
-    /// What is needed.
+    /// The amount needed.
     pub needed: f64,
-    /// What is allowed.
+    /// The amount allowed.
     pub allowed: f64,
-    /// Whether the option for large studies lets it pass.
+    /// Whether the option for large studies permits it.
     pub passes: bool,
 }
 
 impl Excess {
-    /// What to do: something smaller, or the option where it helps.
+    /// Advice: a smaller problem, or the option where it helps.
     pub fn remedy(&self, smaller: &str) -> String {
         match self.passes {
             true => format!("{smaller}, or use --allow-large"),

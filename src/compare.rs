@@ -10,10 +10,10 @@
 //! nominal stress          100 √(Σ A |P(u) − P(v)|² / Σ A |P(v)|²)                   [%]
 //! ```
 //!
-//! The affine stretch is a large part of any stretched plate and is right in every model: the departure
-//! from it is the strict measure. Nominal stresses are those of the material at the fields' gradients, at
-//! the centres of the cells that lie more than a fifth of the plate's width away from the corners, where
-//! the stress is singular. The nominal stress is the transpose of P and has the same norm.
+//! The affine stretch is a large part of the displacement of any stretched plate and is right in every model: the
+//! departure from it is the strict measure. Nominal stresses follow from the material law at the fields' gradients,
+//! at the centres of the cells that lie more than a fifth of the plate's width away from the corners, where the
+//! stress is singular. The nominal stress is the transpose of P and has the same norm.
 
 use nalgebra::Vector4;
 
@@ -31,43 +31,43 @@ pub mod judgement;
 /// Deviation of one field from the reference at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Displacement in relative L2, in %.
+    /// Difference in displacement, relative L2 norm, in %.
     pub displacement_percent: f64,
-    /// Departure from the affine stretch in relative L2, in %.
+    /// Difference in displacement relative to the departure from the affine stretch, L2 norm, in %.
     pub departure_percent: f64,
-    /// Largest difference of a node's displacement in mm.
+    /// Largest difference in the displacement of a node, in mm.
     pub max_difference: f64,
-    /// Grip force, signed, in %.
+    /// Difference in grip force, signed, in %.
     pub force_percent: f64,
-    /// Width at mid length, signed, in %.
+    /// Difference in width at mid length, signed, in %.
     pub width_percent: f64,
-    /// Nominal stress away from the corners in relative L2, in %.
+    /// Difference in nominal stress away from the corners, relative L2 norm, in %.
     pub nominal_stress_percent: f64,
 }
 
 /// The finite elements' own error at one stretch, from three meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfConvergence {
-    /// Of the grip force.
+    /// Convergence of the grip force.
     pub force: Richardson,
-    /// Of the width at mid length.
+    /// Convergence of the width at mid length.
     pub width: Richardson,
-    /// Of the displacement in relative L2, in %: the difference of the two finer meshes over 2ᵖ − 1.
+    /// Error of the displacement, relative L2 norm, in %: the difference of the two finer meshes over 2ᵖ − 1.
     pub displacement_percent: f64,
-    /// The same over the size of the departure from the affine stretch, in %.
+    /// The same error relative to the departure from the affine stretch, in %.
     pub departure_percent: f64,
     /// Observed order p of the displacement.
     pub displacement_order: Option<f64>,
 }
 
-/// One stretch, compared as far as there are fields.
+/// Comparison at one stretch, for the fields that exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepComparison {
     /// Grip displacement divided by the length.
     pub stretch: f64,
-    /// Before the correction.
+    /// Deviation of the mass-spring field, before the correction.
     pub mass_spring: Option<Deviation>,
-    /// After it.
+    /// Deviation of the corrected field.
     pub corrected: Option<Deviation>,
     /// The reference's own error; `None` where one of its meshes has no solution.
     pub reference: Option<SelfConvergence>,
@@ -101,7 +101,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Compares a field on `mesh`, which follows those of the past, with the finest mesh at stretch number `step`; `None` where that has no solution.
+    /// Deviation of a field on `mesh`, with its past fields, from the finest mesh at stretch number `step`; `None` where that mesh has no solution.
     pub fn deviation(
         &self,
         mesh: &Mesh,
@@ -126,7 +126,7 @@ impl<'a> Reference<'a> {
         })
     }
 
-    /// The reference displacements at the nodes of `mesh` in mm, as far as they go.
+    /// The reference displacements at the nodes of `mesh` in mm, for all stretches that were solved.
     pub fn displacements_on(&self, mesh: &Mesh) -> Vec<Vec<f64>> {
         let (fine, solutions) = self.meshes[2];
         let solutions = solutions.iter();
@@ -143,7 +143,7 @@ impl<'a> Reference<'a> {
         let meshes = [coarse?, middle?, fine?];
         let measures = meshes.map(|(mesh, state)| Measures::of(mesh, state));
         let of = |value: fn(Measures) -> f64| richardson(measures.map(value));
-        // At the nodes of the finest mesh a coarser field is seen between its own nodes too, where its error is larger.
+        // The nodes of the finest mesh include points between the nodes of a coarser one, where the error of a coarser field is larger.
         let common = meshes[2].0;
         let [first, second, third] =
             meshes.map(|(mesh, state)| mesh.displacement_on(&state.displacement, common));
@@ -190,7 +190,7 @@ impl<'a> Reference<'a> {
         100.0 * (error / size).sqrt()
     }
 
-    /// First Piola–Kirchhoff stress in MPa; not a number where the field is inverted.
+    /// First Piola–Kirchhoff stress in MPa; NaN where the field is inverted.
     fn stress(&self, gradient: [f64; 4], past: impl Iterator<Item = [f64; 4]>) -> Vector4<f64> {
         match Kinematics::new(&Vector4::from(gradient)) {
             Ok(kinematics) => {
@@ -204,29 +204,29 @@ impl<'a> Reference<'a> {
 /// Distance of two fields on the mesh of a plate in relative L2, weighted by area, in %.
 ///
 /// # Panics
-/// When the mesh is no plate's.
+/// When the mesh is not that of a plate.
 pub fn displacement_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
     percent(&mesh.nodal_areas(), field, reference)
 }
 
-/// Distance of two fields on the mesh of a plate over the size of what the reference departs from `affine`, in %.
+/// Distance of two fields on the mesh of a plate relative to the departure of the reference from `affine`, in %.
 ///
 /// # Panics
-/// When the mesh is no plate's.
+/// When the mesh is not that of a plate.
 pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: &[f64]) -> f64 {
     let areas = mesh.nodal_areas();
     let departure = reference.weighted_distance(affine, &areas);
     100.0 * field.weighted_distance(reference, &areas) / departure
 }
 
-/// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell
-/// belongs to its corners in equal parts.
-/// Two fields that are rounding compared with the mesh do not differ.
+/// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell is
+/// divided equally among its corners. The distance is zero where both fields are as small as rounding compared with
+/// the mesh.
 pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
     weighted_percent(mesh, &mesh.corner_areas(), field, reference)
 }
 
-/// The same on all nodes, to which the area of a cell belongs in equal parts.
+/// The same distance over all nodes, among which the area of a cell is divided equally.
 pub fn percent_at_all_nodes(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
     weighted_percent(mesh, &mesh.areas_of_all_nodes(), field, reference)
 }

@@ -6,15 +6,15 @@
 //! L(u, ζ, η) = ½ (u − ū)ᵀ W (u − ū) + ζᵀ F(u) + ηᵀ T(u)
 //! ```
 //!
-//! The conditions are linearised about the current field and the [projection](factor) of ū onto the
-//! linearised conditions is repeated until they hold. ζ and η are the derivatives of the smallest ½ ‖u − ū‖²_W with
-//! respect to the right-hand sides, with the sign reversed where a condition reads c(u) = b: ∂(minimum)/∂b = −ψ, ψ being ζ or η.
+//! The conditions are linearised about the current field and the [projection](factor) of ū onto the linearised
+//! conditions is repeated until they are satisfied. ζ and η are the sensitivities of the minimum of ½ ‖u − ū‖²_W to
+//! the right-hand sides: for a condition written as c(u) = b with the multiplier ψ (ζ or η), ∂(minimum)/∂b = −ψ.
 //!
-//! Where F and T together give as many conditions as there are unknowns, ū has no say in the result: each
-//! step is then a Newton step that starts at ū, whatever W is, and the multipliers show how far ū was
-//! from equilibrium. With fewer conditions it is a genuine least-squares problem.
+//! Where F and T together give as many conditions as there are unknowns, ū does not influence the result: each step
+//! is then a Newton step that starts at ū, whatever W is, and the multipliers show how far ū was from equilibrium.
+//! With fewer conditions it is a genuine least-squares problem.
 //!
-//! The corrector does not know how ū was made.
+//! The corrector does not depend on how ū was obtained.
 //!
 //! # References
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems

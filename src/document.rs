@@ -1,8 +1,8 @@
-//! TOML documents, read with the place of every value: all faults of a file are collected, and none hides another.
+//! TOML documents, read with the position of every value: all faults of a file are collected and reported together.
 //!
-//! A [`Section`] hands out values. When a value is missing or wrong it records a [`Diagnostic`] and
-//! hands out a placeholder, so that reading goes on; [`Faults::finish`] then refuses the whole
-//! document, and no placeholder is ever computed with.
+//! A [`Section`] returns values. When a value is missing or wrong it records a [`Diagnostic`] and returns a
+//! placeholder, so that reading continues; [`Faults::finish`] then rejects the whole document, and a placeholder
+//! never enters a computation.
 
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
@@ -53,28 +53,28 @@ pub struct Document<'a> {
     table: DeTable<'a>,
 }
 
-/// Faults of syntax that are told of one document: the first ones usually make the others.
+/// Most syntax faults reported for one document: the first ones usually cause the others.
 const MOST_SYNTAX_TOLD: usize = 5;
 
 /// How messages about TOML's syntax begin.
 const SYNTAX: &str = "TOML syntax";
 
-/// Findings that are told of one document.
+/// Most findings reported for one document.
 const MOST_TOLD: usize = 50;
 
-/// Collects what is found while a document is read.
+/// Collects the findings while a document is read.
 #[derive(Debug, Default)]
 pub struct Faults {
     budget: Budget,
     found: RefCell<Vec<Diagnostic>>,
     defaulted: RefCell<Vec<String>>,
     keys: RefCell<Vec<Key>>,
-    /// Whether the text falls apart, so that only its first fault of syntax says what is wrong.
+    /// Whether the syntax is so broken that only its first fault says what is wrong.
     is_broken: Cell<bool>,
 }
 
 impl Faults {
-    /// None yet, of a document that may ask for so much.
+    /// An empty collection for a document that is read within a budget.
     pub fn within(budget: Budget) -> Self {
         Self {
             budget,
@@ -95,17 +95,17 @@ impl Faults {
         }
     }
 
-    /// The keys that were asked for.
+    /// The keys that were looked up.
     pub fn keys(&self) -> Vec<Key> {
         self.keys.borrow().clone()
     }
 
-    /// The keys that were not written, with the defaults that they took: `finite_element.element = "Q2"`.
+    /// The keys that were not written, with the defaults used: `finite_element.element = "Q2"`.
     pub fn defaults(&self) -> Vec<String> {
         self.defaulted.borrow().clone()
     }
 
-    /// Whether nothing found so far stops the program.
+    /// Whether no finding so far stops the program.
     pub fn none(&self) -> bool {
         self.found
             .borrow()
@@ -126,7 +126,7 @@ impl Faults {
         all.sort_by_key(|fault| fault.place.as_ref().map_or(0, |(_, span)| span.start));
         if all.len() > MOST_TOLD {
             let more = all.len() - MOST_TOLD;
-            // Errors are what the author must see.
+            // Errors come first: the author must see them.
             all.sort_by_key(|fault| fault.severity == Severity::Warning);
             all.truncate(MOST_TOLD);
             let severity = if ok {
@@ -153,7 +153,7 @@ impl<'a> Document<'a> {
         for fault in &syntax_faults {
             let (message, span) = (fault.message().trim(), fault.span().unwrap_or(0..0));
             let hint = syntax::remedy(text, &span, message);
-            // Where it is not known what was meant, what follows is a consequence.
+            // Where the intention is unknown, later faults are consequences of the first.
             let is_broken = hint.is_none();
             if is_broken || told < MOST_SYNTAX_TOLD {
                 let diagnostic = Diagnostic {
@@ -190,13 +190,13 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The first name of a choice in a list such as [`Section::choice`] takes.
+/// The first name of a choice in a list such as that of [`Section::choice`].
 pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], choice: T) -> &'static str {
     let found = names.iter().find(|(_, known)| *known == choice);
     found.map_or("", |(name, _)| name)
 }
 
-/// A text in quotes, as a document has it.
+/// A text in quotes, as written in a document.
 pub fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
@@ -210,17 +210,17 @@ pub enum Bound {
     Positive,
     /// Zero or greater.
     NonNegative,
-    /// Within both limits, which are included.
+    /// Within both limits, inclusive.
     Within(f64, f64),
-    /// Within both limits, which are included, as these words say.
+    /// Within both limits, inclusive; the text describes the range.
     Range(f64, f64, &'static str),
 }
 
 impl Bound {
-    /// The size of a thing, in mm.
+    /// The size of an object, in mm.
     pub const SIZE: Self = Self::Range(SIZES[0], SIZES[1], "greater than zero, from 1 nm to 1 km");
 
-    /// The least and the largest value, infinite where there is none.
+    /// The least and the largest value, infinite where there is no limit.
     pub fn ends(self) -> [f64; 2] {
         match self {
             Self::Any => [f64::NEG_INFINITY, f64::INFINITY],
@@ -229,7 +229,7 @@ impl Bound {
         }
     }
 
-    /// A value, or the end of the bound that a conversion of units has rounded it away from.
+    /// A value, or the limit of the bound where a conversion of units has rounded the value beyond it.
     fn on_the_end(self, value: f64) -> f64 {
         match self {
             Self::Within(low, high) | Self::Range(low, high, _) => on_the_end(value, [low, high]),

@@ -1,11 +1,11 @@
-//! Motion in time: Newton's equation for any energy of nodes, Eq. 1–5 of the publication.
+//! Motion in time: Newton's equation of motion for any energy of nodal displacements, Eq. 1–5 of the publication.
 //!
 //! ```text
 //! M ü + ∂Π/∂u + f_v(u, u̇) = f(t)                                                        [N]
 //! ```
 //!
 //! M is the lumped mass, Π the strain energy of springs or finite elements, f_v the viscous forces, f(t) the loads;
-//! supports move held unknowns as functions of time. Units are mm, s, tonne, N and mJ.
+//! supports prescribe unknowns as functions of time. Units are mm, s, tonne, N and mJ.
 
 mod central;
 mod dashpots;

@@ -1,4 +1,4 @@
-//! Errors, sorted by who must act on them: the author of a file, the author of a model, or the keeper of the disk.
+//! Errors, by who must act on them: the author of a file, the author of a model, or the owner of the disk.
 
 use std::fmt;
 use std::ops::Range;
@@ -108,7 +108,7 @@ impl std::error::Error for Diagnostic {}
 /// Why a solver did not reach a solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveFault {
-    /// An element has turned inside out or shrunk to nothing.
+    /// An element has turned inside out or shrunk to zero size.
     #[error("{element} inverts or collapses, even with shorter steps")]
     Inverted {
         /// The element, named with its place, as in `cell 80 near (150.0, 0.0) mm`.
@@ -117,7 +117,7 @@ pub enum SolveFault {
     /// The tangent has a direction of no or negative stiffness.
     #[error("the tangent stiffness is not positive definite: a loss of stability")]
     NotPositiveDefinite,
-    /// A body that has a direction of negative stiffness before anything is done to it.
+    /// A body with a direction of negative stiffness before any load acts.
     #[error(
         "unstable at rest: before any load acts, a mode that is largest at {place} has a negative stiffness"
     )]
@@ -133,7 +133,7 @@ pub enum SolveFault {
         /// The state that is not stable, as in `I₁ = 5.10`.
         state: String,
     },
-    /// A motion that the loads drive has lost its stiffness: the load has its maximum, or a part snaps through.
+    /// A motion driven by the loads has lost its stiffness: the load has reached its maximum, or a part snaps through.
     #[error(
         "no equilibrium beyond load factor {factor:.4}: limit point, the load has reached a maximum, or a part of the body snaps through; the motion is largest at {place}"
     )]
@@ -143,7 +143,7 @@ pub enum SolveFault {
         /// The unknown that moves most, named with its place.
         place: String,
     },
-    /// A direction of no stiffness that the loads do not push along: the sheet buckles, wrinkles or necks.
+    /// A direction without stiffness in which the loads do not push: the sheet buckles, wrinkles or necks.
     #[error(
         "the tangent stiffness is not positive definite: buckling, wrinkling or necking; the mode is largest at {place}"
     )]
@@ -154,7 +154,7 @@ pub enum SolveFault {
     /// A motion without strain that no support prevents.
     #[error("{0}")]
     FreeMotion(String),
-    /// The machine has not enough memory for a factor.
+    /// The machine does not have enough memory for a factor.
     #[error("not enough memory to factorise the system of equations")]
     OutOfMemory,
     /// The tangent cannot be factorised at all.
@@ -189,7 +189,7 @@ pub enum SolveFault {
         /// The tolerance that was asked for.
         tolerance: f64,
     },
-    /// A motion whose steps are so short that they are too many.
+    /// A motion that needs more steps than are allowed.
     #[error(
         "about {needed:.1e} steps of at most {longest:.1e} s are needed, and {allowed:.1e} are allowed"
     )]
@@ -201,17 +201,17 @@ pub enum SolveFault {
         /// The steps that are allowed.
         allowed: f64,
     },
-    /// A motion that gains energy from nowhere, however short its steps.
+    /// A motion that gains energy without work, however short its steps.
     #[error(
         "the time integration is unstable after {time:.6} s, even with steps down to {step:.1e} s"
     )]
     Explodes {
-        /// The last time in s at which all was well.
+        /// The last time in s at which the motion was sound.
         time: f64,
         /// The shortest step in s that was tried.
         step: f64,
     },
-    /// A field that was to be found near measured displacements.
+    /// A fault of finding a field near measured displacements.
     #[error("{0}")]
     OfMeasured(Box<Self>),
     /// A number is not finite, so nothing computed from it means anything.
@@ -220,8 +220,7 @@ pub enum SolveFault {
 }
 
 impl SolveFault {
-    /// The fault of a field that was to be found near measured displacements: where there is none, it is that of the data rather than of the
-    /// cells.
+    /// The fault of finding a field near measured displacements: a missing solution is put down to the data rather than to the cells.
     #[must_use]
     pub fn of_measured(self) -> Self {
         match self {
@@ -339,7 +338,7 @@ impl Error {
     }
 }
 
-/// A hint for an unknown name: the known one that was probably meant, else all of them after some words.
+/// A hint for an unknown name: the known one that was probably meant, else all known names after the words `otherwise`.
 pub fn suggestion(name: &str, known: &[&str], otherwise: &str) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
@@ -347,7 +346,7 @@ pub fn suggestion(name: &str, known: &[&str], otherwise: &str) -> String {
     }
 }
 
-/// The name in `known` that is nearest to `name`, when it is near enough to be a typing error.
+/// The name in `known` that is nearest to `name`, if it is near enough to be a typing error.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()

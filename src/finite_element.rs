@@ -1,4 +1,4 @@
-//! The built-in hyperelastic reference: quadrilateral elements of a plate, of any law of the library.
+//! The built-in hyperelastic reference: a plate of quadrilateral finite elements, with any law of the library.
 
 use std::sync::Arc;
 
@@ -75,7 +75,7 @@ impl FiniteElements {
         }
     }
 
-    /// The same with another way to solve systems.
+    /// The same model with another linear solver.
     #[must_use]
     pub fn solved_by(self, linear_solver: LinearSolver) -> Self {
         Self {
@@ -101,8 +101,8 @@ impl FiniteElements {
         format!("{}, {}", self.element.name(), self.mesh.describe())
     }
 
-    /// The estimated error of a state, by the recovery on this mesh, which knows no history: where the material softens, that of a first
-    /// loading.
+    /// The estimated error of a state, by recovery on this mesh. No loading history enters: where the material
+    /// softens, the estimate is that of a first loading.
     ///
     /// # Errors
     /// A [`SolveFault`] when the tangent at the state cannot be factorised.
@@ -116,7 +116,7 @@ impl FiniteElements {
         one.swap_remove(0)
     }
 
-    /// The same for each of some states.
+    /// The estimated error of each of several states.
     pub fn estimates(
         &self,
         plate: &ClampedPlate,

@@ -11,20 +11,20 @@
 //! | [Measured fields](measured_fields) | markers from image correlation: the nearest field in equilibrium, with intervals |
 //! | [Materials](materials) | cards, fits to your own tests, export of test data |
 //! | [Springs and dashpots](springs_and_dashpots) | spring and dashpot functions from a recording of force and extension |
-//! | [Many runs](many_runs) | a study with other parameters, again and again: grids, distributions, a fit's uncertainty; clusters |
-//! | [Other codes](other_codes) | the same problem in Abaqus, CalculiX or FEBio, and the way back |
+//! | [Many runs](many_runs) | a study with varied parameters: grids, distributions, the uncertainty of a fit; clusters |
+//! | [Other codes](other_codes) | the same problem in Abaqus, CalculiX or FEBio, and the import of their results |
 //! | [Validation](validation) | the claims of the publication, and what gelbench is checked against |
 //! | [Performance](performance) | why the corrected plate is fast, and how to measure it |
 //!
 //! # With the library
 //!
-//! The programs on these pages run whenever gelbench is tested.
+//! The tests of gelbench run the programs on these pages.
 //!
 //! | page | for |
 //! |---|---|
 //! | [A first plate](first_plate) | springs, corrected springs and finite elements of one plate |
 //! | [A law of your own](own_law) | a material law that gelbench does not have |
-//! | [A shape of your own](own_shape) | a shape from measures, from an outline or from a file, with supports and loads |
+//! | [A shape of your own](own_shape) | a shape from dimensions, from an outline or from a file, with supports and loads |
 //! | [Markers of your own](own_markers) | an equilibrium field from markers that are already in memory |
 //! | [A condition of your own](own_condition) | a condition of your own in the corrector |
 //! | [A study in a program](own_study) | reading a study file and writing its results |

@@ -5,14 +5,14 @@
 //! minimise  ‖x̃ − x‖²/s_x² + ‖f̃ − f‖²/s_f² + penalty      over the motion x(t), K(·) and D(·)
 //! ```
 //!
-//! Both signals are data of one motion. It is a spline of degree 5 over time, with as many parts as generalised
-//! cross-validation asks for in either signal, and its derivatives are exact. No noisy signal is ever differentiated
-//! or put into a regressor, so that noise causes no bias of first order: a regression of f̃ on derivatives of x̃
-//! underestimates K and D. What is left of either signal's own spline gives its noise s_x, s_f.
+//! Both signals are data of one motion: a spline of degree 5 over time with exact derivatives, and with as many parts
+//! as generalised cross-validation asks for in either signal. No noisy signal is differentiated or put into a
+//! regressor, so that noise causes no bias of first order; a regression of f̃ on derivatives of x̃ would
+//! underestimate K and D. The residuals of each signal's own spline give its noise s_x, s_f.
 //!
-//! K(·) and D(·) are constants, polynomials, or cubic B-splines with a penalty on the squares of third differences
-//! of their coefficients. Its weights are a tenth of those of least generalised cross-validation, so that intervals hold;
-//! splines may be constrained to rise or to fall. Force and motion must be sampled at the same instants, and their noise must be white.
+//! K(·) and D(·) are constants, polynomials, or cubic B-splines with a penalty on the squares of third differences of their coefficients.
+//! The weights of the penalty are a tenth of those that minimise generalised cross-validation, so that the intervals are valid; splines may
+//! be constrained to rise or to fall. Force and motion must be sampled at the same instants, and their noise must be white.
 //!
 //! # References
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems, Eq. 2–5;
@@ -54,20 +54,20 @@ use warnings::{FEWEST_CORNERS, warnings};
 #[cfg(test)]
 mod tests;
 
-/// Gauss–Newton steps allowed, and those at which the penalties are still chosen.
+/// Gauss–Newton steps allowed, and the number of first steps in which the penalties are still chosen.
 const MOST_STEPS: usize = 60;
 const CHOICES: usize = 6;
 
-/// Change of the penalised sum of squares that is left undone, over the misfit; a change of one is a standard error.
+/// The iteration ends when the penalised sum of squares falls by less than this, relative to the misfit; a change of one is a standard error.
 const SETTLED: f64 = 1e-3;
 
-/// Instants for each part of the motion at least: both signals count at each.
+/// Least number of instants for each part of the motion; both signals count at each instant.
 const FEWEST_IN_MOTION: usize = 2;
 
-/// Least noise, over the largest value of its signal: that of sums in floating point.
+/// Least noise, relative to the largest value of its signal: the rounding of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
 
-/// Finds K(·) and D(·); `told` hears what is being computed.
+/// Finds K(·) and D(·); `told` is called with what is being computed.
 ///
 /// # Errors
 /// [`Error::Input`] when the recording does not determine them, or when a form cannot take a shape.
@@ -168,7 +168,7 @@ fn begin<'a>(
     ))
 }
 
-/// A fit on its way.
+/// The state of a fit during the iteration.
 struct Fit<'a> {
     joint: &'a Joint<'a>,
     state: State,
@@ -180,7 +180,7 @@ impl Fit<'_> {
         2.0 * self.joint.recording.times.len() as f64
     }
 
-    /// Gauss–Newton steps until nothing moves; the functions with the motion as it is come first.
+    /// Gauss–Newton steps until convergence. The functions are fitted first with the motion fixed.
     fn improve(&mut self, told: &dyn Fn(&str)) -> Result<PenalisedFit, Error> {
         let unknown = || undetermined("K(·) and D(·)");
         let functions = &self.joint.functions;
@@ -214,7 +214,7 @@ impl Fit<'_> {
         ))
     }
 
-    /// Takes the longest share of a step that lowers the penalised sum of squares, and returns that sum.
+    /// Halves a step until the penalised sum of squares does not rise, takes it, and returns that sum.
     fn advance(&mut self, linearised: &JointEquations, found: &PenalisedFit) -> f64 {
         const HALVINGS: i32 = 12;
         let functions = &found.coefficients - &self.state.functions;
@@ -282,7 +282,7 @@ impl Fit<'_> {
         };
         let corners = corners(&joint.recording.extension).len();
         identification.warnings = warnings(&identification, joint.recording, signals, corners);
-        // A spline that cannot follow the motion would blame the recording.
+        // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
         if !signals.0.coarse && !signals.1.coarse && corners < FEWEST_CORNERS {
             let at = (&self.state, &identification.motion);
             let suspects = suspects::suspects(joint, at, (found, [misfit, freedom]));

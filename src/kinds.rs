@@ -1,7 +1,7 @@
-//! The kinds of studies, and what reads a study of any of them.
+//! The kinds of studies, and reading a study of any kind.
 //!
-//! Every kind comes along with a study: its keys are the defaults, and `gelbench validate` computes it as a kind. A plate study, which needs
-//! no `kind`, is read as well, and is none of the table.
+//! Every kind has a built-in study: its values are the defaults, and `gelbench validate` computes it. A plate study,
+//! which needs no `kind`, is read here too but is not in the table.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use crate::validation::{
     real_measurements, smoothing, spring_identification, vibrating_plate, vibrating_spring,
 };
 
-/// A table of kinds: name, the study that comes along, `quick` or `slow`, and what reads it.
+/// A table of kinds: name, built-in study, `quick` or `slow`, and reader.
 macro_rules! kinds {
     (@slow quick) => { false };
     (@slow slow) => { true };
@@ -31,7 +31,7 @@ macro_rules! kinds {
             slow: kinds!(@slow $speed),
         }),*];
 
-        /// What reads them: apart from them, so that a program that computes none has no solver in it.
+        /// Their readers, kept apart so that a program that computes no study contains no solver.
         const READERS: &[(&str, Prepare)] = &[$(($kind, $prepare)),*];
     };
 }
@@ -65,7 +65,7 @@ kinds! {
     "own-error", "validation/cases/own_error.toml", slow, finite_elements::own_error::prepare;
 }
 
-/// The cases of some kinds, or all; without the slow ones where `quick` is wanted and none is named.
+/// The cases with the given names; without names, all cases, or with `quick` all but the slow ones.
 ///
 /// # Errors
 /// [`Error::Input`] with every unknown name.
@@ -92,13 +92,13 @@ pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Kind>, Error
     Ok(chosen.collect())
 }
 
-/// What reads the studies of a kind.
+/// The reader for studies of a kind.
 fn reader(kind: &Kind) -> Prepare {
     let found = READERS.iter().find(|(name, _)| *name == kind.name);
     found.expect("a kind of the table").1
 }
 
-/// Reads a study of a kind, which may ask for so much.
+/// Reads a study of a kind within a budget.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
@@ -111,12 +111,12 @@ pub fn read_as(
     kind.read(reader(kind), file, text, budget)
 }
 
-/// The keys that are asked for when a text is read as a study of a kind.
+/// The keys that are looked up when a text is read as a study of a kind.
 pub fn keys(kind: &Kind, text: &str) -> Vec<Key> {
     kind.keys(reader(kind), text)
 }
 
-/// The kind that a study's text states; `None` for a plate study.
+/// The kind stated in a study's text; `None` for a plate study.
 ///
 /// # Errors
 /// [`Error::Input`] when the kind is unknown.
@@ -136,13 +136,13 @@ pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
         root.choice("kind", &kinds)
     };
     match found {
-        // Other faults are told when the whole study is read.
+        // Other faults are reported when the whole study is read.
         Some(kind) => Ok(kind),
         None => faults.finish().map(|_| None),
     }
 }
 
-/// Reads a study of any kind, which may ask for so much.
+/// Reads a study of any kind within a budget.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
@@ -162,7 +162,7 @@ pub fn read_given(path: &Path, text: String, budget: Budget) -> Result<PreparedS
     }
 }
 
-/// Computes the study that comes along; a model without a solution is a check that failed.
+/// Computes the built-in study of a kind; a model without a solution becomes a failed check.
 ///
 /// # Errors
 /// [`Error::Input`] or [`Error::Write`].

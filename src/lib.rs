@@ -33,21 +33,21 @@
 //! Lengths are in mm, forces in N, stresses in MPa, times in s and masses in tonnes, everywhere. Points are given by
 //! their coordinates at rest.
 //!
-//! The [guide] goes on from here, page by page. The programs in `examples/` do the same in files of their own.
+//! The [guide] continues from here, page by page. The programs in `examples/` do the same in files of their own.
 //!
 //! # What to use for what
 //!
-//! The modules stand on floors: each uses only those above it in this table.
+//! Dependencies go one way: each module uses only modules above it in this table.
 //!
 //! | to … | use |
 //! |---|---|
 //! | convert quantities with units; understand an error; estimate with intervals | [`units`], [`error`], [`statistics`] |
-//! | bound what a study may ask for | [`budget`] |
-//! | read TOML and tables with all faults at once | [`document`] |
-//! | mesh a shape, an outline or a file; ask a field at a point | [`mesh`] |
+//! | limit the memory and work that a study may need | [`budget`] |
+//! | read TOML and tables with all faults reported at once | [`document`] |
+//! | mesh a shape, an outline or a file; evaluate a field at a point | [`mesh`] |
 //! | load a material card, write a law of your own, plot its curves | [`material`] |
 //! | minimise an energy along a path of load factors | [`solve`], [`multigrid`] |
-//! | say how a sheet is held and loaded; get displacement and stress at a point | [`problem`] |
+//! | state how a sheet is supported and loaded; get displacement and stress at a point | [`problem`] |
 //! | read measured markers | [`markers`] |
 //! | solve a problem with springs, with finite elements, or in time | [`mass_spring`], [`finite_element`], [`dynamics`] |
 //! | correct a field with conditions of your own; correct a plate; estimate a field from markers | [`corrector`], [`corrector::climb`], [`corrector::estimation`] |
@@ -55,9 +55,9 @@
 //! | compare two fields, with the reference's own error | [`compare`] |
 //! | solve, compare and report what a study asks for | [`studies`], [`results`] |
 //! | write reports, pictures, VTK files, or the input of another code | [`output`] |
-//! | recompute what proves gelbench right | [`validation`] |
+//! | recompute the cases that validate gelbench | [`validation`] |
 //! | read a study file of any kind, and compute it as the command does | [`kinds`] |
-//! | run a study many times, some of its keys changed | [`sweep`] |
+//! | run a study many times with some of its keys changed | [`sweep`] |
 //! | call the command itself | [`command`] |
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]

@@ -4,9 +4,9 @@
 //! T = K(·) (|x| − x₀) = a P(λ),   λ = |x|/x₀                                          [N]
 //! ```
 //!
-//! P is the nominal stress of a strip of the sheet cut along the spring and a the cross-section that the spring stands for, so that
-//! K(·) = a P(λ)/(x₀ (λ − 1)) follows the card's curve. The cross-sections make the lattice isotropic
-//! at small strain. With hx, hy the sides of a cell, d its diagonal, t the thickness and s = 1:
+//! P is the nominal stress of a strip of the sheet cut along the spring, and a the cross-section assigned to the
+//! spring, so that K(·) = a P(λ)/(x₀ (λ − 1)) follows the card's curve. The cross-sections make the lattice isotropic
+//! at small strain. With the sides hx, hy of a cell, its diagonal d, the thickness t and s = 1:
 //!
 //! ```text
 //! diagonal      k = s 3/16 E t d²/(hx hy)                 (square cells: 3/8 E t)
@@ -52,10 +52,10 @@ pub struct SpringState {
     pub force: f64,
 }
 
-/// What the lattice consists of.
+/// Options of the lattice.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LatticeSettings {
-    /// Whether each cell has the area term that gives the ν of the sheet at small strain. Default: no.
+    /// Whether each cell has the area term that gives the lattice the sheet's ν. Default: no.
     pub area_term: bool,
 }
 
@@ -69,10 +69,10 @@ pub struct MassSpring {
     lattice: Lattice,
 }
 
-/// The largest ratio of a cell's sides for which all springs pull: √3.
+/// The largest ratio of a cell's sides at which no edge has a negative stiffness: √3.
 pub const LARGEST_ASPECT: f64 = 1.732;
 
-/// The shares of the springs and of the areas in E t that give a lattice the small-strain stiffness of an isotropic sheet.
+/// The factor s of the springs and κ/E of the area terms that give a lattice the small-strain stiffness of an isotropic sheet.
 ///
 /// Springs alone have ν = ⅓ with C₁₁₁₁ = 9/8 E and C₁₁₂₂ = C₁₂₁₂ = 3/8 E; areas add κ to C₁₁₁₁ and C₁₁₂₂:
 ///
@@ -80,7 +80,7 @@ pub const LARGEST_ASPECT: f64 = 1.732;
 /// springs 4/(3 (1 + ν)),   areas κ/E = (3 ν − 1)/(2 (1 − ν²))
 /// ```
 ///
-/// ν = ½ for a law with fibres.
+/// A law with fibres is taken to have ν = ½.
 fn isotropic_shares(law: &dyn HyperelasticLaw) -> [f64; 2] {
     let nu = match law.is_isotropic() {
         true => in_plane_poisson_ratio(law),
@@ -92,7 +92,7 @@ fn isotropic_shares(law: &dyn HyperelasticLaw) -> [f64; 2] {
     ]
 }
 
-/// A word where springs alone stand for a sheet that changes its volume and has another ν in its plane than they have.
+/// A warning where springs alone represent a sheet that changes its volume and whose in-plane ν differs from theirs.
 pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
     const NEGLIGIBLE: f64 = 0.005;
     law.bulk_modulus()?;
@@ -120,7 +120,7 @@ impl MassSpring {
         let diagonal = hx.hypot(hy);
         let edge =
             |along: f64, across: f64| 9.0 / 8.0 * across / along - 3.0 / 8.0 * along / across;
-        // Stiffness over E t times rest length and thickness is the cross-section; half for each cell.
+        // Cross-section: stiffness over E t, times rest length and thickness; each cell contributes half.
         let along_x = 0.5 * scale * problem.thickness * hx * edge(hx, hy);
         let along_y = 0.5 * scale * problem.thickness * hy * edge(hy, hx);
         let across =
@@ -168,7 +168,7 @@ impl MassSpring {
         Self::of(law, mesh, springs, 0.0)
     }
 
-    /// The lattice with other cross-sections in mm²; springs that get none are left out.
+    /// The lattice with other cross-sections in mm²; springs without a positive one are removed.
     #[must_use]
     pub fn with_areas(self, problem: &ClampedPlate, mut area: impl FnMut(&Spring) -> f64) -> Self {
         let change = |spring: Spring| Spring {
@@ -186,14 +186,14 @@ impl MassSpring {
         .with_spring_law(self.lattice.spring_law)
     }
 
-    /// The lattice with springs of another stiffness than the material's.
+    /// The lattice with the springs' stiffness from `law` in place of the material.
     #[must_use]
     pub fn with_spring_law(mut self, law: SpringLaw) -> Self {
         self.lattice.spring_law = law;
         self
     }
 
-    /// How a spring lies with the displacements `u` of its ends.
+    /// Geometry of a spring with the displacements `u` of its ends.
     pub fn pose(&self, spring: usize, u: &[f64]) -> SpringPose {
         self.lattice.pose(spring, u)
     }
@@ -219,7 +219,7 @@ impl MassSpring {
         format!("the spring from ({x:.1}, {y:.1}) to ({to_x:.1}, {to_y:.1}) mm")
     }
 
-    /// Stretch and force of every spring of a lattice with a history, which is empty where it was never loaded.
+    /// Stretch and force of every spring of a lattice with a history, which is empty for a lattice that was never loaded.
     pub fn spring_states(&self, displacement: &[f64], history: &[f64]) -> Vec<SpringState> {
         let state = |(index, spring): (usize, &Spring)| {
             let own = gather(self.lattice.element_unknowns(index), displacement);

@@ -1,7 +1,7 @@
-//! Hyperelastic laws, the cards that hold their parameters, and the thin sheet made of them.
+//! Hyperelastic laws, the cards with their parameters, and the thin sheet made of them.
 //!
-//! A new law is one file that implements [`InvariantLaw`], [`BodyLaw`] where the body changes its volume, or [`HyperelasticLaw`]
-//! where it is neither, and one entry in [`registry`].
+//! A new law is one file and one entry in [`registry`]. The file implements [`InvariantLaw`], [`BodyLaw`] for a body
+//! that changes its volume, or [`HyperelasticLaw`] for any other law.
 
 mod arruda_boyce;
 pub mod body;

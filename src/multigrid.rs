@@ -1,13 +1,13 @@
 //! Systems with two unknowns per node of a rectangular grid, solved by multigrid.
 //!
-//! Each node is coupled with its eight neighbours. The nodes of one X make up a *line*; the first and the last
-//! line are held, all others are free. Numbers have single precision: this is the inside of a preconditioner,
-//! whose rounding the iteration around it removes.
+//! Each node is coupled with its eight neighbours. The nodes with the same X make up a *line*; the first and the last
+//! line are fixed, all others are free. Numbers have single precision: multigrid serves as a preconditioner, and the
+//! iteration around it removes the rounding.
 //!
 //! | step | how |
 //! |---|---|
 //! | smoother | block Gauss–Seidel in four colours, once down and once, in the reverse order, up: symmetric |
-//! | where cells are long | lines along their short sides, every second one at a time (zebra): along X instead of it, along Y besides |
+//! | where cells are long | lines along their short sides in zebra order: lines along X replace the point smoother, lines along Y are added to it |
 //! | restriction | the transpose of the prolongation |
 //! | prolongation | linear between the coarser grid's nodes, whatever their number |
 //! | coarser operators | discretised anew on the coarser grid, not by products of matrices |

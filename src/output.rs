@@ -1,4 +1,4 @@
-//! What a run writes: VTK files, pictures and reports. Nothing else in gelbench writes files.
+//! Files that a run writes: VTK files, pictures and reports. Nothing else in gelbench writes files.
 
 #[cfg(feature = "pictures")]
 mod explorer;

@@ -1,4 +1,4 @@
-//! The boundary value problem of a sheet, free of how it is solved: supports, loads, and what follows from its equilibria.
+//! The boundary value problem of a sheet, independent of the method of solution: supports, loads, and quantities that follow from equilibrium.
 
 mod balance;
 mod boundary;

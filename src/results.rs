@@ -1,7 +1,7 @@
-//! What a study or a case finds, as data: requirements, quantities, tables, pictures, grids.
+//! Results of a study or a case as data: requirements, quantities, tables, pictures, grids.
 //!
-//! Every kind of study gives the same [`Results`]. [`Results::report`] and [`Results::json`] say the same of all of
-//! them, in the same order; `output` draws and encodes what they hold.
+//! Every kind of study returns the same [`Results`]. [`Results::report`] and [`Results::json`] present the same
+//! content in the same order; `output` draws and encodes it.
 
 use serde_json::{Map, Value};
 
@@ -63,21 +63,21 @@ pub use surface::Surface;
 pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;
 
-/// What the publication claims, and what came out here.
+/// A claim of the publication, and the result found here.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
     /// The publication's words, shortened.
     pub claim: &'static str,
-    /// What came out here.
+    /// The result found here.
     pub reproduced: String,
 }
 
 /// A model that has no solution at some of its load factors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct End {
-    /// Which model, where, and why.
+    /// The model, where it ended, and why.
     pub message: String,
-    /// What to try.
+    /// Advice on what to try.
     pub advice: Option<&'static str>,
     /// The exit code of a command that ends with it.
     pub exit_code: u8,
@@ -93,47 +93,47 @@ impl From<&Error> for End {
     }
 }
 
-/// What is known at one stretch, load factor, instant or frame.
+/// Results at one stretch, load factor, instant or frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// The stretch, load factor, time in s or number of the frame.
     pub at: f64,
-    /// The quantities of every model by names with units; `null` where a model has no solution.
+    /// The quantities of every model, by names with units; `null` where a model has no solution.
     pub models: Map<String, Value>,
 }
 
-/// What a study or a case has found.
+/// Findings of a study or a case.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// What is required, and what comes of it.
+    /// Requirements, with the values found.
     pub checks: Vec<Check>,
     /// Claims of the publication.
     pub claims: Vec<Claim>,
-    /// What was solved, for machines.
+    /// The problem that was solved, for machines.
     pub problem: Map<String, Value>,
     /// The material.
     pub material: Option<Material>,
-    /// What the steps run along: `stretch`, `load factor`, `time` or `frame`.
+    /// The parameter along which the steps run: `stretch`, `load factor`, `time` or `frame`.
     pub along: &'static str,
-    /// The quantities of all models.
+    /// The quantities of all models, step by step.
     pub steps: Vec<Step>,
-    /// Explanations and tables. Pictures stand where the blocks place them, else after the last one.
+    /// Explanations and tables. Pictures that no block places come after the last block.
     pub blocks: Vec<Block>,
     /// Pictures.
     pub figures: Vec<Figure>,
-    /// How they are drawn.
+    /// How the pictures are drawn.
     pub style: PictureStyle,
     /// Fields of the models.
     pub grids: Vec<GridSeries>,
-    /// Fields that are written elsewhere or nowhere, for those who read the report.
+    /// Fields for readers of the report, written to other files or to none.
     pub explored: Vec<GridSeries>,
     /// Tables and other files beside the report: name and content.
     pub files: Vec<(String, Content)>,
-    /// Times that were measured: what, and seconds.
+    /// Measured times: name and seconds.
     pub times: Vec<(String, f64)>,
-    /// What deserves attention in the results, each in a sentence.
+    /// Warnings about the results, each in a sentence.
     pub warnings: Vec<String>,
-    /// What makes the figures doubtful: with a doubt, a study has not passed.
+    /// Doubts about the results: a study with a doubt has not passed.
     pub doubts: Vec<String>,
     /// Models that ended early.
     pub ends: Vec<End>,
@@ -147,7 +147,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Adds the end of a model that the study requires to go all the way: a requirement that is not met.
+    /// Adds the early end of a model that the study requires to reach its last step: a requirement that is not met.
     pub fn ended(&mut self, error: &Error) {
         let end = End::from(error);
         let advice = end
@@ -158,7 +158,7 @@ impl Outcome {
         self.ends.push(end);
     }
 
-    /// The warnings for a report.
+    /// The warnings as paragraphs of a report.
     pub(crate) fn warning_paragraphs(&self) -> impl Iterator<Item = Block> {
         let warnings = self.warnings.iter();
         warnings.map(|warning| Block::paragraph(format!("Warning: {warning}")))
@@ -168,7 +168,7 @@ impl Outcome {
 /// The results of a study.
 #[derive(Clone, Debug)]
 pub struct Results {
-    /// The study's name: that of its file.
+    /// The study's name, from the name of its file.
     pub name: String,
     /// The study's title.
     pub title: String,
@@ -176,23 +176,23 @@ pub struct Results {
     pub kind: &'static str,
     /// The study's text; empty where there is none.
     pub text: String,
-    /// The keys that it does not hold, with the defaults that they took.
+    /// The keys that the study does not state, with the defaults used.
     pub defaults: Vec<String>,
-    /// What deserved attention when it was read.
+    /// Warnings from reading the study.
     pub read_warnings: Vec<String>,
-    /// What was found.
+    /// The findings.
     pub outcome: Outcome,
     /// Computing time in s.
     pub seconds: f64,
 }
 
 impl Results {
-    /// What deserves attention in the study, and in what was found.
+    /// Warnings from reading the study and from its results.
     pub fn warnings(&self) -> impl Iterator<Item = &String> {
         self.read_warnings.iter().chain(&self.outcome.warnings)
     }
 
-    /// Whether all requirements are met, by models that did not end early, and without a doubt.
+    /// Whether all requirements are met, no model ended early, and there is no doubt.
     pub fn passed(&self) -> bool {
         let Outcome {
             checks,
@@ -204,7 +204,7 @@ impl Results {
     }
 }
 
-/// A number with some decimals; one of which these would leave fewer than three digits as [`number`] has it.
+/// A number with so many decimals; where these would leave fewer than three digits, as [`number`] writes it.
 pub fn decimals(value: f64, decimals: usize) -> String {
     const ROUNDING: f64 = 1e-12;
     let least = 10_f64.powi(2 - decimals as i32);

@@ -1,6 +1,6 @@
-//! Sums of element energies, their minimum by Newton's method, and the sparse linear algebra below.
+//! Sums of element energies, their minimisation by Newton's method, and the sparse linear algebra that it needs.
 //!
-//! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
+//! No mechanics enters here: an unknown is a number in a vector, an element is a term of a sum.
 
 mod aggregation;
 mod approach;

@@ -25,7 +25,7 @@ pub use ranks::{quantile, rank_correlation};
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 pub use unevenness::Unevenness;
 
-/// The least and the largest of some values; infinities the wrong way round where there are none.
+/// The least and the largest of some values; `[∞, −∞]` where there are none.
 pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let start = [f64::INFINITY, f64::NEG_INFINITY];
     let values = values.into_iter();
@@ -34,7 +34,7 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-/// A small probability for people; one that is too small for a number is less than another.
+/// A small probability as text; one that is too small for a normal number is given as an upper bound.
 pub fn small_probability(probability: f64) -> String {
     match probability < f64::MIN_POSITIVE {
         true => format!("less than {:.0e}", f64::MIN_POSITIVE),
@@ -75,7 +75,7 @@ pub fn normal_reach() -> f64 {
     Normal::standard().inverse_cdf(0.975)
 }
 
-/// The value below which a standard normal number lies with a probability.
+/// The quantile of the standard normal distribution for a probability.
 pub fn normal_quantile(probability: f64) -> f64 {
     Normal::standard().inverse_cdf(probability)
 }
@@ -100,7 +100,7 @@ fn student(freedom: f64, value: impl Fn(StudentsT) -> f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, value)
 }
 
-/// P(F > ratio) for the ratio of two variances with so many degrees of freedom; NaN where either has none, or where both are nothing.
+/// P(F > ratio) for the ratio of two variances with so many degrees of freedom; NaN where either has none, or where both variances are zero.
 pub fn f_tail(freedoms: [f64; 2], ratio: f64) -> f64 {
     match FisherSnedecor::new(freedoms[0], freedoms[1]) {
         Ok(law) if ratio.is_finite() => law.sf(ratio),
@@ -119,17 +119,17 @@ pub fn chi_squared_tail(freedom: f64, value: f64) -> f64 {
     ChiSquared::new(freedom).map_or(f64::NAN, |law| law.sf(value))
 }
 
-/// P(b ≤ x) for a number b with the beta distribution of these shapes; NaN where there is none.
+/// P(b ≤ x) for a number b with the beta distribution of these shapes; NaN where the shapes are invalid.
 pub fn beta_cumulated(shapes: [f64; 2], x: f64) -> f64 {
     Beta::new(shapes[0], shapes[1]).map_or(f64::NAN, |law| law.cdf(x))
 }
 
-/// The larger of two numbers; NaN where one of them is none.
+/// The larger of two numbers; NaN where one of them is NaN.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// The median, the upper one of the middle two; NaN of nothing.
+/// The median, the upper one of the middle two; NaN without values.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     let middle = values.len() / 2;
@@ -140,7 +140,7 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// The standard deviation of each component of normal noise in a plane, from the median of its lengths, which gross
-/// errors hardly move: the median of χ² with two degrees of freedom is 2 ln 2.
+/// errors hardly affect: the median of χ² with two degrees of freedom is 2 ln 2.
 pub fn robust_deviation(lengths: impl IntoIterator<Item = f64>) -> f64 {
     let squares = lengths.into_iter().map(|length| length * length);
     (median(squares) / (2.0 * std::f64::consts::LN_2)).sqrt()

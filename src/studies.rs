@@ -1,4 +1,4 @@
-//! What a user runs: plates, specimens, motions, fields of markers. Each kind has a module of its own.
+//! Studies that a user runs: plates, specimens, motions, fields of markers. Each kind has a module of its own.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ pub mod specimen;
 
 pub use models::{ModelKind, OneModel};
 
-/// Whom a computation tells what it does, and where it keeps what it has found.
+/// Reports the progress of a computation, and may keep its equilibria in a journal.
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
     told: &'a dyn Fn(&str),
@@ -31,7 +31,7 @@ pub struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// One that is told.
+    /// Reports to `told`.
     pub fn to(told: &'a dyn Fn(&str)) -> Self {
         Self {
             told,
@@ -39,12 +39,12 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// One that is told nothing.
+    /// Reports nothing.
     pub fn silent() -> Self {
         Self::to(&|_| ())
     }
 
-    /// The same with a journal: a computation that was broken off goes on with the equilibria that it holds.
+    /// The same with a journal: a computation that was interrupted resumes from the equilibria in it.
     pub fn kept_by(self, journal: &'a dyn Journal) -> Self {
         Self {
             journal: Some(journal),
@@ -52,12 +52,12 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Says what is being done.
+    /// Reports what is being done.
     pub fn tell(&self, what: &str) {
         (self.told)(what);
     }
 
-    /// For a path whose load factors are told by `reached`.
+    /// For a path that reports its load factors to `reached`.
     pub fn along<'b>(&self, reached: &'b dyn Fn(f64)) -> Attendance<'b>
     where
         'a: 'b,
@@ -77,44 +77,44 @@ pub struct PreparedStudy {
     text: String,
     defaults: Vec<String>,
     computation: Computation,
-    /// What deserves attention but does not stop the work.
+    /// Warnings, which do not stop the work.
     pub warnings: Vec<Diagnostic>,
-    /// The folder that it names for its results.
+    /// The folder that the study names for its results.
     pub folder: Option<PathBuf>,
-    /// Whether it wants a report.
+    /// Whether the study asks for a report.
     pub report: bool,
-    /// What it will compute, in words.
+    /// What the study computes, in words.
     pub about: String,
-    /// How often its computation reports progress; zero where that is not known.
+    /// The number of progress reports of its computation; zero where that is not known.
     pub progress_steps: usize,
 }
 
-/// Faults are told before anything is computed.
+/// Faults are reported before anything is computed.
 const SOUND: &str = "a study without faults";
 
 /// The computation of a study.
 pub type Computation = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
 
-/// What reads the studies of a kind.
+/// Reads the studies of a kind.
 pub type Prepare = fn(&Section, &Path) -> Computation;
 
-/// A kind of study: what there is to know of it without what computes it.
+/// A kind of study, without the code that computes it.
 pub struct Kind {
-    /// What its studies state as `kind`.
+    /// The key `kind` of its studies.
     pub name: &'static str,
-    /// The study that comes along; its keys are the defaults.
+    /// The text of its built-in study, whose values are the defaults.
     pub study: &'static str,
-    /// Where that study stands.
+    /// The path of that study.
     pub file: &'static str,
     /// Whether `--quick` leaves it out.
     pub slow: bool,
 }
 
-/// What studies without a title are called before the title of their card, by their kind; the others are called as their kind.
+/// Words before the card's title in the title of an untitled study, by kind; untitled studies of other kinds have the title of their built-in study.
 const UNTITLED: [(&str, &str); 2] = [("specimen", "Specimen"), ("motion", "Moving plate")];
 
 impl Kind {
-    /// Reads a study of this kind by `prepare`, which may ask for so much.
+    /// Reads a study of this kind with `prepare`, within a budget.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault.
@@ -141,7 +141,7 @@ impl Kind {
         })
     }
 
-    /// What `read` makes of a study without faults.
+    /// The value that `read` returns for a study without faults.
     fn load<T>(
         &self,
         file: &Path,
@@ -158,7 +158,7 @@ impl Kind {
         })
     }
 
-    /// The keys that are asked for when a text is read.
+    /// The keys that are looked up when a text is read.
     pub(crate) fn keys(&self, prepare: Prepare, text: &str) -> Vec<Key> {
         let faults = Faults::default();
         let defaults = Document::parse(self.file, self.study, &faults);
@@ -170,13 +170,13 @@ impl Kind {
         faults.keys()
     }
 
-    /// What the study is called: a specimen or a motion without a title after its material, the others as their case.
+    /// The title of the study: for a specimen or a motion without a title, that of its material; for the others, that of their built-in study.
     fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
         let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.name) else {
             return root.heading("title");
         };
         root.own_heading("title").unwrap_or_else(|| {
-            // Faults of the card are found where the study is read.
+            // Faults of the card are reported where the study is read.
             let faults = Faults::default();
             let defaults = Document::parse(self.file, self.study, &faults);
             let document = Document::parse("", text, &faults);
@@ -186,7 +186,7 @@ impl Kind {
         })
     }
 
-    /// What `read` makes of a study of this kind.
+    /// Reads a study of this kind with `read`.
     fn read_with<T>(
         &self,
         file: &Path,
@@ -218,26 +218,26 @@ impl Kind {
     }
 }
 
-/// The name of a study: that of its file, without the ending.
+/// The name of a study: that of its file, without the extension.
 pub fn name(file: &Path) -> String {
     let stem = file.file_stem();
     stem.map_or_else(String::new, |stem| stem.to_string_lossy().into())
 }
 
-/// What was read of a study.
+/// A study that was read.
 pub struct Loaded<T> {
-    /// What it is called.
+    /// Its title.
     pub title: String,
-    /// What it describes.
+    /// The value that its reader returned.
     pub made: T,
-    /// The keys that it does not state, with the defaults that they took.
+    /// The keys that it does not state, with the defaults used.
     pub defaults: Vec<String>,
-    /// What deserves attention.
+    /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl PreparedStudy {
-    /// What the study does not say of specimen, material and load, with what was taken instead, as `plate.length = "150 mm"`.
+    /// Values of specimen, material and load that were used because the study does not state them, as `plate.length = "150 mm"`.
     pub fn physical_defaults(&self) -> impl Iterator<Item = &str> {
         const PHYSICAL: [&str; 3] = ["material.", "plate.", "load."];
         let is_physical = |said: &&str| PHYSICAL.iter().any(|table| said.starts_with(table));

@@ -1,4 +1,4 @@
-//! Many runs of one study, some of its keys changed.
+//! Many runs of one study with some of its keys changed.
 //!
 //! ```text
 //! study ──────┐
@@ -6,9 +6,9 @@
 //! sampling ───┘
 //! ```
 //!
-//! A variable is a key of the study with its values, or a parameter of the study's card as `material.KEY`: some values, of which every
-//! combination is run, or a distribution, of which points are drawn. Points are those of Sobol's sequence with Owen's scrambling, or
-//! random ones, or are given; a point u in (0, 1)ⁿ is taken to the distributions by their inverse cumulative functions, and to the correlated
+//! A variable is a key of the study, or a parameter of the study's card written as `material.KEY`. It has a list of values, of which every
+//! combination is run, or a distribution, from which points are drawn. Points come from Sobol's sequence with Owen's scrambling, are
+//! random, or are given. A point u in (0, 1)ⁿ is mapped to the distributions by their inverse cumulative functions, and to the correlated
 //! parameters of a fit by x = x̂ + L z, with the Cholesky factor L of their covariance and normal z.
 //!
 //! # References
@@ -43,23 +43,23 @@ pub use results::{Statistics, blocks, cautions, figures, json, statistics};
 pub use table::{names, read, write};
 pub use variable::{Setting, Values, Variable, headed};
 
-/// A study with what is varied.
+/// A study and how it is varied.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// The study.
     pub study: BaseStudy,
-    /// What is varied.
+    /// The variables.
     pub variables: Vec<Variable>,
-    /// Points that another program has chosen, in place of drawn ones.
+    /// Points chosen by another program, in place of drawn ones.
     pub points: Option<Points>,
-    /// Parameters that are drawn with their correlation.
+    /// Fitted parameters that are drawn with their correlation.
     pub fitted: Option<FittedParameters>,
     /// How points are drawn.
     pub sampling: Sampling,
 }
 
 impl Sweep {
-    /// The keys that are varied.
+    /// The varied keys.
     pub fn keys(&self) -> Vec<String> {
         let fitted = self.fitted.iter().flat_map(FittedParameters::keys);
         let own = self.variables.iter().map(|variable| variable.key.clone());
@@ -70,7 +70,8 @@ impl Sweep {
     /// All runs.
     ///
     /// # Errors
-    /// [`Error::Input`] where nothing is varied, a key twice, distributions have no number of samples, or there are more than a million runs.
+    /// [`Error::Input`] where no key is varied, a key is varied twice, distributions have no number of samples, or there are more than a million
+    /// runs.
     pub fn runs(&self) -> Result<Vec<Run>, Error> {
         let input = |fault: Diagnostic| Error::Input(vec![fault]);
         plan::check_keys(&self.keys()).map_err(input)?;
@@ -88,8 +89,7 @@ impl Sweep {
         Ok(rows.map(run).collect())
     }
 
-    /// Reads the files that texts among the values name, such as cards, so that they count as read before a run needs them. What
-    /// cannot be read is told by its run.
+    /// Reads the files that the values name, such as cards, before a run needs them. A file that cannot be read is reported by its run.
     pub fn read_files(&self) {
         let read = |key: &String, value: &Setting| {
             if value.value().is_none() {
@@ -112,12 +112,12 @@ impl Sweep {
         }
     }
 
-    /// Computes runs, several at once, but for those that are done; each is handed to `keep` when it ends. `attend` is called
-    /// between the steps of each, and may unwind.
+    /// Computes the runs that are not yet done, several in parallel; each is handed to `keep` when it ends. `attend`
+    /// is called between the steps of each run, and may unwind.
     ///
     /// # Errors
-    /// [`Error::Input`] of a run whose study has faults, with its number, unless it is one of few that were drawn; those of `keep`. A model without a solution is no error: it stands in
-    /// the run's row.
+    /// [`Error::Input`] for a run whose study has faults, with its number, unless it is one of few that were drawn;
+    /// errors of `keep`. A model without a solution is not an error: it is recorded in the run's row.
     pub fn compute(
         &self,
         runs: &[Run],
@@ -145,10 +145,10 @@ impl Sweep {
         done.into_par_iter().map(row).collect()
     }
 
-    /// Tells faults before anything is computed, the same ones each time. Of the drawn runs of a whole sweep a few may be beyond what a study
-    /// may hold, as parameters that no law has: such a run is told in its row.
+    /// Reports faults before anything is computed, the same ones each time. In a whole sweep a few drawn runs may
+    /// have inadmissible values, such as parameters that no law admits: such a run is reported in its row.
     fn check<'a>(&self, runs: impl Iterator<Item = &'a Run>) -> Result<(), Error> {
-        /// Of as many drawn runs one may be beyond it.
+        /// One in so many drawn runs may be inadmissible.
         const FEW: usize = 5;
         let wanted: Vec<&Run> = runs.collect();
         let fault_of = |run: &Run| self.ready(run).err();
@@ -158,7 +158,7 @@ impl Sweep {
         if !self.is_drawn() {
             return Err(fault);
         }
-        // Those that differ in what is drawn alone stand side by side.
+        // Runs that differ only in drawn values are adjacent.
         let samples = self.sampling.samples.unwrap_or(1);
         let all = self.runs()?;
         let too_many = all.par_chunks(samples).find_map_first(|drawn| {
@@ -169,17 +169,17 @@ impl Sweep {
         too_many.map_or(Ok(()), Err)
     }
 
-    /// Whether values are drawn of distributions without bounds.
+    /// Whether values are drawn from distributions without bounds.
     fn is_drawn(&self) -> bool {
         let mut variables = self.variables.iter();
         self.fitted.is_some() || variables.any(|own| matches!(own.values, Values::Normal(..)))
     }
 
-    /// The study of a run, read.
+    /// Reads the study of a run.
     fn ready(&self, run: &Run) -> Result<PreparedStudy, Error> {
         let told = |error: Error| match error {
             Error::Input(faults) => {
-                // The lines of a run's study are not those of the file.
+                // Line numbers of a run's study differ from those of the file.
                 let named = |fault: Diagnostic| Diagnostic {
                     message: format!("run {}: {}", run.number, fault.message),
                     place: None,

@@ -1,4 +1,4 @@
-//! Physical quantities as text with a unit, turned into gelbench's internal units at the door.
+//! Physical quantities as text with a unit, and their conversion to gelbench's internal units.
 //!
 //! Inside the program every length is in mm, force in N, stress in MPa, energy in mJ, time in s and
 //! mass in tonne. These units are consistent: 1 N = 1 tonne·mm/s², 1 MPa = 1 N/mm², 1 mJ = 1 N·mm.
@@ -117,13 +117,13 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("%", Dimension::Ratio, 1e-2),
 ];
 
-/// The unit of temperature whose zero is not that of K: it has no factor.
+/// The unit of temperature with another zero than K: a factor alone does not convert it.
 const CELSIUS: [&str; 2] = ["°C", "degC"];
 /// 0 °C in K.
 const ICE_POINT: f64 = 273.15;
 
 impl Dimension {
-    /// All of them.
+    /// All dimensions.
     pub const ALL: [Self; 15] = [
         Self::Length,
         Self::Area,
@@ -142,7 +142,7 @@ impl Dimension {
         Self::Ratio,
     ];
 
-    /// The quantity's name as it stands in messages.
+    /// The quantity's name as used in messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Length => "length",
@@ -197,7 +197,7 @@ impl Dimension {
         }
     }
 
-    /// A quantity of this dimension as a file has it.
+    /// A single quantity of this dimension, as written in a file.
     pub fn one_example(self) -> &'static str {
         let example = self.example();
         example.split_once(" or ").map_or(example, |(_, last)| last)
@@ -234,9 +234,9 @@ pub enum QuantityFault {
     DecimalComma,
     /// A number without a unit.
     MissingUnit,
-    /// A unit that the table does not hold.
+    /// A unit that is not in the table.
     UnknownUnit(String),
-    /// A magnitude that nothing of this dimension has.
+    /// A magnitude outside the possible range of this dimension.
     OutOfRange(Dimension),
     /// A unit of another dimension.
     WrongDimension {
@@ -277,8 +277,7 @@ const MINUS: char = '\u{2212}';
 /// Reads text such as `"15 cm"` and returns its value in the internal unit of `dimension`.
 ///
 /// # Errors
-/// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension, or the quantity one that
-/// nothing has.
+/// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension, or when the quantity is out of the possible range.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     // A minus sign as word processors write it.
     let text = &text.trim().replace(MINUS, "-");
@@ -319,7 +318,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     }
 }
 
-/// A unit as the table has it: powers as `^3`, which may be written `³` or, behind a letter, `3`.
+/// A unit in the table's notation: powers as `^3`, which may be written `³` or, behind a letter, `3`.
 fn normalised(unit: &str) -> String {
     let mut text = String::new();
     for letter in unit.chars() {
@@ -347,7 +346,7 @@ fn admitted(value: f64, dimension: Dimension) -> Result<f64, QuantityFault> {
 /// written as `-`.
 ///
 /// # Errors
-/// A [`QuantityFault`] when the unit is missing, unknown or of another dimension, or has a zero of its own (°C).
+/// A [`QuantityFault`] when the unit is missing, unknown or of another dimension, or when its zero differs from that of K (°C).
 pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     match (dimension, unit) {
         (_, offset) if CELSIUS.contains(&offset) => {
@@ -358,7 +357,7 @@ pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     }
 }
 
-/// Whether a unit is one of any dimension.
+/// Whether a unit is known for any dimension.
 pub fn is_known(unit: &str) -> bool {
     let found = parse(&format!("1 {unit}"), Dimension::Length);
     !matches!(found, Err(QuantityFault::UnknownUnit(_)))

@@ -1,4 +1,4 @@
-//! Cases that redo the claims of the publication and hold gelbench to other codes and to mathematics.
+//! Cases that reproduce the claims of the publication and check gelbench against other codes and against mathematics.
 //!
 //! A case is a study file with a kind of its own (see [`crate::kinds`]): `gelbench run` computes one, `gelbench validate` all.
 
@@ -22,5 +22,5 @@ pub(crate) mod spring_identification;
 pub(crate) mod vibrating_plate;
 pub(crate) mod vibrating_spring;
 
-/// The case of fields that other people measured.
+/// The case with fields measured by other people.
 pub const REAL_MEASUREMENTS: &str = "real-measurements";

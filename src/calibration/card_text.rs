@@ -11,18 +11,18 @@ use crate::material::Softening;
 use crate::material::registry::MARLOW_TABLE;
 use crate::units::Dimension;
 
-/// Where a card's data are.
+/// The origin of a card's data.
 #[derive(Clone, Debug, Default)]
 pub struct Provenance {
     /// The files of test data, as the card names them.
     pub files: Vec<String>,
-    /// What was said about them next to their heads.
+    /// Statements about the files in addition to their heads.
     pub reading: Statements,
-    /// The card on top of whose law softening was fitted, as the new card names it.
+    /// The card whose law is the base of the fitted softening, as the new card names it.
     pub base_card: Option<String>,
 }
 
-/// A card that `gelbench materials refit` can make again.
+/// The text of a card that `gelbench materials refit` can make again.
 pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> String {
     if let Some(base) = fit.softened.as_ref().and_then(|own| own.card.as_deref()) {
         return softened_card(base, fit, provenance);
@@ -67,7 +67,7 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     text + &recipe(fit, provenance)
 }
 
-/// The text of a card with the softening of a fit in place of what it said of softening and fits before.
+/// The text of a card with the softening of a fit in place of its earlier statements on softening and fits.
 fn softened_card(base: &str, fit: &Fit, provenance: &Provenance) -> String {
     let mut text = format!(
         "# The softening was fitted by `gelbench materials fit` to {}.\n",
@@ -88,7 +88,7 @@ fn softened_card(base: &str, fit: &Fit, provenance: &Provenance) -> String {
     text + &recipe(fit, provenance)
 }
 
-/// How the fit is made again.
+/// The settings with which the fit can be repeated.
 fn recipe(fit: &Fit, provenance: &Provenance) -> String {
     let mut text = String::from("\n[fit]\n");
     put(&mut text, "data", list(provenance.files.iter().cloned()));
@@ -124,7 +124,7 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
     text
 }
 
-/// What the heads of the data say about a key.
+/// The statements of the data's heads about a key.
 fn stated(tests: &[TestData], key: &str) -> Option<String> {
     let mut found: Vec<&str> = Vec::new();
     for value in tests.iter().filter_map(|test| test.head.get(key)) {
@@ -172,7 +172,7 @@ fn error(fit: &Fit, index: usize) -> String {
     }
 }
 
-/// The Prony series, and what the data behind it cover.
+/// The Prony series, and the range of the data behind it.
 fn viscosity(text: &mut String, fit: &Fit) {
     let Some(relaxed) = &fit.relaxed else {
         return;

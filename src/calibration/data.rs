@@ -1,4 +1,4 @@
-//! Test data: reading of tables and records, what their columns mean, zeros and cycles, what cannot be.
+//! Test data: reading of tables and records, the meaning of their columns, zeros and cycles, and impossible values.
 
 mod conversion;
 mod cycles;

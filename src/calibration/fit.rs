@@ -4,11 +4,11 @@
 //! min Σᵢ (wᵢ (σᵢ − σ(p; λᵢ)))²,   w = 1 (absolute)   or   w = 1/max(|σᵢ|, 1 % of the test's largest) (relative)
 //! ```
 //!
-//! σ is the stress that the test measured, nominal or Cauchy. Where the relative residuals are noise, the weights are those of the fitted
-//! stresses in place of the measured ones. Energies are linear in their parameters
-//! that have the dimension of a stress; given the others, these follow by linear least squares. Starts are drawn for
-//! the others alone (a fixed sequence, the same on every machine), completed linearly, and the best of them
-//! are improved by Levenberg–Marquardt.
+//! σ is the stress that the test measured, nominal or Cauchy. Where the relative residuals are noise, the weights are
+//! those of the fitted stresses instead of the measured ones. Energies are linear in their parameters with the
+//! dimension of a stress; given the others, these follow by linear least squares. Starts are drawn for the others
+//! alone (a fixed sequence, the same on every machine), completed linearly, and the best of them are improved by
+//! Levenberg–Marquardt.
 //!
 //! # References
 //! G. H. Golub, V. Pereyra, Inverse Problems 19, R1 (2003), doi:10.1088/0266-5611/19/2/201
@@ -36,14 +36,14 @@ pub struct Fit {
     pub fitted: Box<dyn HyperelasticLaw>,
     /// The parameters, in internal units.
     pub parameters: Vec<Parameter>,
-    /// What else a card of the law states: key and choice.
+    /// Other entries of a card of the law: key and choice.
     pub choices: Vec<(&'static str, String)>,
     /// The points (λ − 1, nominal stress in MPa) of a law that takes the curve as it is.
     pub curve: Vec<[f64; 2]>,
     pub(in crate::calibration) stress_measure: StressMeasure,
     /// The settings.
     pub settings: FitSettings,
-    /// How far the fit can be trusted.
+    /// The quality of the fit.
     pub quality: Quality,
     /// The Prony series of a fit to what was measured over time; its shares and times follow the law's parameters.
     pub relaxed: Option<Relaxed>,
@@ -56,7 +56,7 @@ pub struct Fit {
 pub struct Relaxed {
     /// The series, and what the data cover.
     pub material: ViscousMaterial,
-    /// How many of the fit's parameters are the law's.
+    /// The number of the fit's parameters that belong to the law.
     pub of_law: usize,
     /// The fitted stresses at all observations of each test, in the measure of the data, in MPa.
     pub predicted: Vec<Vec<f64>>,
@@ -77,13 +77,13 @@ impl Fit {
         self.stress_measure
     }
 
-    /// The tests as they were fitted: with the zeros that were found again with the law.
+    /// The tests as they were fitted: with the zeros that were found together with the law.
     pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
         refined_zero::with_zeros(tests, &self.quality.zeros)
     }
 
-    /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa; NaN where there are none, since
-    /// the residuals are no noise.
+    /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa; NaN where there are
+    /// none because the residuals are not noise.
     pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
         let fixed = &self.quality.fixed;
         let noise = self.quality.noise.as_ref();
@@ -91,7 +91,7 @@ impl Fit {
         let Some(noise) = noise.filter(|_| self.quality.has_intervals()) else {
             return unknown();
         };
-        // Zeros have no part in the law's curve.
+        // Zeros do not enter the law's curve.
         let mut values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
         values.resize(fixed.len(), 1.0);
         let least = vec![LEAST_SIZE; values.len()];
@@ -204,7 +204,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
     ))
 }
 
-/// The fit at the best values, with its zeros and all that is to be said of it.
+/// The fit at the best values, with its zeros and its warnings.
 fn finished(
     law: &'static Law,
     tests: &[TestData],
@@ -266,7 +266,7 @@ fn finished(
     }
 }
 
-/// The least size of a parameter that counts: a thousandth of a usual one.
+/// The least significant size of a parameter: a thousandth of a usual one.
 fn size(parameter: &Parameter, stiffness: f64) -> f64 {
     let [low, high] = parameter.usual.map(f64::abs);
     1e-3 * match parameter.is_stress() {
@@ -275,7 +275,7 @@ fn size(parameter: &Parameter, stiffness: f64) -> f64 {
     }
 }
 
-/// Tests of one fit have one stress measure.
+/// All tests of one fit must have one stress measure.
 pub fn check_measures(tests: &[TestData]) -> Result<(), Error> {
     let Some(first) = tests.first() else {
         return Err(Error::input("there are no tests", "give one at least"));
@@ -295,7 +295,7 @@ pub fn check_measures(tests: &[TestData]) -> Result<(), Error> {
     Err(Error::input(message, hint))
 }
 
-/// What is said of a curve that begins at rest with a stress.
+/// The warning about a curve that begins at rest with a stress.
 fn subtracted([x, at_rest]: [f64; 2]) -> Option<String> {
     (x == 0.0 && at_rest != 0.0)
         .then(|| format!("the stress at rest, {at_rest:.4e} MPa, is subtracted from the curve"))

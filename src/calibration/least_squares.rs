@@ -1,4 +1,4 @@
-//! Least squares with bounds: the only place that knows rmpfit, a Levenberg–Marquardt method after MPFIT.
+//! Least squares with bounds: the only module that uses rmpfit, a Levenberg–Marquardt method after MPFIT.
 //!
 //! # References
 //! C. B. Markwardt, ADASS XVIII, ASP Conf. Ser. 411, 251 (2009); J. J. Moré, Lect. Notes Math. 630, 105 (1978)
@@ -8,10 +8,10 @@ use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide};
 
 /// Residuals of a model as a function of its parameters.
 pub trait Residuals {
-    /// Their number.
+    /// The number of residuals.
     fn count(&self) -> usize;
 
-    /// Writes them; whether all of them are finite.
+    /// Writes the residuals; returns whether all of them are finite.
     fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool;
 }
 
@@ -28,7 +28,7 @@ struct Problem<'a> {
     model: &'a dyn Residuals,
     parameters: Vec<MPPar>,
     config: MPConfig,
-    /// Stands for residuals that are not finite, so that the step is refused.
+    /// A substitute for residuals that are not finite, so that the step is refused.
     refused: f64,
 }
 
@@ -56,19 +56,19 @@ impl MPFitter for Problem<'_> {
     }
 }
 
-/// How long the method goes on.
+/// The precision of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// Until minima can be told apart.
+    /// Until minima can be distinguished.
     Rough,
     /// Until rounding stops it.
     Full,
 }
 
-/// The least size of a parameter that counts, where no better one is known.
+/// The least significant size of a parameter, where no better one is known.
 pub const LEAST_SIZE: f64 = 1e-9;
 
-/// Improves `start` within `bounds`; `None` where the method finds no way from there.
+/// Improves `start` within `bounds`; `None` where the method fails from there.
 pub fn minimise(
     model: &dyn Residuals,
     start: &[f64],

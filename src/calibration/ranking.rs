@@ -1,4 +1,4 @@
-//! All laws beside one another.
+//! The ranking of all laws.
 
 use rayon::prelude::*;
 
@@ -9,9 +9,9 @@ use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
 
-/// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
-/// left out with their reasons. All have the effective points of the law with the least variance of residuals: how
-/// many points are independent is a matter of the noise, not of a law that misses them.
+/// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that
+/// cannot be fitted are left out, with the reasons. All have the number of effective points of the law with the least
+/// variance of residuals: the number of independent points depends on the noise, not on a law that misses them.
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
     // A fibre law needs to see two directions.
     let axis = |axis: usize| {
@@ -26,7 +26,7 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
         .filter(|law| ![MARLOW_TABLE, SWELLING].contains(&law.name))
         .filter(|law| {
             let own = law.with_values(&[], measure, MEASURE).0;
-            // How a body changes its volume is not in the stresses of the usual tests alone.
+            // Stresses of the usual tests alone do not determine how a body changes its volume.
             own.bulk_modulus().is_none() && (both_axes || own.is_isotropic())
         })
         .collect();
@@ -57,8 +57,8 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
     (fits, reasons)
 }
 
-/// Of ranked fits the first that is stable over the data and whose parameters they all tell, else the first that is stable, else
-/// the first; `None` where there is none.
+/// Of ranked fits the first that is stable over the data and all of whose parameters are determined, otherwise the
+/// first that is stable, otherwise the first; `None` where there is none.
 pub fn best(fits: Vec<Fit>) -> Option<Fit> {
     let first = |fits: &[Fit], told: bool| {
         let wanted =

@@ -1,9 +1,9 @@
-//! Relaxation: a law with a Prony series fitted to what was measured over time.
+//! Relaxation: a law with a Prony series fitted to measurements over time.
 //!
-//! The strains that were measured are followed, so a ramp is a ramp and a cycle a cycle; stress relaxation, creep, cycles and
-//! pulls at several rates are all histories of strain with stresses, and are fitted together. The law is that of long times. Terms
-//! are added as long as AICc falls; relaxation times lie between the shortest interval of the data and their longest duration, outside
-//! of which nothing is resolved.
+//! The measured strains are followed as they are: stress relaxation, creep, cycles and pulls at several rates are all
+//! histories of strain with stresses, and are fitted together. The law is that of long times. Terms are added as long
+//! as AICc falls; relaxation times lie between the shortest interval of the data and their longest duration, outside
+//! of which the data resolve nothing.
 
 use std::fmt::Write;
 
@@ -127,7 +127,7 @@ fn resolved(histories: &[History]) -> Result<[f64; 2], Error> {
     Err(Error::input("the times of the tests do not differ", hint))
 }
 
-/// What a chosen series is judged by.
+/// The data by which a chosen series is judged.
 struct Whole<'a> {
     misfit: &'a ViscousMisfit<'a>,
     tests: &'a [TestData],
@@ -219,7 +219,7 @@ impl Whole<'_> {
         index > of_law && (index - of_law) % 2 == 1
     }
 
-    /// The values with their uncertainty and correlation, times as they are.
+    /// The values with their uncertainty and correlation, with times instead of their logarithms.
     fn estimated(&self, values: &[f64], judged: &Judged) -> (Vec<Estimate>, DMatrix<f64>) {
         let (mut estimated, correlation) = judged.estimates(values);
         for (index, estimate) in estimated.iter_mut().enumerate() {
@@ -242,13 +242,13 @@ impl Whole<'_> {
         transformed(limits, self.law_parameters.len())
     }
 
-    /// Which values a bound holds, and what is left by the weights of the fitted stresses.
+    /// The values at a bound, and the residuals with the weights of the fitted stresses.
     fn judged(&self, terms: usize, values: &[f64]) -> Result<Judged, Error> {
         let own = self.misfit.reweighed(values);
         Ok(self.judged_by(&own, &self.limits(terms)?, values))
     }
 
-    /// The same by the weights of a misfit.
+    /// The same with the weights of a misfit.
     fn judged_by(&self, misfit: &ViscousMisfit, limits: &[[f64; 2]], values: &[f64]) -> Judged {
         let at_bound = at_bound(values, limits, AT_BOUND);
         let law = misfit.law(values);
@@ -261,7 +261,7 @@ impl Whole<'_> {
         self.misfit.entry()
     }
 
-    /// The series, what it gives at every row, and what the data cover.
+    /// The series, its stresses at every row, and the range of the data.
     fn relaxed(&self, values: &[f64], tried: Vec<(usize, f64)>) -> Result<Relaxed, Error> {
         let histories = History::all(self.tests, false)?;
         let law = self.misfit.law(values);
@@ -293,7 +293,7 @@ impl Whole<'_> {
         })
     }
 
-    /// What a user must know of the series.
+    /// The warnings about the series.
     fn warnings(&self, parameters: &[Parameter], quality: &Quality, terms: usize) -> Vec<String> {
         let mut found = Vec::new();
         let [low, high] = self.resolved;
@@ -337,7 +337,7 @@ impl Whole<'_> {
     }
 }
 
-/// A difference of times without the last digits, which subtraction leaves.
+/// A difference of times without the rounding of the subtraction.
 fn without_rounding(time: f64) -> f64 {
     format!("{time:.11e}").parse().unwrap_or(time)
 }

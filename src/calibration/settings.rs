@@ -1,4 +1,4 @@
-//! How a law is fitted: weights, bounds, starts.
+//! The settings of a fit: weights, bounds, starts.
 
 use super::data::{Observation, TestData};
 use crate::document::{Bound, name_of};
@@ -6,14 +6,14 @@ use crate::error::{Error, suggestion};
 use crate::material::parameters::{Parameter, StrainMeasure};
 use crate::material::registry::Law;
 
-/// What a residual is measured by.
+/// The weighting of residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
-    /// All differences of stress count alike.
+    /// All differences of stress have the same weight.
     Absolute,
-    /// All relative differences count alike: a residual is divided by the measured stress, but by no less than
-    /// a hundredth of the largest one of its test, so that a stress near zero does not outweigh all others. Where the residuals are
-    /// noise, they are divided by the fitted stress in place of the measured one: its weight would share the noise.
+    /// All relative differences have the same weight: a residual is divided by the measured stress, but by no less than a
+    /// hundredth of the largest one of its test, so that a stress near zero does not outweigh all others. Where the residuals are
+    /// noise, they are divided by the fitted stress instead of the measured one, whose noise would affect the weight.
     Relative,
 }
 
@@ -27,7 +27,7 @@ impl Weighting {
         name_of(&Self::NAMES, self)
     }
 
-    /// The name, and the floor of what relative residuals are divided by.
+    /// The name, and the least divisor of relative residuals.
     pub fn describe(self) -> String {
         match self {
             Self::Absolute => self.name().into(),
@@ -59,14 +59,14 @@ impl Weighting {
 /// Limits of parameters by key, in internal units.
 pub type Bounds = Vec<(String, [f64; 2])>;
 
-/// How a fit is made.
+/// The settings of a fit.
 #[derive(Clone, Debug)]
 pub struct FitSettings {
-    /// What a residual is measured by.
+    /// The weighting of residuals.
     pub weighting: Weighting,
     /// Limits in addition to those that the law has.
     pub bounds: Bounds,
-    /// How many of the best starts are improved.
+    /// The number of the best starts that are improved.
     pub starts: usize,
 }
 
@@ -80,13 +80,13 @@ impl Default for FitSettings {
     }
 }
 
-/// The smallest stress that a relative residual is divided by, as a share of its test's largest one.
+/// The least divisor of a relative residual, as a share of its test's largest stress.
 pub const SMALLEST_SHARE: f64 = 0.01;
 
 /// The strain measure that laws of a curve take in a fit.
 pub const MEASURE: StrainMeasure = StrainMeasure::Nominal;
 
-/// Lower and upper limit of each parameter; `scale` is a stress that the data speak of.
+/// Lower and upper limit of each parameter; `scale` is a typical stress of the data.
 pub fn limits(
     law: &Law,
     parameters: &[Parameter],

@@ -1,4 +1,4 @@
-//! The softening of a fit: its parameters, and the cycles of the tests with what each of them dissipates.
+//! The softening of a fit: its parameters, and the cycles of the tests with the energy that each of them dissipates.
 
 use super::data::{Branches, Observation, Test, TestData};
 use crate::material::{HyperelasticLaw, Softening};
@@ -8,7 +8,7 @@ use crate::material::{HyperelasticLaw, Softening};
 pub struct Softened {
     /// Its parameters.
     pub softening: Softening,
-    /// How many of the fit's parameters are the law's; none where the law is that of a card.
+    /// The number of the fit's parameters that belong to the law; zero where the law is that of a card.
     pub of_law: usize,
     /// The text of the card whose law it is; `None` where the law is found.
     pub card: Option<String>,
@@ -25,14 +25,13 @@ pub struct SofteningCycle {
     pub test: String,
     /// The stretch at the end of the loading.
     pub stretch: f64,
-    /// ∮ P dλ of the measured stresses by trapezoids, in mJ/mm³; not a number where the test has stresses that do work along
-    /// another axis and were not measured.
+    /// ∮ P dλ of the measured stresses by trapezoids, in mJ/mm³; NaN where stresses that do work along another axis were not measured.
     pub measured: f64,
-    /// The same of the fitted ones.
+    /// ∮ P dλ of the fitted stresses.
     pub fitted: f64,
-    /// The difference of Ψ between the cycle's ends, which the fitted one comes near to with short steps.
+    /// The difference of Ψ between the cycle's ends, which the fitted one approaches with short steps.
     pub closed_form: f64,
-    /// D after the cycle less that before it.
+    /// D after the cycle minus D before it.
     pub dissipated: f64,
 }
 
@@ -81,7 +80,7 @@ struct Row {
 /// The rows of a test along the axis that does work.
 struct Record {
     rows: Vec<Row>,
-    /// How many such axes there are; not a number where the work is not that of one stress.
+    /// The number of such axes; NaN where the work is not that of one stress.
     axes: f64,
 }
 

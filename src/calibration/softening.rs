@@ -1,7 +1,7 @@
 //! Softening: a law with the pseudo-elasticity of Ogden and Roxburgh fitted to loading and unloading.
 //!
-//! The rows of a test are its history, in the order of the file: Wₘ of a row is the largest W₀ of it and of those before. The
-//! law's parameters are found together with r, m and β, or they are those of a card, and r, m and β alone are found.
+//! The rows of a test are its history, in the order of the file: Wₘ of a row is the largest W₀ of this row and those before. The
+//! law's parameters are found together with r, m and β; or they are those of a card, and r, m and β alone are found.
 
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
     Ok(whole.finished(first, parameters, &values))
 }
 
-/// That the tests unload somewhere: softening is not seen in a first loading.
+/// Checks that the tests unload somewhere: softening does not show in a first loading.
 fn check_cycles(tests: &[TestData]) -> Result<(), Error> {
     let falls = |data: &TestData| {
         let strain = |one: &Observation| data.drawn_strain(one).abs();
@@ -89,11 +89,11 @@ fn check_cycles(tests: &[TestData]) -> Result<(), Error> {
     Err(Error::input("no test unloads", hint))
 }
 
-/// The law that the search begins with.
+/// The law with which the search begins.
 struct First {
     law: &'static Law,
     fitted: Arc<dyn HyperelasticLaw>,
-    /// Those that are found together with the softening.
+    /// The parameters that are found together with the softening.
     parameters: Vec<Parameter>,
     choices: Vec<(&'static str, String)>,
 }
@@ -158,7 +158,7 @@ fn rising(data: &TestData) -> TestData {
     }
     TestData {
         observations: rows,
-        // It stays where the record has it.
+        // The zero stays where the record has it.
         found_zero: None,
         ..data.clone()
     }
@@ -194,7 +194,7 @@ fn minimum(
     Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
 }
 
-/// What the residuals at some values are.
+/// The residuals at some values.
 fn judged(
     misfit: &SofteningMisfit,
     tests: &[TestData],
@@ -208,7 +208,7 @@ fn judged(
     Judged::of(left, Values::held(values, at_bound), rounded)
 }
 
-/// What the values that were found are judged by.
+/// The data by which the values found are judged.
 struct Whole<'a> {
     misfit: &'a SofteningMisfit<'a>,
     tests: &'a [TestData],

@@ -1,4 +1,4 @@
-//! How far a fit can be trusted: intervals, what the residuals say, warnings.
+//! The quality of a fit: intervals, residuals, warnings.
 
 mod assessment;
 mod judged;

@@ -44,15 +44,15 @@ pub struct ModelField {
 /// The fields of all models at one load factor.
 #[derive(Debug)]
 pub struct ModelFields {
-    /// Finite elements, springs, corrected springs; of the latter those that have a solution.
+    /// Finite elements, springs, and the corrected springs that have a solution.
     pub fields: Vec<ModelField>,
-    /// Why the others have none.
+    /// Why the others have no solution.
     pub ends: Vec<Error>,
     /// The finite elements' own error in relative L2 in %; `None` where it is not known.
     pub own_percent: Option<f64>,
 }
 
-/// Where fields are compared, and what the imported one is there.
+/// The places at which fields are compared, and the imported field there.
 #[derive(Clone, Debug)]
 pub struct Sites {
     /// Places in mm.
@@ -62,48 +62,48 @@ pub struct Sites {
     pub expected: Vec<f64>,
 }
 
-/// How far a field is from the imported one.
+/// The difference of a field from the imported one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// Relative L2 in %.
     pub percent: f64,
     /// The largest difference in mm.
     pub largest: f64,
-    /// Where it is, in mm.
+    /// The place of the largest difference, in mm.
     pub place: [f64; 2],
     /// The factor by which the imported displacements come nearest to the model's: Σ A u·v / Σ A v².
     pub factor: f64,
-    /// What is left in relative L2 in % when they are multiplied by it.
+    /// The remaining difference in relative L2 in % after multiplication by this factor.
     pub scaled_percent: f64,
     /// The motion of the whole body by which the imported field comes nearest to the model's, about the middle of all places.
     pub shift: RigidMotion,
-    /// What is left in relative L2 in % when they are moved by it.
+    /// The remaining difference in relative L2 in % after this motion.
     pub shifted_percent: f64,
 }
 
 impl Difference {
-    /// The ratio of two units of length that would make most of the difference.
+    /// The ratio of two units of length that would explain most of the difference.
     pub fn other_unit(&self) -> Option<f64> {
         const LARGE: f64 = 50.0;
         unit_ratio(self.factor).filter(|_| self.percent > LARGE)
     }
 
-    /// Whether a factor, as between two load factors, makes most of the difference.
+    /// Whether a factor, as between two load factors, explains most of the difference.
     pub fn is_scaled(&self) -> bool {
         const LARGE: f64 = 10.0;
         self.percent > LARGE && self.scaled_percent < self.percent / 3.0
     }
 
-    /// Whether a motion of the whole body, as of a camera or of other axes, makes most of the difference.
+    /// Whether a motion of the whole body, as of a camera or of other axes, explains most of the difference.
     pub fn is_shifted(&self) -> bool {
         const LARGE: f64 = 0.5;
         self.percent > LARGE && self.shifted_percent < self.percent / 3.0
     }
 }
 
-/// Shapes of the same specimen may differ by so much of a cell: a circle and its polygon.
+/// Largest difference of shapes of the same specimen, in sizes of a cell: a circle and its polygon.
 const NEAR_CELLS: f64 = 0.25;
-/// Boxes around meshes of the same specimen may differ by so much of their size.
+/// Largest relative difference of the boxes around meshes of the same specimen.
 const NEAR_SIZE: f64 = 0.02;
 
 /// Why a field cannot be compared with those of a specimen.
@@ -120,7 +120,7 @@ pub enum Mismatch {
         /// Length and width of the specimen.
         expected: [f64; 2],
     },
-    /// Points and specimen as in two units of length.
+    /// Points and specimen appear to be in two units of length.
     #[error(
         "the points span {found:.4} mm and the specimen {expected:.4} mm: about a factor of {ratio}, as between two units of length"
     )]
@@ -129,18 +129,18 @@ pub enum Mismatch {
         found: f64,
         /// The size of the specimen in mm.
         expected: f64,
-        /// The factor between two units that is nearest.
+        /// The nearest factor between two units.
         ratio: f64,
     },
-    /// A place that one of them has and the other has not.
+    /// A place that only one of the two has.
     #[error("{what} at ({:.4}, {:.4}) mm", .place[0], .place[1])]
     Outside {
-        /// What does not reach what.
+        /// The part that does not cover the other.
         what: &'static str,
         /// The place in mm.
         place: [f64; 2],
     },
-    /// A field that rests, so that no deviation can be related to it.
+    /// A field that is zero, so that no deviation can be related to it.
     #[error("is zero everywhere")]
     Zero,
 }
@@ -149,7 +149,7 @@ impl ExternalField {
     /// Reads `.vtu`, `.vtk`, `.pvd`, `.msh`, `.frd` or `.csv`.
     ///
     /// # Errors
-    /// [`Error::Input`] with what is wrong.
+    /// [`Error::Input`] with a description of the fault.
     pub fn read(path: &Path, settings: &ImportSettings) -> Result<Self, Error> {
         let is_table = path
             .extension()
@@ -170,7 +170,7 @@ impl ExternalField {
         })
     }
 
-    /// What was read.
+    /// Describes the field that was read.
     pub fn describe(&self) -> String {
         match self {
             Self::OnMesh(field) => format!("{} on {} cells", field.part, field.mesh.cell_count()),
@@ -178,10 +178,10 @@ impl ExternalField {
         }
     }
 
-    /// Where the models are compared with it: at the nodes of a lattice, or at the points.
+    /// The places at which the models are compared with it: the nodes of a lattice, or the points.
     ///
     /// # Errors
-    /// Says where the field does not belong to the specimen.
+    /// `Mismatch` where the field does not belong to the specimen.
     pub fn sites(&self, lattice: &Mesh) -> Result<Sites, Mismatch> {
         match self {
             Self::OnMesh(field) => {
@@ -227,10 +227,10 @@ impl Sites {
             .collect()
     }
 
-    /// How far a model's field is from the imported one.
+    /// The difference of a model's field from the imported one.
     ///
     /// # Errors
-    /// Says that the imported field rests, so that nothing can be related to it.
+    /// `Mismatch::Zero` where the imported field is zero, so that no difference can be related to it.
     pub fn difference(&self, field: &ModelField) -> Result<Difference, Mismatch> {
         let found = self.at(field);
         let size = self.expected.weighted_norm(&self.weights);
@@ -294,8 +294,8 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
     Err(Mismatch::Size { found, expected })
 }
 
-/// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A field of a
-/// small window is no fault.
+/// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A
+/// field on a small window is not a fault.
 fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
     let size = |places: &[[f64; 2]]| {
         let [low, high] = bounding_box(places.iter().copied());
@@ -312,7 +312,7 @@ fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
     }
 }
 
-/// Whether all places lie in a mesh.
+/// Checks that all places lie in a mesh.
 fn covers(mesh: &Mesh, places: &[[f64; 2]], what: &'static str) -> Result<(), Mismatch> {
     match places
         .iter()

@@ -17,26 +17,26 @@
 //! else                cannot be judged
 //! ```
 
-/// Deviations below this, in percent, are what solvers and rounding leave.
+/// Deviations below this, in percent, are due to solvers and rounding.
 pub const ROUNDING_PERCENT: f64 = 1e-6;
 
 /// The largest part of a deviation that may be the reference's own error.
 pub const OWN_SHARE: f64 = 0.1;
 
-/// What a requirement comes to.
+/// The judgement of a requirement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Judgement {
     /// Within the limit.
     Pass,
-    /// Within the limit without anything to measure, and why.
+    /// Within the limit because there is nothing to measure, and why.
     Exact(&'static str),
-    /// Beyond the limit, or not a number.
+    /// Beyond the limit, or NaN.
     Fail,
-    /// What it is measured with says nothing about it.
+    /// The reference is not good enough to judge it.
     CannotBeJudged {
         /// Why.
         reason: String,
-        /// What to do about it.
+        /// The remedy.
         remedy: String,
     },
 }
@@ -56,8 +56,7 @@ impl Judgement {
         matches!(self, Self::Pass | Self::Exact(_))
     }
 
-    /// What the word alone does not say: the reason and the remedy of what cannot be judged, or why there is nothing
-    /// to measure.
+    /// The remark beside the word: the reason and the remedy where it cannot be judged, or why there is nothing to measure.
     pub fn remark(&self) -> Option<String> {
         match self {
             Self::Pass | Self::Fail => None,
@@ -67,8 +66,8 @@ impl Judgement {
     }
 }
 
-/// Judges a deviation from a reference with an error of its own, both without their signs and in percent of the same
-/// size. `remedy` says how the reference becomes better.
+/// Judges a deviation from a reference with an error of its own, both without signs and in percent of the same size.
+/// `remedy` describes how the reference becomes better.
 pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgement {
     if deviation.is_nan() {
         return Judgement::Fail;
@@ -90,7 +89,7 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
     too_coarse(own_error, told, remedy)
 }
 
-/// What cannot be judged for the reference's own error, and why.
+/// The judgement where the reference's own error is too large, and why.
 fn too_coarse(own_error: f64, told: String, remedy: &str) -> Judgement {
     Judgement::CannotBeJudged {
         reason: match own_error.is_finite() {
@@ -101,8 +100,8 @@ fn too_coarse(own_error: f64, told: String, remedy: &str) -> Judgement {
     }
 }
 
-/// Judges how much of an uncorrected deviation a correction leaves, 100 d/d₀: at most `limit` %. Where d₀ is no more than
-/// rounding, there is nothing to correct.
+/// Judges the share of an uncorrected deviation that remains after a correction, 100 d/d₀: at most `limit` %. Where
+/// d₀ is only rounding, there is nothing to correct.
 pub fn judge_correction(
     [before, after]: [f64; 2],
     own_error: f64,
@@ -121,7 +120,7 @@ pub fn judge_correction(
     }
 }
 
-/// Judges a deviation by whether its limit is farther away than the reference's own error; both in percent of the same size.
+/// Judges a deviation by whether its distance to the limit exceeds the reference's own error; both in percent of the same size.
 pub fn judge_by_margin(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgement {
     if deviation.is_nan() || deviation - own_error > limit {
         return Judgement::Fail;

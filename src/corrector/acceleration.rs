@@ -21,9 +21,9 @@ use super::system::{Corrector, SHORTEST_STEP};
 use crate::error::SolveFault;
 use crate::solve::vector::{difference, largest, moved, norm};
 
-/// Iterates that are combined.
+/// Number of iterates that are combined.
 const DEPTH: usize = 12;
-/// The steps have stalled when so many of them have not brought the residual down to a tenth.
+/// The steps have stalled when so many of them have not reduced the residual to a tenth.
 const PATIENCE: usize = 16;
 /// A step may let the residual grow by this factor.
 const WORST_GROWTH: f64 = 2.0;
@@ -117,7 +117,7 @@ struct History {
 }
 
 impl History {
-    /// Takes in a field with its step and returns the combined next field.
+    /// Adds a field with its step and returns the combined next field.
     fn combine(&mut self, field: &[f64], step: &[f64]) -> Vec<f64> {
         if let Some((last_field, last_step)) = self.last.replace((field.to_vec(), step.to_vec())) {
             self.field_changes.push(difference(field, &last_field));

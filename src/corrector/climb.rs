@@ -1,15 +1,15 @@
 //! The corrector's fast path: solve a few springs, then climb from grid to grid.
 //!
-//! The springs are solved on a very coarse lattice and corrected on the first grid. The field then climbs from grid to grid,
-//! each with about twice as many cells along both axes: it is interpolated by cubics, the governing equation is
-//! linearised once, and a few conjugate-gradient iterations, each preconditioned by one V-cycle and each with
-//! one evaluation of F, bring the correction that the finer grid asks for. No load steps, no factorisation.
+//! The springs are solved on a very coarse lattice and corrected on the first grid. The field then climbs from grid to grid, each
+//! with about twice as many cells along both axes: it is interpolated by cubics, the governing equation is linearised once, and a
+//! few conjugate-gradient iterations compute the correction on the finer grid. Each iteration takes one V-cycle as preconditioner
+//! and one evaluation of F. No load steps and no factorisation are needed.
 //!
-//! **Where to begin.** The change d is what a grid adds to the one before. Changes shrink by a ratio q from grid to
-//! grid, so that the next one is about q d: the iteration begins with it.
+//! **Initial iterate.** The change d is the difference between the field on a grid and on the one before. Changes
+//! shrink by a ratio q from grid to grid, so that the next one is about q d: the iteration begins with it.
 //!
-//! **When to stop.** What the grids that follow would add is d q/(1 − q): the discretisation error. The iteration
-//! ends when what it leaves, judged by the fall of its corrections, is below a stated share of that.
+//! **Stopping criterion.** All finer grids together would add d q/(1 − q): this is the discretisation error. The iteration ends
+//! when its own error, estimated from the decrease of its corrections, is below a stated share of that.
 
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
@@ -42,17 +42,17 @@ pub use path::{Grips, Interactive};
 pub(super) use ratios::{Ratios, geometric_tail};
 pub use way::{Start, Way};
 
-/// How exactly the climb solves.
+/// Accuracy of the climb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbSettings {
-    /// What the iteration may leave on the finest grid, relative to its discretisation error. Default: 1e-3.
+    /// The iteration's error on the finest grid, relative to the discretisation error. Default: 1e-3.
     pub tolerance: f64,
     /// Iterations allowed after a linearisation. Default: 20.
     pub max_iterations: usize,
 }
 
 impl ClimbSettings {
-    /// As few iterations as leave the discretisation error as it is: what the iteration leaves is 8 % of it at most.
+    /// As few iterations as do not affect the discretisation error: the iteration's error is at most 8 % of it.
     pub const FAST: Self = Self {
         tolerance: 0.08,
         max_iterations: 20,
@@ -75,26 +75,25 @@ pub struct ClimbSolution {
     pub field: Field,
     /// Force on the moving grip in N.
     pub force: f64,
-    /// What the finest grid added to the field of the one before, where it is not the only one.
+    /// The change from the grid before to the finest grid; `None` where there is one grid only.
     change: Option<Field>,
-    /// The estimated discretisation error of the field, root mean square over the nodes in mm; not a number where
-    /// there is one grid alone.
+    /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only.
     pub discretisation_error: f64,
-    /// Whether that is known within a factor of about two: where the finest grid has twice as many cells along both axes as the one
-    /// before, and that one four elements at least. Else it is of the right order, and mostly too large.
+    /// Whether the discretisation error is known within a factor of about two: this takes a finest grid with twice as many cells along both
+    /// axes as the one before, and at least four elements in that one. Otherwise its order is right, and it is mostly too large.
     pub error_is_sure: bool,
-    /// What the iteration left, estimated, root mean square over the nodes in mm.
+    /// The estimated error that the iteration left, root mean square over the nodes in mm.
     pub iteration_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
-    /// What was done on each grid by the iteration, coarse to fine: its nodes, and the work.
+    /// The work of the iteration on each grid, coarse to fine: number of nodes, and work.
     pub work: Vec<(usize, Work)>,
-    /// How the climb came to the field.
+    /// The way to the field.
     pub way: Way,
 }
 
 impl ClimbSolution {
-    /// All evaluations of F, linearisations and cycles as fractions of one on a grid with so many nodes.
+    /// All evaluations of F, linearisations and cycles, in units of one on a grid with so many nodes.
     pub fn fine_work(&self, nodes: usize) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for (own, work) in &self.work {
@@ -118,23 +117,22 @@ pub struct Climb<'a> {
     multigrid: Multigrid,
     start: usize,
     ratios: Ratios,
-    /// The smallest eigenvalue of the preconditioned operators that the grids have told at this stretch.
+    /// The smallest eigenvalue of the preconditioned operators found on the grids at this stretch.
     weakest: f64,
 }
 
-/// Unknowns of the coarsest grid at most: those of 12 × 4 cells are solved by their factor faster than by coarser grids.
+/// Most unknowns of the coarsest grid: a factorisation solves those of 12 × 4 cells faster than coarser grids would.
 const COARSEST: usize = 120;
-/// Nodes of the first grid at least, on which the springs are corrected, where the finest grid has as many.
+/// Least number of nodes of the first grid, on which the springs are corrected, if the finest grid has as many.
 const SPRINGS: usize = 30;
-/// Times that a grid's equation is linearised anew before it is given up.
+/// Number of linearisations of a grid's equation before the climb gives up.
 const LINEARISATIONS: usize = 6;
-/// What the iteration may leave on the first grid, relative to its first correction, where finer ones follow and where
-/// none does.
+/// The iteration's error on the first grid, relative to its first correction, where finer grids follow and where none does.
 const START_TOLERANCE: f64 = 1e-3;
 const ONLY_GRID_TOLERANCE: f64 = 1e-6;
 
 impl<'a> Climb<'a> {
-    /// Prepares the grids of a plate with so many equal cells.
+    /// Prepares the grids of a plate with `cells` equal cells.
     ///
     /// # Panics
     /// When the scheme takes cells two by two and their number is odd.
@@ -148,7 +146,7 @@ impl<'a> Climb<'a> {
         Self::new(problem, boundaries, scheme, settings)
     }
 
-    /// Prepares the grids of a plate with so many cells that become smaller towards the corners, where the field is
+    /// Prepares the grids of a plate with `cells` cells that become smaller towards the corners, where the field is
     /// singular; see [`mesh::Grid`](crate::mesh::Grid) and [`DifferenceScheme::grading`].
     ///
     /// # Panics
@@ -229,7 +227,7 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// Linearises a grid's equation and iterates, again where the iteration does not end.
+    /// Linearises a grid's equation and iterates; repeats both until the iteration converges.
     fn solve(
         &mut self,
         index: usize,
@@ -269,7 +267,7 @@ impl<'a> Climb<'a> {
         })
     }
 
-    /// Writes the operators of a grid and of all coarser ones at a field on it.
+    /// Assembles the operators of a grid and of all coarser ones at a field on it.
     fn linearise_below(&mut self, index: usize, field: &Field) -> Result<(), SolveFault> {
         let sheet = self.sheet();
         let mut field = field.clone();
@@ -285,7 +283,7 @@ impl<'a> Climb<'a> {
         inverted.map_err(|NotPositiveDefinite| SolveFault::NotPositiveDefinite)
     }
 
-    /// Where the coarsest operator that was written last has no inverse, nothing can be iterated.
+    /// Without a factor of the coarsest operator that was assembled last, no iteration is possible.
     fn check_operators(&self) -> Result<(), SolveFault> {
         match self.multigrid.is_factorised() {
             true => Ok(()),
@@ -293,7 +291,7 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// F(u) in N at the nodes of the finest grid, the reactions at the grips; nothing where J is not positive.
+    /// F(u) in N at the nodes of the finest grid: the reactions at the grips; `None` where J is not positive.
     pub fn forces(&mut self, field: &Field) -> Option<&Field> {
         let sheet = self.sheet();
         let level = self.levels.last_mut()?;
@@ -312,8 +310,7 @@ impl<'a> Climb<'a> {
             .sum())
     }
 
-    /// The field extrapolated after Richardson from the finest grid and the one before it; nothing where there is
-    /// one grid alone.
+    /// The field after Richardson extrapolation from the finest grid and the one before it; `None` where there is one grid only.
     pub fn extrapolated(&self, climbed: &ClimbSolution) -> Option<Field> {
         let change = climbed.change.as_ref()?;
         let mut field = climbed.field.clone();
@@ -332,7 +329,7 @@ fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
     }
 }
 
-/// Elements of so many cells along both axes.
+/// The number of elements along both axes for so many cells.
 fn elements(cells: [usize; 2], scheme: DifferenceScheme) -> [usize; 2] {
     cells.map(|cells| {
         assert!(cells.is_multiple_of(scheme.side()), "pairs of cells");
@@ -346,7 +343,7 @@ fn inverted() -> SolveFault {
     }
 }
 
-/// Boundaries of about half as many elements along the axes on which they are short; nothing where there are few.
+/// Boundaries of about half as many elements, along the axes on which elements are short; `None` where there are few.
 fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<f64>; 2]> {
     let elements = boundaries.each_ref().map(|boundaries| boundaries.len() - 1);
     let cells = elements.map(|elements| elements * scheme.side());
@@ -355,7 +352,7 @@ fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<
     }
     let length = |axis: usize| boundaries[axis][elements[axis]] / elements[axis] as f64;
     let longer = [0, 1].map(|axis| length(axis) > 1.6 * length(1 - axis));
-    // Two cells along X at least: one has no node between the grips.
+    // At least two cells along X: a single cell has no node between the grips.
     let enough = [elements[0].div_ceil(2) * scheme.side() > 1, elements[1] > 1];
     let halve = [0, 1].map(|axis| !longer[axis] && elements[axis] > 1 && enough[axis]);
     if halve == [false, false] {
@@ -367,7 +364,7 @@ fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<
     }))
 }
 
-/// Every second one of some places; where their number is odd, places between them.
+/// Every second one of some places; where the number of intervals is odd, places between them.
 fn thin_out(places: &[f64]) -> Vec<f64> {
     let fine = places.len() - 1;
     let coarse = fine.div_ceil(2);

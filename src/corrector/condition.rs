@@ -15,7 +15,7 @@ pub struct Linearisation {
     pub jacobian: SparseRows,
 }
 
-/// A group of conditions on the field, with one Lagrange multiplier a row.
+/// A group of conditions on the field, with one Lagrange multiplier per row.
 pub trait Condition {
     /// The group's name, such as `grips`.
     fn name(&self) -> &str;
@@ -37,7 +37,7 @@ pub trait Condition {
         Ok(self.linearise(u)?.values)
     }
 
-    /// Σ ψᵢ ∂²cᵢ/∂u∂u at `u`: symmetric, one row an unknown; nothing for linear conditions.
+    /// Σ ψᵢ ∂²cᵢ/∂u∂u at `u`: symmetric, one row per unknown; `None` for linear conditions.
     ///
     /// # Errors
     /// [`Inadmissible`] when a cell is inverted.
@@ -57,7 +57,7 @@ pub trait Condition {
     }
 }
 
-/// Linear conditions B u − b = 0 with any number of entries a row.
+/// Linear conditions B u − b = 0 with any number of entries per row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear {
     name: String,
@@ -241,7 +241,7 @@ impl<F: Fn(&[f64]) -> Linearisation> Function<F> {
         }
     }
 
-    /// Gives the curvature Σ ψᵢ ∂²cᵢ/∂u∂u from a field and multipliers; without it the conditions are
+    /// Sets the curvature Σ ψᵢ ∂²cᵢ/∂u∂u as a function of a field and multipliers; without it the conditions are
     /// taken as linear near the solution, which costs steps.
     #[must_use]
     pub fn with_curvature(

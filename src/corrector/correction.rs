@@ -1,15 +1,15 @@
-//! What a correction is asked for, and what it gives.
+//! The settings and the result of a correction.
 
 use super::factor::{Factor, Solver};
 use crate::solve::Convergence;
 
-/// How a correction is computed, and when it is done.
+/// How a correction is computed, and when it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrectorSettings {
     /// Largest scaled residual relative to the largest displacement; see [`Step::residual`]. Default: 1e-10.
     pub tolerance: f64,
-    /// Largest further move of the field that is left undone, relative to the largest displacement, where
-    /// the data have a say in the result: a small part of their noise is enough. Default: 1e-9.
+    /// Largest remaining move of the field, relative to the largest displacement, where the data influence the
+    /// result: a small part of their noise is enough. Default: 1e-9.
     pub movement: f64,
     /// Steps allowed. Default: 40.
     pub max_steps: usize,
@@ -54,7 +54,7 @@ pub struct Multipliers {
     pub name: String,
     /// The unknown of each row, where each row belongs to one.
     pub unknowns: Option<Vec<usize>>,
-    /// One number a row, in the unit of ½ ‖u − ū‖²_W over the unit of the row.
+    /// One number per row, in the unit of ½ ‖u − ū‖²_W over the unit of the row.
     pub values: Vec<f64>,
 }
 

@@ -49,7 +49,7 @@ impl DifferenceScheme {
         ("biquadratic", Self::Biquadratic),
     ];
 
-    /// Cells along each axis that are taken together.
+    /// Number of cells along each axis that are taken together.
     pub fn side(self) -> usize {
         match self {
             Self::Corners | Self::Gauss => 1,
@@ -57,8 +57,8 @@ impl DifferenceScheme {
         }
     }
 
-    /// How cells should become smaller towards clamped corners for the least error in a given time; see [`Climb::graded`]. Measured on plates
-    /// of three laws, two proportions and stretches of 10 to 100 %, with gradings of 1, 1.5, 2 and 3.
+    /// The grading of cells towards clamped corners with the least error in a given time; see [`Climb::graded`]. Measured on
+    /// plates of three laws, two proportions and stretches of 10 to 100 %, with gradings of 1, 1.5, 2 and 3.
     ///
     /// [`Climb::graded`]: super::climb::Climb::graded
     pub fn grading(self) -> f64 {

@@ -1,4 +1,4 @@
-//! How well the corrected field and its parameters are known.
+//! The uncertainty of the corrected field and of its parameters.
 //!
 //! With data of equal but unknown precision, ū = u + noise of variance s²/w, the corrected field is the
 //! maximum-likelihood estimate, and

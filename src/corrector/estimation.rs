@@ -1,4 +1,4 @@
-//! The field nearest to measured displacements that satisfies the physics, with what the data say about its uncertainty.
+//! The field nearest to measured displacements that satisfies the physics, with its uncertainty from the data.
 //!
 //! ```text
 //! minimise ½ ‖H u − d‖²_W   subject to   F(u) = 0 at inner nodes and free edges
@@ -61,7 +61,7 @@ pub use uncertainty::{MOST_REFINED_CELLS, ScaleChange};
 /// Estimates the field from the markers of one frame.
 ///
 /// # Errors
-/// [`Error::Input`] when the data, the mesh and the conditions do not go together or do not determine the field,
+/// [`Error::Input`] when the data, the mesh and the conditions do not match or do not determine the field,
 /// [`Error::Solve`] when no equilibrium near the data was found.
 pub fn estimate(
     specimen: &Specimen,
@@ -71,7 +71,7 @@ pub fn estimate(
     let found = estimate_with(specimen, markers, knowledge);
     let known = knowledge.law.is_none() && !knowledge.measured_forces().is_empty();
     match found {
-        // Where no field has such forces, it is compared with them.
+        // Where no field has such forces, the field is compared with them.
         Err(Error::Solve { .. }) if known => {
             let checked = Knowledge {
                 forces_are_checks: true,
@@ -112,7 +112,7 @@ fn estimate_with(
     })
 }
 
-/// The estimate; where the noise is another one than was taken, that alone.
+/// The estimate; where the noise differs from the assumed one, that noise alone.
 fn result_of(
     task: &given::Task,
     edges: Vec<given::Edge>,

@@ -1,4 +1,4 @@
-//! Polynomials through the last states of a path, beyond them.
+//! Polynomial extrapolation through the last states of a path.
 //!
 //! ```text
 //! u(s) ≈ Σ uₖ Lₖ(s),   Lₖ(s) = Π (s − sⱼ)/(sₖ − sⱼ)   over all j ≠ k
@@ -6,19 +6,19 @@
 //!
 //! Where fewer than [`HISTORY`] states are known, the state of rest at s = 0 is one more.
 
-/// States that the next one is extrapolated from.
+/// Number of states from which the next one is extrapolated.
 const HISTORY: usize = 3;
 
 /// The last states of a path.
 pub struct Known<F> {
-    /// The parameter of each, none of them rest's.
+    /// The parameter of each, none of them that of rest.
     pub parameters: Vec<f64>,
     /// Its field.
     pub fields: Vec<F>,
 }
 
 impl<F> Known<F> {
-    /// None yet.
+    /// No states.
     pub fn none() -> Self {
         Self {
             parameters: Vec::new(),
@@ -26,7 +26,7 @@ impl<F> Known<F> {
         }
     }
 
-    /// Takes a state; one at the same parameter is replaced, that of rest is known.
+    /// Adds a state; one at the same parameter is replaced, and that of rest is always known.
     pub fn take(&mut self, parameter: f64, field: F) {
         let same = self.parameters.iter().position(|own| *own == parameter);
         let full = (self.parameters.len() == HISTORY).then_some(0);
@@ -62,8 +62,8 @@ pub fn rate_shares(known: &[f64], parameter: f64) -> Vec<f64> {
     })
 }
 
-/// For each state what `product` says of the parameters of the others and of the state of rest, over what the
-/// Lagrange polynomial has at the state itself.
+/// For each state, the value of `product` for the parameters of the other states and of the state of rest, over the
+/// denominator of its Lagrange polynomial.
 fn shares(known: &[f64], product: impl Fn(&[f64]) -> f64) -> Vec<f64> {
     let at_rest = (known.len() < HISTORY).then_some(0.0);
     let share = |own: usize| {

@@ -121,7 +121,7 @@ impl Factor {
         if weights.len() <= LARGEST_DENSE {
             return with(Solver::Dense, None);
         }
-        // A factor that does not reproduce a solution is worth nothing: the whole system is better conditioned.
+        // A factor that does not reproduce a solution is useless: the whole system is better conditioned.
         if let Ok(mut factor) = with(Solver::Cholesky, None)
             && factor.is_sound()
         {
@@ -130,7 +130,7 @@ impl Factor {
         with(Solver::Kkt, None)
     }
 
-    /// Which form was taken.
+    /// The form that is used.
     pub fn solver(&self) -> Solver {
         match self.form {
             Form::Dense { .. } => Solver::Dense,
@@ -199,7 +199,7 @@ impl Factor {
         Ok(column)
     }
 
-    /// What is needed to keep the factor: B, W, the unknowns of the rows, and the values of a Cholesky form.
+    /// What is stored to keep the factor: B, W, the unknowns of the rows, and the values of a Cholesky form.
     pub(super) fn parts(&self) -> FactorParts {
         let (unknowns, cholesky) = match &self.form {
             Form::Symmetric(symmetric) => {
@@ -220,7 +220,7 @@ impl Factor {
         }
     }
 
-    /// Puts a factor together again, without factorising where its values were kept.
+    /// Restores a factor, without factorising where its values were kept.
     pub(super) fn from_parts(parts: FactorParts) -> Result<Self, FactorFault> {
         let FactorParts {
             jacobian,

@@ -1,4 +1,4 @@
-//! The repeated projection: steps until the conditions hold.
+//! The repeated projection: steps until the conditions are satisfied.
 
 use super::acceleration::accelerate;
 use super::correction::{Correction, CorrectorSettings, Step};
@@ -34,7 +34,7 @@ impl Corrector<'_> {
         self.finish(data, field, steps)
     }
 
-    /// Steps with a fresh factor each, until the tolerance is met.
+    /// Takes steps with a fresh factor each, until the tolerance is met.
     fn finish(
         &self,
         data: &[f64],
@@ -80,7 +80,7 @@ impl Corrector<'_> {
                     tolerance,
                 });
             }
-            // Near enough to the data, only the conditions are still to be met.
+            // Near enough to the data, only the conditions have to be met.
             let (target, projection) = if moved <= movement {
                 let still = vec![0.0; before.len()];
                 let back = factor.project(&system.values, &still);

@@ -1,4 +1,4 @@
-//! The correction matrix of a small linear system, as the publication keeps it.
+//! The correction matrix of a small linear system, as defined in the publication.
 
 use nalgebra::DMatrix;
 
@@ -11,8 +11,8 @@ use crate::solve::{FactorFault, SparseRows};
 /// S = (B W⁻¹ Bᵀ)⁻¹,   Y = I − W⁻¹ Bᵀ S B,   u = Y ū + W⁻¹ Bᵀ S b,   ψ = S (B ū − b)
 /// ```
 ///
-/// Y² = Y, B Y = 0, and for W = I also Y = Yᵀ. The rank of Y is i less the number of rows: when B is square
-/// Y is zero, and the data have no say.
+/// Y² = Y, B Y = 0, and for W = I also Y = Yᵀ. The rank of Y is i less the number of rows: when B is square Y is
+/// zero, and the data have no influence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectionMatrix {
     jacobian: DMatrix<f64>,

@@ -9,14 +9,14 @@
 //! c₀₁ are the viscous forces at the middle of a step: at ½ (u₀ + u₁) with the rate (u₁ − u₀)/h. β = ¼ is Newmark's average
 //! acceleration, β = 0 the central differences of Eq. 5; both are of second order in h.
 //!
-//! **Known start.** With u₀ and u̇₀ (or the first two instants), the supports and all loads, there is one equation for
-//! each unknown. B is square, and lower triangular in blocks of one instant: the correction is Newton's method in time that
-//! begins at ū, and its result does not depend on ū, which has a say in the multipliers only. [`EquationOfMotion::correct`]
-//! goes through windows of time with one factor of the block on the diagonal, retained as long as it serves.
+//! **Known start.** With u₀ and u̇₀ (or the first two instants), the supports and all loads, there is one equation for each
+//! unknown. B is square, and lower triangular in blocks of one instant: the correction is Newton's method in time that begins at
+//! ū, and its result does not depend on ū, which affects the multipliers only. [`EquationOfMotion::correct`] goes through windows
+//! of time with one factor of the block on the diagonal, retained as long as it serves.
 //!
-//! **Unknown start.** A recorded motion has no known start: there are two equations fewer than instants at each unknown,
-//! and [`EquationOfMotion::smooth`] solves the least-squares problem of Eq. 6–12. Noise that no motion of the
-//! body can produce is removed: of white noise over n instants about √(2/n) is left.
+//! **Unknown start.** A recorded motion has no known start: there are two equations fewer than instants at each
+//! unknown, and [`EquationOfMotion::smooth`] solves the least-squares problem of Eq. 6–12. Noise that no motion of
+//! the body can produce is removed: of white noise over n instants about √(2/n) remains.
 //!
 //! # References
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems, Eq. 5–19;
@@ -52,7 +52,7 @@ pub struct EquationOfMotion<'a> {
 struct Frame {
     force: Vec<f64>,
     stiffness: Vec<f64>,
-    /// The largest force in N, where unknowns are held too: at rest those at free unknowns are rounding.
+    /// The largest force in N, including held unknowns: at rest the forces at free unknowns are rounding.
     size: f64,
 }
 
@@ -68,7 +68,7 @@ struct Interval {
     links: Vec<Link>,
 }
 
-/// What an equation takes of an instant.
+/// The contribution of an instant to an equation.
 struct Term {
     /// The instant's number.
     instant: usize,
@@ -78,10 +78,10 @@ struct Term {
     elastic: f64,
 }
 
-/// Why the equation of motion between three instants does not hold for a motion.
+/// Why the equation of motion between three instants is not valid for a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MotionFault {
-    /// A support lets go later than at the start.
+    /// A support is released later than at the start.
     #[error("a support is released during the motion: begin at the release")]
     LettingGo,
     /// Stresses depend on the whole past.
@@ -124,8 +124,8 @@ impl<'a> EquationOfMotion<'a> {
         })
     }
 
-    /// Corrects a recorded motion with an unknown start: all unknowns at all instants, of which `data` are measured and
-    /// `start` is a guess without noise. Every so many `instants` are corrected by themselves.
+    /// Corrects a recorded motion with an unknown start: all unknowns at all instants, of which `data` are measured
+    /// and `start` is a guess without noise. Windows of so many `instants` are corrected independently.
     ///
     /// # Errors
     /// A [`SolveFault`] when some instants have no solution that is found.
@@ -145,7 +145,7 @@ impl<'a> EquationOfMotion<'a> {
         while smoothed.len() < count {
             let first = smoothed.len();
             let rest = count - first;
-            // A rest of one or two instants would have no equation.
+            // A remainder of one or two instants would have no equation.
             let own = if rest < instants + 3 { rest } else { instants };
             let stacked = |fields: &[Vec<f64>]| -> Vec<f64> {
                 fields[first..first + own]
@@ -261,7 +261,7 @@ impl<'a> EquationOfMotion<'a> {
         })
     }
 
-    /// What the equation of a row takes of each instant; row 0 is the start.
+    /// The terms of a row's equation for each instant; row 0 is the start.
     fn terms(&self, row: usize) -> Vec<Term> {
         let beta = self.weight;
         let term = |instant, inertia, elastic| Term {
@@ -299,7 +299,7 @@ impl<'a> EquationOfMotion<'a> {
         sum
     }
 
-    /// ∂F/∂u of a row by one of its instants, on the pattern of the stiffness: symmetric.
+    /// ∂F/∂u of a row with respect to one of its instants, on the pattern of the stiffness: symmetric.
     fn block(&self, row: usize, instant: usize, interval: &Interval) -> Vec<f64> {
         let mut terms = self.terms(row).into_iter();
         let Some(Term {

@@ -1,4 +1,4 @@
-//! The corrector of a clamped plate: which equations hold where.
+//! The corrector of a clamped plate, with the nodes at which each condition is imposed.
 //!
 //! | condition | nodes | rows | multiplier |
 //! |---|---|---|---|
@@ -45,17 +45,17 @@ impl KnownConditions {
 pub struct CorrectedState {
     /// The corrected field; its residual is that of the difference scheme.
     pub state: State,
-    /// What is measured of it.
+    /// The measures of the field.
     pub measures: Measures,
-    /// What is left of all forces and moments together over the largest of them.
+    /// The resultant of all forces and moments together, relative to the largest of them.
     pub balance: f64,
-    /// What was done on the material; `None` where it has no memory.
+    /// The work done on the material; `None` where it has no memory.
     pub work: Option<Work>,
-    /// The start and the field after each step of the direct method; none where the field climbed.
+    /// The start and the field after each step of the direct method; empty where the field climbed.
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
     pub multipliers: Vec<Multipliers>,
-    /// How the climb came to the field; `None` where the method was direct.
+    /// The way of the climb to the field; `None` where the method was direct.
     pub way: Option<Way>,
 }
 
@@ -69,7 +69,7 @@ pub struct PlateCorrector<'a> {
     names: PlateNames,
 }
 
-/// Cells and nodes of a plate by their places.
+/// Names of a plate's cells and nodes by their places.
 struct PlateNames(Mesh);
 
 impl Describe for PlateNames {
@@ -119,7 +119,7 @@ impl<'a> PlateCorrector<'a> {
         }
     }
 
-    /// The same after the plate has come to a corrected state, for a material that remembers it.
+    /// The same after the plate has reached a corrected state, for a material that remembers it.
     #[must_use]
     pub fn after(self, state: &State) -> Self {
         let mut history = state.history.clone();
@@ -214,8 +214,8 @@ impl<'a> PlateCorrector<'a> {
         conditions
     }
 
-    /// Corrects a displacement field at one stretch by the climb, which finds the result by itself: the field has
-    /// a say in the multipliers only, because everything is known.
+    /// Corrects a displacement field at one stretch by the climb, which finds the result by itself: the field
+    /// influences only the multipliers, because everything is known.
     ///
     /// # Errors
     /// [`Error::Solve`] when no corrected field was found.
@@ -253,7 +253,7 @@ impl<'a> PlateCorrector<'a> {
         })
     }
 
-    /// What follows from a corrected field.
+    /// The results that follow from a corrected field.
     fn corrected(
         &self,
         displacement: Vec<f64>,

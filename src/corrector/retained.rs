@@ -10,7 +10,7 @@ use super::factor::FactorParts;
 use super::{Corrector, Factor};
 use crate::document::file;
 
-/// What the file begins with.
+/// The first bytes of the file.
 const MAGIC: &[u8] = b"gelbench factor";
 /// The version of the format.
 const VERSION: u32 = 1;
@@ -29,7 +29,7 @@ pub enum RetainedFault {
     /// The checksum is wrong.
     #[error("the stored factor is damaged, its checksum is wrong: factorise again")]
     Damaged,
-    /// The factor is one of other conditions.
+    /// The factor belongs to other conditions.
     #[error("the stored factor does not fit the problem: {0}")]
     DoesNotFit(String),
     /// The file could not be read.

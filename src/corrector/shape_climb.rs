@@ -1,31 +1,31 @@
-//! The climb on any shape: springs on the coarsest of some meshes, corrected there, then from mesh to mesh.
+//! The climb on any shape: springs are solved and corrected on the coarsest of some meshes, and the field climbs from mesh to mesh.
 //!
-//! On each finer mesh the field is interpolated, with about what the mesh before has added, the governing equation is linearised, mostly
-//! once, and a few conjugate-gradient iterations bring the correction, each with one cycle of multigrid on the tangents that the
-//! coarser meshes already have (see [`Ladder`](crate::solve::Ladder)). What the iteration may leave is a share of the discretisation
-//! error, which the meshes tell: changes s shrink by a ratio q from mesh to mesh, and all finer ones would add s q/(1 − q).
+//! On each finer mesh the field and an estimate of its next change are interpolated, the governing equation is linearised, mostly once, and
+//! a few conjugate-gradient iterations compute the correction. Each takes one multigrid cycle on the tangents that the coarser meshes
+//! already have (see [`Ladder`](crate::solve::Ladder)). The iteration may leave a share of the discretisation error, which follows from the
+//! changes: a change s shrinks by a ratio q from mesh to mesh, and all finer meshes would add s q/(1 − q).
 //!
-//! **More states.** A [`Climb`] keeps its systems. [`Climb::follow`] extrapolates each state of a path from those before,
-//! and [`Interactive`] follows groups that are moved by hand, along its tangent:
+//! **More states.** A [`Climb`] keeps its systems of equations. [`Climb::follow`] extrapolates each state of a path
+//! from those before, and [`Interactive`] follows groups that are moved by hand, along the tangent:
 //!
 //! ```text
 //! u(s) ≈ Σ uₖ Lₖ(s)                three states before, or two and that of rest
 //! u + Δu,   K Δu = −K_h Δu_h       u_h: what the hand holds
 //! ```
 //!
-//! On the finest mesh alone a few iterations then take the imbalance b as far down as
+//! A few iterations on the finest mesh alone then reduce the imbalance b to
 //!
 //! ```text
 //! √(b · K⁻¹ b) ≤ ¼ τ e √(2 W)/‖u‖        [√mJ]
 //! ```
 //!
-//! with the tolerance τ, the discretisation error e, the strain energy W, and the size ‖u‖ of the field: its root mean square departure from the
-//! nearest rigid motion. What is left is as smooth as the field, or up to four times as soft. e/‖u‖ is taken from the first and the last
-//! state of a path, which are climbed, linearly between; in the hand from the state that it begins with. The finest
-//! tangent is taken anew where the iterations that it has cost beyond those of its own place are worth one, and those of the coarser meshes where a
-//! step takes many iterations yet. Whether a state is stable is looked at where a tangent is taken.
+//! with the tolerance τ, the discretisation error e, the strain energy W, and the size ‖u‖ of the field: its root mean square
+//! departure from the nearest rigid motion. The remaining error is as smooth as the field, or up to four times as soft. e/‖u‖ is
+//! linear between the first and the last state of a path, which are climbed; in the hand it is that of the first state. The
+//! finest tangent is recomputed where the iterations that it has cost beyond those of a tangent at the current state are worth
+//! one, and the coarser tangents where a step still takes many iterations. Stability is checked whenever a tangent is computed.
 //!
-//! All supports, loads, laws and elements; where the iteration does not lead to the end, load steps and factors do.
+//! All supports, loads, laws and elements are admitted; where the iteration does not converge, load steps and factorisations are used.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -81,8 +81,7 @@ pub use hand::Interactive;
 use levels::Levels;
 use systems::Systems;
 
-/// Corrects the springs' field at a load factor on the last of some meshes of a problem, coarse to fine: each with about half the spacing
-/// of the one before.
+/// Corrects the springs' field at a load factor on the last of some meshes, coarse to fine, each with about half the spacing of the one before.
 ///
 /// # Errors
 /// [`Error::Input`] where a mesh does not suit the problem, [`Error::Solve`] where no field was found.
@@ -104,7 +103,7 @@ pub fn climb(
 pub struct Climb<'a> {
     levels: Levels<'a>,
     settings: ClimbSettings,
-    /// Of the climb that was made last.
+    /// The systems of the last climb.
     systems: Option<Systems>,
 }
 
@@ -126,7 +125,7 @@ impl<'a> Climb<'a> {
     /// # Errors
     /// [`Error::Input`] where a mesh does not suit the problem, [`Error::Solve`] where no field was found.
     pub fn correct(&mut self, factor: f64) -> Result<ShapeClimb, Error> {
-        // Two sets of systems would need twice the memory.
+        // A second set of systems would double the memory.
         self.systems = None;
         let mut ascent = self.ascent(factor)?;
         self.systems = Some(ascent.systems(&self.levels, self.settings.tolerance)?);

@@ -8,10 +8,10 @@ use crate::error::SolveFault;
 use crate::problem::Model;
 use crate::solve::{Assembly, Loading, Newton, NewtonSettings, Stage, State, equilibrium};
 
-/// The condition's name: what the supports hold.
+/// The name of the condition that the supports impose.
 const SUPPORTS: &str = "supports";
 
-/// Cells and nodes of a mesh by their places.
+/// Names of a mesh's cells and nodes by their places.
 struct Names<'a>(&'a Model<'a>);
 
 impl Describe for Names<'_> {
@@ -27,7 +27,7 @@ impl Describe for Names<'_> {
 /// A corrected field at one load factor.
 #[derive(Debug)]
 pub struct CorrectedField {
-    /// The field with the residual of the energy that was corrected to.
+    /// The field with the residual of the energy used in the correction.
     pub state: State,
     /// How it was reached, with the multipliers.
     pub correction: Correction,
@@ -62,7 +62,7 @@ pub fn correct(
     let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
     let correction = corrector.correct(data, start)?;
     let mut displacement = correction.field().to_vec();
-    // Tied unknowns, on which no condition depends, follow.
+    // Tied unknowns, on which no condition depends, follow their masters.
     model.impose(stage.factor, &mut displacement);
     let mut residual = vec![0.0; size];
     let energy =
@@ -86,9 +86,9 @@ pub fn correct(
     })
 }
 
-/// The corrected field without multipliers, by Newton's method from `start`. All conditions together are as many as the unknowns, so
-/// that a step of the correction is one of Newton, whatever the data are: the field is that of [`correct`], and takes no factor
-/// of twice the size; on large meshes none at all.
+/// The corrected field without multipliers, by Newton's method from `start`. There are as many conditions as
+/// unknowns, so that a step of the correction is a Newton step, whatever the data are: the field is that of
+/// [`correct`], without a factor of twice the size; on large meshes without any factor.
 ///
 /// # Errors
 /// A [`SolveFault`] when no corrected field was found.

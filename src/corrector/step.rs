@@ -128,8 +128,8 @@ impl Corrector<'_> {
         merit.accepts(&field, &values).then_some(field)
     }
 
-    /// A step that counts the curvature of the conditions, or a part of it where all of it leads uphill.
-    /// With as many conditions as unknowns the plain step is that already.
+    /// A step that takes account of the curvature of the conditions, or a part of it where all of it leads uphill.
+    /// With as many conditions as unknowns the plain step already does.
     fn advance_curved(
         &self,
         merit: &Merit,
@@ -151,7 +151,7 @@ impl Corrector<'_> {
             let scaled = curvature.scaled(&vec![part; before.len()]);
             let curved = project_curved(jacobian, &self.weights, &scaled, values, &pull);
             let Ok(curved) = curved else { continue };
-            // Near the solution the merit no longer resolves a good step, but the imbalance does.
+            // Near the solution the merit no longer resolves a good step; the imbalance does.
             let field = moved(before, 1.0, &curved.step);
             if let Ok(next) = self.linearise(&field)
                 && self.imbalance(&next, data, &field, &curved.multipliers) < 0.5 * imbalance

@@ -11,7 +11,7 @@ use crate::solve::{FactorFault, Inadmissible, SparseRows};
 /// The shortest share of a step that is tried.
 pub(super) const SHORTEST_STEP: f64 = 1e-4;
 
-/// The conditions on a field, the weights of its entries, and the way to correct it.
+/// The conditions on a field, the weights of its entries, and the names for messages.
 pub struct Corrector<'a> {
     pub(super) conditions: Vec<Box<dyn Condition + 'a>>,
     pub(super) weights: Vec<f64>,
@@ -40,8 +40,8 @@ impl System {
 }
 
 impl<'a> Corrector<'a> {
-    /// A corrector for fields with one of `weights` (the diagonal of W) an entry. An entry with the weight
-    /// zero has no data: it is a parameter of the conditions that is found with the field.
+    /// A corrector for fields with one of `weights` (the diagonal of W) per entry. An entry with the weight zero has
+    /// no data: it is a parameter of the conditions that is found with the field.
     pub fn new(
         conditions: Vec<Box<dyn Condition + 'a>>,
         weights: Vec<f64>,
@@ -55,7 +55,7 @@ impl<'a> Corrector<'a> {
         }
     }
 
-    /// Names elements and unknowns in messages.
+    /// Sets the names of elements and unknowns for messages.
     #[must_use]
     pub fn named(self, names: &'a dyn Describe) -> Self {
         Self { names, ..self }
@@ -103,7 +103,7 @@ impl<'a> Corrector<'a> {
             self.settings.solver,
         );
         match factor {
-            // LU may pass over dependent rows and give huge multipliers.
+            // LU may not detect dependent rows and then gives huge multipliers.
             Ok(factor) if factor.solver() == Solver::Kkt => {
                 match dependence::find(&system.jacobian, &system.values, system.size) {
                     None => Ok(factor),

@@ -6,7 +6,7 @@ use crate::units;
 /// A column's name and unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Column {
-    /// Its name in lower case, with underscores for spaces; empty where the file names no columns.
+    /// Its name in lower case, with underscores for spaces; empty where the file has no names of columns.
     pub name: String,
     /// The unit in brackets, if there is one.
     pub unit: Option<String>,
@@ -29,7 +29,7 @@ impl Column {
         }
     }
 
-    /// Name and unit as they are written.
+    /// Name and unit as written.
     pub fn head(&self) -> String {
         match &self.unit {
             Some(unit) => format!("{} [{unit}]", self.written),
@@ -38,7 +38,7 @@ impl Column {
     }
 }
 
-/// A name as columns have it: in lower case, with underscores for spaces.
+/// A name in the form of columns: in lower case, with underscores for spaces.
 pub fn plain_name(name: &str) -> String {
     name.trim().to_lowercase().replace([' ', '-'], "_")
 }
@@ -48,27 +48,27 @@ pub fn is_pixel(unit: &str) -> bool {
     ["px", "pixel", "pixels"].contains(&&*unit.to_lowercase())
 }
 
-/// A field without the quotation marks that stand behind a space.
+/// A field without the quotation marks that follow a space.
 pub(super) fn unquoted(field: &str) -> &str {
     field.trim().trim_matches('"').trim()
 }
 
-/// The lines that stand above the rows, by their places among the lines that are not empty.
+/// The lines above the rows, by their places among the lines that are not empty.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Above {
     /// The line that names the columns.
     pub names: Option<usize>,
-    /// The line that holds their units.
+    /// The line with their units.
     pub units: Option<usize>,
     /// The first row.
     pub first_row: usize,
 }
 
 impl Above {
-    /// Looks through the first lines of a file, split into fields.
+    /// Finds the lines above the rows among the first lines of a file, split into fields.
     ///
-    /// Names are as many as the fields of most lines. What stands before them is a preamble; a line of names below them holds units,
-    /// unless the first line is a title over groups of columns: one with empty or repeated fields.
+    /// There are as many names as fields in most lines. Lines before them are a preamble; a line of names below them
+    /// contains units, unless the first line is a title over groups of columns: one with empty or repeated fields.
     pub fn of(lines: &[Vec<String>]) -> Self {
         let width = most_frequent(lines.iter().map(Vec::len));
         let is_head = |line: &Vec<String>| line.iter().all(|field| is_name(unquoted(field)));
@@ -100,7 +100,7 @@ impl Above {
     }
 }
 
-/// The value that stands most often, the first of those that stand equally often.
+/// The most frequent value, the first of those that are equally frequent.
 fn most_frequent(values: impl Iterator<Item = usize>) -> Option<usize> {
     let mut counted: Vec<(usize, usize)> = Vec::new();
     for value in values {
@@ -114,7 +114,7 @@ fn most_frequent(values: impl Iterator<Item = usize>) -> Option<usize> {
     first.map(|(value, _)| value)
 }
 
-/// Whether a line stands over groups of columns: fields are empty or repeat each other, and they are no units.
+/// Whether a line is a title over groups of columns: fields are empty or repeated, and they are not units.
 fn is_title(line: &[String]) -> bool {
     let fields: Vec<&str> = line.iter().map(|field| unquoted(field)).collect();
     let repeats = |(index, field): (usize, &&str)| fields[..index].contains(field);
@@ -129,7 +129,7 @@ fn is_unit(field: &str) -> bool {
     bracketed || ["", "-", "1"].contains(&plain) || is_pixel(plain) || units::is_known(plain)
 }
 
-/// Whether a line holds units, some of which are 1, and hence may look like a row.
+/// Whether a line contains units, some of which are 1, so that it may look like a row.
 fn is_units(line: &[String]) -> bool {
     let fields: Vec<&str> = line.iter().map(|field| unquoted(field)).collect();
     let named = fields

@@ -1,9 +1,9 @@
-//! What the comments of a TOML file say about its keys.
+//! The remarks on keys in the comments of a TOML file.
 
 use std::collections::BTreeMap;
 
-/// The remark behind each key and table of a file, by its path: `plate.length`, `support[].kind`. Lines that hold nothing but a
-/// remark and are set in belong to the key before them. Keys that are themselves commented out count too.
+/// The remark behind each key and table of a file, by its path: `plate.length`, `support[].kind`. Indented lines with
+/// only a remark belong to the key before them. Keys that are themselves commented out count too.
 pub fn comments(text: &str) -> BTreeMap<String, String> {
     let mut found: BTreeMap<String, String> = BTreeMap::new();
     let (mut table, mut last) = (String::new(), None);
@@ -36,7 +36,7 @@ fn split(line: &str) -> (&str, &str) {
     (line.trim(), "")
 }
 
-/// The path of the key or table that a statement names.
+/// The path of the key or table in a statement.
 fn path(statement: &str, table: &mut String) -> Option<String> {
     let within = |statement: &str, begin: &str, end: &str| {
         let name = statement.strip_prefix(begin)?.strip_suffix(end)?;

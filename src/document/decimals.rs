@@ -1,6 +1,6 @@
 //! Numbers with decimal points or with decimal commas, but not both in one file.
 
-/// What the numbers of a file have shown so far.
+/// The format of a file's numbers, as far as known.
 #[derive(Default)]
 pub(super) struct Decimals {
     point: bool,
@@ -15,7 +15,7 @@ impl Decimals {
     /// The number in a field.
     ///
     /// # Errors
-    /// [`NotANumber`] says why it is none.
+    /// [`NotANumber`] with the reason.
     pub fn read(&mut self, field: &str) -> Result<f64, NotANumber> {
         let value = number(field).ok_or_else(|| match field {
             "" => NotANumber::Empty,
@@ -38,13 +38,13 @@ impl Decimals {
         }
     }
 
-    /// Whether commas may just as well group thousands.
+    /// Whether commas may also be separators of thousands.
     pub fn are_ambiguous(&self) -> bool {
         self.comma && !self.surely_decimal && self.ungrouped
     }
 }
 
-/// Why a field is no number.
+/// Why a field is not a number.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(super) enum NotANumber {
     #[error("a field is empty")]
@@ -71,9 +71,9 @@ pub(super) fn is_number(field: &str) -> bool {
     number(field).is_some()
 }
 
-/// Whether a field says that there is no number.
+/// Whether a field marks a missing number.
 pub(super) fn is_hole(field: &str) -> bool {
-    // As spreadsheets, R and pandas write it.
+    // The words of spreadsheets, R and pandas.
     const WORDS: [&str; 8] = ["nan", "na", "n/a", "#n/a", "#nv", "#div/0!", "null", "none"];
     let unsigned = field.trim_start_matches(['+', '-']);
     unsigned.is_empty() || WORDS.iter().any(|word| unsigned.eq_ignore_ascii_case(word))

@@ -1,4 +1,4 @@
-//! TOML documents of which some values are set.
+//! TOML documents in which some values are set.
 
 use toml::{Table, Value};
 
@@ -8,7 +8,7 @@ pub struct EditedDocument {
     table: Table,
 }
 
-/// A value that is set.
+/// A value to be set.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NewValue {
     /// A whole number.
@@ -33,10 +33,10 @@ impl NewValue {
 }
 
 impl EditedDocument {
-    /// Of a text.
+    /// The document of a text.
     ///
     /// # Errors
-    /// Why it is not TOML.
+    /// A description of why it is not TOML.
     pub fn parse(text: &str) -> Result<Self, String> {
         let table = text
             .parse()
@@ -44,15 +44,15 @@ impl EditedDocument {
         Ok(Self { table })
     }
 
-    /// The text of a key in a section.
+    /// The text under a key of a section.
     pub fn text_of(&self, [section, key]: [&str; 2]) -> Option<&str> {
         self.table.get(section)?.get(key)?.as_str()
     }
 
-    /// Sets the value at a path of names and of places in lists from 0 on; sections that are not there are made, places of lists are not.
+    /// Sets the value at a path of names and of places in lists from 0 on; missing sections are created, missing places of lists are not.
     ///
     /// # Errors
-    /// Why there is no such place.
+    /// A description of why there is no such place.
     pub fn set(&mut self, path: &[&str], value: &NewValue) -> Result<(), String> {
         set(&mut self.table, path, value)
     }
@@ -71,7 +71,7 @@ impl EditedDocument {
             })
     }
 
-    /// The document again.
+    /// The text of the document.
     pub fn text(&self) -> String {
         self.table.to_string()
     }

@@ -1,7 +1,7 @@
-//! Texts in the encodings that instruments and editors write.
+//! Texts in the encodings of instruments and editors.
 //!
-//! A byte-order mark decides, else UTF-16 shows by its zeros, else it is UTF-8 where all bytes fit. What is left is told apart by
-//! its pairs of bytes: GB18030 is made of pairs that begin as frequent characters do, Latin-1 has single letters among ASCII.
+//! A byte-order mark decides; otherwise UTF-16 shows by its zeros, and the text is UTF-8 where all bytes fit. The remaining texts are distinguished
+//! by their pairs of bytes: GB18030 consists of pairs that begin as frequent characters do, Latin-1 has single letters among ASCII.
 
 use encoding_rs::{Encoding, GB18030, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
@@ -10,7 +10,7 @@ use encoding_rs::{Encoding, GB18030, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 pub struct TextEncoding(&'static Encoding);
 
 impl TextEncoding {
-    /// The encoding of a name.
+    /// The encoding with a name.
     pub fn of_name(name: &str) -> Option<Self> {
         Encoding::for_label(name.trim().as_bytes()).map(Self)
     }
@@ -24,7 +24,7 @@ impl TextEncoding {
     }
 }
 
-/// The text of bytes and their encoding, which is the `wanted` one if there is one; none where they are no text in it.
+/// The text of bytes and their encoding, which is the `wanted` one if there is one; `None` where they are not a text in it.
 pub fn decode(bytes: &[u8], wanted: Option<TextEncoding>) -> Option<(String, TextEncoding)> {
     let marked = Encoding::for_bom(bytes).map(|(encoding, _)| encoding);
     let encoding = match wanted {
@@ -45,7 +45,7 @@ fn guess(bytes: &[u8]) -> &'static Encoding {
     }
 }
 
-/// Whether a file begins with the mark of UTF-16, or every other byte of its begin is zero.
+/// Whether a file begins with the mark of UTF-16, or every other byte of its beginning is zero.
 pub(super) fn is_utf16(bytes: &[u8]) -> bool {
     let marks = [b"\xff\xfe", b"\xfe\xff"];
     marks.iter().any(|mark| bytes.starts_with(*mark)) || zeros_at(bytes, 0) || zeros_at(bytes, 1)
@@ -59,8 +59,8 @@ fn zeros_at(bytes: &[u8], side: usize) -> bool {
         && every_other(1 - side).all(|byte| *byte != 0)
 }
 
-/// Whether bytes that are no UTF-8 are rather GB18030 than Latin-1: most of their pairs begin as signs (A1–A9) or as the 3755
-/// frequent characters do (B0–D7), and not as small letters with accents would.
+/// Whether bytes that are not UTF-8 are GB18030 rather than Latin-1: most of their pairs begin as signs (A1–A9) or as
+/// the 3755 frequent characters do (B0–D7), and not as small letters with accents would.
 fn is_gb18030(bytes: &[u8]) -> bool {
     let (mut frequent, mut other, mut at) = (0usize, 0usize, 0);
     while let Some(first) = bytes.get(at) {

@@ -1,8 +1,8 @@
 //! Every key that a reader knows, found by reading.
 //!
-//! A file is read, every key that the reader asks for is added to it with a value that suits, and it is read again until
-//! nothing new is asked for. Then every choice is given every one of its names in turn, and what is asked for only then belongs
-//! to that choice.
+//! A file is read, every key that the reader looks up is added to it with a suitable value, and it is read again
+//! until no new key is looked up. Then every choice is given each of its names in turn, and keys that are looked up
+//! only then belong to that choice.
 
 use std::collections::VecDeque;
 
@@ -11,26 +11,26 @@ use toml::{Table, Value};
 use super::keys::note;
 use super::{Key, Takes};
 
-/// Choices and the names that they are given.
+/// Choices and the names given to them.
 type Assignment = Vec<(String, String)>;
 
-/// A key with the choices under which it is asked for.
+/// A key with the choices under which it is looked up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundKey {
     /// The key.
     pub key: Key,
-    /// The choice and those of its names for which the key is read; nothing for keys that are always read.
+    /// The choice and those of its names for which the key is read; `None` for keys that are always read.
     pub only_with: Option<(String, Vec<String>)>,
 }
 
-/// The keys that are asked for when a choice is given one of its names.
+/// The keys that are looked up when a choice is given one of its names.
 struct Reading {
     choice: String,
     name: String,
     paths: Vec<String>,
 }
 
-/// All keys that a reader asks for, in the order in which it does; `read` reads a text and returns what was asked for.
+/// All keys that a reader looks up, in its order; `read` reads a text and returns the keys that were looked up.
 pub fn explore(read: &dyn Fn(&str) -> Vec<Key>) -> Vec<FoundKey> {
     let (mut found, mut readings): (Vec<Key>, Vec<Reading>) = (Vec::new(), Vec::new());
     let mut open = VecDeque::from([Assignment::new()]);
@@ -69,7 +69,7 @@ fn with(assignment: &Assignment, path: &str, name: &str) -> Assignment {
     more
 }
 
-/// The last choice of which some names make the reader ask for a key, and others do not.
+/// The last choice for which some names make the reader look up a key, and others do not.
 fn only_with(path: &str, readings: &[Reading]) -> Option<(String, Vec<String>)> {
     let mut choices: Vec<&str> = readings.iter().map(|reading| &*reading.choice).collect();
     choices.dedup();
@@ -88,7 +88,7 @@ fn only_with(path: &str, readings: &[Reading]) -> Option<(String, Vec<String>)> 
     ))
 }
 
-/// The keys that are asked for of a file that has all of them, with some choices made.
+/// The keys that are looked up in a file that has all of them, with some choices made.
 fn complete(read: &dyn Fn(&str) -> Vec<Key>, assignment: &Assignment) -> Vec<Key> {
     const ROUNDS: usize = 16;
     let mut file = Table::new();
@@ -116,7 +116,7 @@ fn complete(read: &dyn Fn(&str) -> Vec<Key>, assignment: &Assignment) -> Vec<Key
     all
 }
 
-/// Keys of which a reader takes one or the other: each is given without the others that are still unknown.
+/// Keys that exclude each other: each is given without the others that are still unknown.
 fn alone(read: &dyn Fn(&str) -> Vec<Key>, file: &Table, all: &mut Vec<Key>) {
     let unknown: Vec<String> = all
         .iter()
@@ -134,7 +134,7 @@ fn alone(read: &dyn Fn(&str) -> Vec<Key>, file: &Table, all: &mut Vec<Key>) {
     }
 }
 
-/// A value that suits a key.
+/// A suitable value for a key.
 fn value(key: &Key) -> Value {
     let example = key.example.as_deref().unwrap_or_default();
     let parsed = format!("value = {example}").parse::<Table>().ok();
@@ -184,7 +184,7 @@ fn place<'a, 'b>(file: &'a mut Table, path: &'b str) -> Option<(&'a mut Table, &
     place(inner?.as_table_mut()?, rest)
 }
 
-/// Gives a key a value; tables keep what they hold.
+/// Gives a key a value; existing tables are kept.
 fn put(file: &mut Table, path: &str, value: Value) {
     let Some((table, name)) = place(file, path) else {
         return;

@@ -1,4 +1,4 @@
-//! Files that are read whole: regular ones, within a size.
+//! Files that are read as a whole: regular files within a size.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -8,28 +8,28 @@ use super::given::given;
 use super::inputs;
 use crate::error::nearest;
 
-/// Bytes of a study, of a card or of conditions at most.
+/// Most bytes of a study, of a card or of conditions.
 pub const MOST_OF_A_STUDY: u64 = 16 << 20;
 
-/// Bytes of a table, of a mesh or of a field at most.
+/// Most bytes of a table, of a mesh or of a field.
 pub const MOST_OF_DATA: u64 = 2 << 30;
 
 /// Why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
-    /// Nothing is at this path, but perhaps a file of a similar name, which is looked for when it is told.
+    /// There is no file at this path, but perhaps one with a similar name, which is looked for when the fault is reported.
     #[error("there is no such file{}", meant(.0))]
     Missing(PathBuf),
     /// A folder.
     #[error("it is a folder; name a file in it")]
     Folder,
-    /// A pipe, a device: how much it holds nobody knows.
+    /// A pipe or a device, whose size is unknown.
     #[error("it is not a regular file; save its output as a file first")]
     NoFile,
-    /// It holds more than belongs into such a file.
+    /// The file is larger than such a file may be.
     #[error("it is larger than {0} MiB, the limit for this kind of file")]
     TooLarge(u64),
-    /// What the system says.
+    /// The fault that the system reports.
     #[error("{0}")]
     Unreadable(#[from] std::io::Error),
 }
@@ -68,7 +68,7 @@ fn meant(path: &Path) -> String {
     named.unwrap_or_default()
 }
 
-/// The file in the same folder whose name is nearest: the same with an ending, or one with a letter amiss.
+/// The file in the same folder with the nearest name: the same with an extension, or one with a wrong letter.
 fn similar(path: &Path) -> Option<PathBuf> {
     let wanted = path.file_name()?.to_str()?;
     let folder = path
@@ -81,7 +81,7 @@ fn similar(path: &Path) -> Option<PathBuf> {
     });
     let mut names: Vec<String> = names.collect();
     names.sort();
-    // A study rather than the picture beside it.
+    // A study is preferred to the picture beside it.
     names.sort_by_key(|name| !name.ends_with(".toml"));
     let with_ending = names.iter().find(|name| {
         Path::new(name)

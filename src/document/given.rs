@@ -1,4 +1,4 @@
-//! Files that a program gives in place of the disk's: in a browser there is no disk.
+//! Files that a program gives in place of those on disk: in a browser there is no disk.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ thread_local! {
     static GIVEN: RefCell<BTreeMap<PathBuf, Vec<u8>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Takes the files away again, also where the work between panics.
+/// Removes the files again, even after a panic.
 struct Taken(BTreeMap<PathBuf, Vec<u8>>);
 
 impl Drop for Taken {
@@ -17,8 +17,7 @@ impl Drop for Taken {
     }
 }
 
-/// Does some work in which this thread reads the files of a list instead of those of the disk, by the paths that studies
-/// and requests name them by.
+/// Calls a function while this thread reads the files of a list instead of those on disk, by the paths that studies and requests use.
 ///
 /// ```
 /// use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What a table states about itself in the lines above its rows, and what the user states about it.
+//! The statements of a table in the lines above its rows, and those of the user about it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use super::{Column, Table};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::units::{self, Dimension};
 
-/// What the head of a table would say, given for files that do not say it: keys and values.
+/// Statements that supplement the head of a table: keys and values.
 pub type Statements = BTreeMap<String, String>;
 
 /// The result of looking something up in a head.
@@ -16,7 +16,7 @@ pub type Faulty<T> = Result<T, Box<Diagnostic>>;
 /// Values with their places, by their keys.
 type Pairs = BTreeMap<String, (String, Range<usize>)>;
 
-/// The head of a table together with what the command line says.
+/// The head of a table together with the statements of the command line.
 pub struct Head<'a> {
     /// The table.
     pub table: &'a Table,
@@ -37,7 +37,7 @@ impl<'a> Head<'a> {
         })
     }
 
-    /// The keys and values that stand in the file.
+    /// The keys and values in the file.
     pub fn written(&self) -> Statements {
         let pairs = self.pairs.iter();
         pairs
@@ -69,7 +69,7 @@ impl<'a> Head<'a> {
         Box::new(Diagnostic::error("", message).hint(hint))
     }
 
-    /// What the file or the command line says about `key`; `named` is what a column's name says.
+    /// The statement of the file or the command line about `key`; `named` is that of a column's name.
     ///
     /// # Errors
     /// A fault where they contradict each other.
@@ -136,7 +136,7 @@ impl<'a> Head<'a> {
     /// A positive quantity such as the specimen's area, where it is stated.
     ///
     /// # Errors
-    /// A fault where it is no positive quantity.
+    /// A fault where it is not a positive quantity.
     pub fn quantity(&self, key: &str, dimension: Dimension) -> Faulty<Option<f64>> {
         let Some(value) = self.setting(key, None)? else {
             return Ok(None);
@@ -156,20 +156,20 @@ impl<'a> Head<'a> {
         ))
     }
 
-    /// The same quantity where there must be one.
+    /// The same quantity where it is required.
     ///
     /// # Errors
-    /// A fault where it is not stated, or no positive quantity.
+    /// A fault where it is not stated, or is not a positive quantity.
     pub fn required_quantity(&self, key: &str, dimension: Dimension) -> Faulty<f64> {
         let example = dimension.example().trim_matches('"');
         self.quantity(key, dimension)?
             .ok_or_else(|| self.missing(key, example))
     }
 
-    /// The factor from a column's unit to the internal one, where the column or the setting `key` says it.
+    /// The factor from a column's unit to the internal one, where the column or the setting `key` states it.
     ///
     /// # Errors
-    /// A fault where it is not stated, or no unit of the dimension.
+    /// A fault where it is not stated, or is not a unit of the dimension.
     pub fn factor(&self, key: &str, column: &Column, dimension: Dimension) -> Faulty<f64> {
         let example = match dimension {
             Dimension::Ratio => "-",
@@ -184,7 +184,7 @@ impl<'a> Head<'a> {
         })
     }
 
-    /// Where the head says something about `key`.
+    /// The place of the head's statement about `key`.
     pub fn place(&self, key: &str) -> Range<usize> {
         let pair = self.pairs.get(key);
         pair.map_or(0..0, |(_, place)| place.clone())

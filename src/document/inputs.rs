@@ -1,6 +1,6 @@
-//! Which files a program has read: it must not write over them.
+//! The files that a program has read and must not overwrite.
 //!
-//! A command calls [`remember`] once. A program of your own that does not is free to write wherever it wants.
+//! A command calls [`remember`] once. A program of your own that does not call it may write anywhere.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 static READ: Mutex<Option<Vec<PathBuf>>> = Mutex::new(None);
 
 thread_local! {
-    /// What this thread has read within [`noted`].
+    /// The files that this thread has read within [`noted`].
     static NOTED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
 }
 
@@ -22,7 +22,7 @@ pub fn remember() {
     all().get_or_insert_default();
 }
 
-/// Notes that a file is read.
+/// Records that a file is read.
 pub fn note(path: &Path) {
     let own = |read: &mut Option<Vec<PathBuf>>| {
         if let (Some(read), Ok(path)) = (read.as_mut(), std::fs::canonicalize(path))
@@ -35,7 +35,7 @@ pub fn note(path: &Path) {
     NOTED.with_borrow_mut(own);
 }
 
-/// Does some work, and tells the files that this thread has read meanwhile, by their whole paths.
+/// Calls a function, and returns the files that this thread has read meanwhile, by their absolute paths.
 pub fn noted<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
     let before = NOTED.replace(Some(Vec::new()));
     let found = work();
@@ -43,7 +43,7 @@ pub fn noted<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
     (found, read)
 }
 
-/// The files that were read, by their whole paths, in the order in which they were first read.
+/// The files that were read, by their absolute paths, in the order in which they were first read.
 pub fn read() -> Vec<PathBuf> {
     all().clone().unwrap_or_default()
 }

@@ -1,9 +1,9 @@
-//! The keys that a reader asks for, noted while it reads.
+//! The keys that a reader looks up, recorded while it reads.
 
 use super::Bound;
 use crate::units::Dimension;
 
-/// What the value of a key must be.
+/// The type of a key's value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Takes {
     /// A text.
@@ -28,7 +28,7 @@ pub enum Takes {
     Quantities(Dimension, Bound),
     /// The name of a unit, or a quantity.
     Unit(Dimension),
-    /// A length that may be linear in the place.
+    /// A length that may be linear in the coordinates.
     LinearLength,
     /// A table.
     Section,
@@ -36,27 +36,27 @@ pub enum Takes {
     Sections,
 }
 
-/// A key that a reader has asked for.
+/// A key that a reader has looked up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
     /// Its tables and its name: `plate.length`, `support[].kind`.
     pub path: String,
-    /// What it takes; nothing where the reader has only looked whether it is there.
+    /// The types that it takes; empty where the reader has only checked whether it is present.
     pub takes: Vec<Takes>,
-    /// The value in the study that comes along.
+    /// The value in the built-in study.
     pub example: Option<String>,
     /// Whether it may be left out.
     pub presence: Presence,
 }
 
-/// Whether a key may be left out, and what that means.
+/// Whether a key may be left out, and the meaning of that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// A file must hold it.
+    /// A file must contain it.
     Required,
-    /// It takes the value in the study that comes along.
+    /// It takes the value in the built-in study.
     Default,
-    /// Nothing is said then.
+    /// Without it, nothing is stated.
     Optional,
 }
 
@@ -73,11 +73,11 @@ pub(super) fn plain_path(path: &str) -> String {
     plain
 }
 
-/// Adds a key to those that were asked for before, or what is new of it.
+/// Adds a key, or its new types, to those that were looked up before.
 pub(super) fn note(keys: &mut Vec<Key>, key: Key) {
     match keys.iter_mut().find(|known| known.path == key.path) {
         None => keys.push(key),
-        // Whether a key is there is asked for before it is read where it may be missing.
+        // Where a key may be missing, its presence is checked before it is read.
         Some(known) => {
             known.example = known.example.take().or(key.example);
             // A choice is read as a text too.

@@ -1,4 +1,4 @@
-//! What the lines of a table are: text without old line ends, separators, remarks, names.
+//! The lines of a table: text without old line ends, separators, remarks, names.
 
 use std::ops::Range;
 
@@ -22,8 +22,8 @@ pub(super) fn plain_text(text: &str) -> String {
     text.split_inclusive('\n').map(remark).collect()
 }
 
-/// The separator of the columns: that of the first line that is no comment if it makes as many fields of most lines, else the
-/// first one that most lines have.
+/// The separator of the columns: that of the first line that is not a comment, if it gives as many fields in most
+/// lines; otherwise the first one that most lines have.
 pub(super) fn delimiter(text: &str) -> Option<u8> {
     const SURVEYED: usize = 1000;
     const ALL: [u8; 3] = [b';', b'\t', b','];
@@ -48,7 +48,7 @@ pub(super) fn delimiter(text: &str) -> Option<u8> {
         .or(first)
 }
 
-/// The place of the remark right above a place, but for empty lines.
+/// The place of the remark right above a place, apart from empty lines.
 pub(super) fn remark_above(text: &str, below: usize) -> Option<Range<usize>> {
     let above = text[..below].trim_end();
     let start = above.rfind('\n').map_or(0, |end| end + 1);
@@ -57,7 +57,7 @@ pub(super) fn remark_above(text: &str, below: usize) -> Option<Range<usize>> {
         .then_some(start..above.len())
 }
 
-/// The line of a record: csv points to what stands before it, remarks and empty lines too.
+/// The line of a record: csv points to the text before it, including remarks and empty lines.
 pub(super) fn line_at(text: &str, from: usize) -> Range<usize> {
     let mut start = from;
     for line in text[from..].split_inclusive('\n') {

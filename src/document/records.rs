@@ -1,4 +1,4 @@
-//! Tables of texts, for programs alone.
+//! Tables of texts that only programs read and write.
 
 /// The text of records, one a line; fields with commas or line ends stand in quotes.
 pub fn write_records(records: impl IntoIterator<Item = Vec<String>>) -> String {
@@ -13,7 +13,7 @@ pub fn write_records(records: impl IntoIterator<Item = Vec<String>>) -> String {
     String::from_utf8(bytes).expect("fields are texts")
 }
 
-/// The records of a text that [`write_records`] has written; `None` of any other.
+/// The records of a text that [`write_records`] has written; `None` for any other text.
 pub fn read_records(bytes: &[u8]) -> Option<Vec<Vec<String>>> {
     let mut table = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -25,7 +25,7 @@ pub struct Section<'a> {
     defaults: Option<&'a DeTable<'a>>,
     faults: &'a Faults,
     known: RefCell<Vec<&'static str>>,
-    /// Whether a choice is unknown to which other keys may belong.
+    /// Whether a choice on which other keys may depend is unknown.
     undecided: Cell<bool>,
     required: &'static [&'static str],
 }
@@ -53,13 +53,13 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// With keys that the file must hold: for these a default is an example, and never taken.
+    /// Requires keys of the file: for these a default is only an example, and is never used.
     #[must_use]
     pub fn requiring(self, required: &'static [&'static str]) -> Self {
         Self { required, ..self }
     }
 
-    /// The table under `key`; a missing one is read from the defaults alone.
+    /// The table under `key`; where it is missing, the defaults alone are read.
     pub fn section(&self, key: &'static str) -> Section<'a> {
         self.asks(key, Some(Takes::Section));
         let (mut table, mut span) = (None, self.span.clone());
@@ -132,7 +132,7 @@ impl<'a> Section<'a> {
             .collect()
     }
 
-    /// Whether the file itself holds `key`.
+    /// Whether the file itself contains `key`.
     pub fn has(&self, key: &'static str) -> bool {
         self.asks(key, None);
         self.written(key).is_some()
@@ -157,11 +157,11 @@ impl<'a> Section<'a> {
         );
     }
 
-    /// Records a fault at the place of `key` where what it asks for is too much; `smaller` says what to change. Whether it is
-    /// not.
+    /// Records a fault at the place of `key` where its need exceeds the budget; `smaller` describes what to change.
+    /// Returns whether the budget suffices.
     pub fn affords(&self, key: &'static str, need: Need, smaller: &str) -> bool {
         let excess = self.excess(need);
-        // An estimate from a value that has a fault is none.
+        // An estimate from a value with a fault is no estimate.
         if excess.as_ref().is_some_and(|excess| excess.needed.is_nan()) && !self.faults.none() {
             return false;
         }
@@ -171,12 +171,12 @@ impl<'a> Section<'a> {
         excess.is_none()
     }
 
-    /// What may be asked for.
+    /// The budget of the document.
     pub fn budget(&self) -> Budget {
         self.faults.budget
     }
 
-    /// What of a need is too much, if anything.
+    /// The excess of a need over the budget, if there is any.
     pub fn excess(&self, need: Need) -> Option<Excess> {
         self.faults.budget.afford(need).err()
     }
@@ -189,12 +189,12 @@ impl<'a> Section<'a> {
         );
     }
 
-    /// Reports every key of the table that was never asked for.
+    /// Reports every key of the table that was never looked up.
     pub fn unknown_keys(&self) {
         self.unknown_keys_with(|_| None);
     }
 
-    /// The same with what is known of an unknown key; nothing where a choice could not be read on which keys may depend.
+    /// The same with a remedy for an unknown key; reports nothing where a choice on which keys may depend could not be read.
     pub fn unknown_keys_with(&self, remedy: impl Fn(&str) -> Option<String>) {
         if self.undecided.get() {
             return;
@@ -221,7 +221,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Notes that a key is asked for, and what it takes if its value is.
+    /// Records that a key is looked up, and its type if its value is read.
     fn asks(&self, key: &'static str, takes: Option<Takes>) {
         let example = self.defaults.and_then(|table| table.get(key));
         let required = self.required.contains(&key);
@@ -241,7 +241,7 @@ impl<'a> Section<'a> {
         keys::note(&mut self.faults.keys.borrow_mut(), key);
     }
 
-    /// The value in the file, else the default; a fault when there is neither, or when the file must hold it.
+    /// The value in the file, otherwise the default; a fault when there is neither, or when the file must contain it.
     fn value(&self, key: &'static str) -> Option<Value<'a>> {
         self.value_like(key, "…")
     }
@@ -267,7 +267,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Records that the file does not hold a key, with an example of its value.
+    /// Records that the file does not contain a key, with an example of its value.
     fn missing(&self, key: &'static str, example: &str) {
         let hint = match (self.required.contains(&key), self.path.is_empty()) {
             (false, _) => format!("add `{key} = {example}`"),
@@ -316,7 +316,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// A value as a document has it.
+/// A value as written in a document.
 fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => super::quoted(text),

@@ -1,8 +1,8 @@
-//! What to do about faults of TOML's syntax.
+//! Remedies for faults of TOML's syntax.
 
 use std::ops::Range;
 
-/// What to write instead, where the text about a syntax fault tells it.
+/// What to write instead, where the text about a syntax fault shows it.
 pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<String> {
     if message.contains("duplicate key") {
         let key = text.get(place.clone()).unwrap_or_default().trim();
@@ -31,14 +31,14 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
     usable.then(|| format!("write texts and quantities with units in quotes: {key}\"{value}\""))
 }
 
-/// A quote in the line that holds a place which TOML does not know.
+/// A quotation mark unknown to TOML in the line that contains a place.
 fn typographic_quote(text: &str, at: usize) -> Option<char> {
     let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
     line.chars().find(|letter| "“”„‘’‚«»".contains(*letter))
 }
 
-/// Where to look when the text about a fault does not tell what was meant.
+/// Advice where the text about a fault does not show what was meant.
 pub(super) fn advice(message: &str) -> Option<String> {
     let closing = match message {
         _ if message.contains("array") => "a list that is opened by [ or a text in quotes",
@@ -51,7 +51,7 @@ pub(super) fn advice(message: &str) -> Option<String> {
     ))
 }
 
-/// A place that can be shown: at least one character of the text, the one before an empty place at the end of a line.
+/// A place that can be displayed: at least one character of the text, the one before an empty place at the end of a line.
 pub(super) fn visible(text: &str, place: Range<usize>) -> Range<usize> {
     let Some(before) = text.get(..place.start).filter(|_| place.is_empty()) else {
         return place;
@@ -66,7 +66,7 @@ pub(super) fn visible(text: &str, place: Range<usize>) -> Range<usize> {
     }
 }
 
-/// The value without quotes that holds a place, and the key before it with its equals sign.
+/// The value without quotes that contains a place, and the key before it with its equals sign.
 fn unquoted(text: &str, at: usize) -> Option<(String, &str)> {
     let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next().unwrap_or_default();
@@ -81,7 +81,7 @@ fn unquoted(text: &str, at: usize) -> Option<(String, &str)> {
     if !listed {
         return Some((format!("{} = ", key.trim()), values.trim()));
     }
-    // The item of a list that holds the place.
+    // The item of a list that contains the place.
     let edge = |letter: char| "[],".contains(letter);
     let begin = line[..within.min(line.len())]
         .rfind(edge)

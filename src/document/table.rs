@@ -12,10 +12,10 @@ use super::lines::{delimiter, is_name, line_at, plain_text, remark_above};
 use super::{Faults, text::read_data};
 use crate::error::{Diagnostic, Error, Source};
 
-/// A field that is no number: its row and what is wrong.
+/// A field that is not a number: its row and the fault.
 type FieldFault = Option<(usize, NotANumber)>;
 
-/// A table as it stands in a file.
+/// A table of a file.
 #[derive(Debug)]
 pub struct Table {
     /// The file, for messages.
@@ -26,24 +26,24 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// The place of the line that names the columns.
     pub columns_place: Range<usize>,
-    /// The rows; each with its place. What is no number is NaN here, and told by [`Self::check_numbers`].
+    /// The rows, each with its place. A field that is not a number is NaN here, and is reported by [`Self::check_numbers`].
     pub rows: Vec<(Vec<f64>, Range<usize>)>,
-    /// What separates the columns.
+    /// The separator of the columns.
     delimiter: u8,
-    /// The first field of each column that is no number.
+    /// The first field of each column that is not a number.
     faults: Vec<FieldFault>,
-    /// The same without fields that say that there is no number: empty ones and NaN.
+    /// The same without fields that mark a missing number: empty ones and NaN.
     nonsense: Vec<FieldFault>,
 }
 
 impl Table {
-    /// What a table is, for those who gave something else.
+    /// The description of a table, for users who gave something else.
     pub const HINT: &str = "a table is CSV: a header line of names with units, and rows of numbers";
 
-    /// The lines by which names, units and rows are told apart.
+    /// The number of lines by which names, units and rows are distinguished.
     const SURVEYED: usize = 1000;
 
-    /// Reads a file in the encoding that its bytes show; `hint` says what it should be.
+    /// Reads a file in the encoding that its bytes show; `hint` describes what it should be.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
@@ -180,7 +180,7 @@ impl Table {
         decimals: &mut Decimals,
         faults: &Faults,
     ) {
-        // A separator behind the last field, as some programs write, is none of a further column.
+        // A separator behind the last field, as some programs write, does not begin another column.
         let known = self.columns.len();
         let beyond = record
             .iter()
@@ -221,7 +221,7 @@ impl Table {
         self.rows.push((row, place));
     }
 
-    /// The table with some of its rows, in their order, among them all whose fields are nonsense.
+    /// The table with some of its rows, in their order, including all whose fields are nonsense.
     pub fn with_rows(&self, kept: &[usize]) -> Self {
         let lacks = |i: usize| kept.iter().position(|row| self.rows[*row].0[i].is_nan());
         let first = |(i, fault): (usize, &FieldFault)| Some((lacks(i)?, fault.clone()?.1));
@@ -240,7 +240,7 @@ impl Table {
         }
     }
 
-    /// The first column of this name.
+    /// The first column with this name.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
@@ -248,7 +248,7 @@ impl Table {
     /// Checks that all fields of some columns are numbers.
     ///
     /// # Errors
-    /// The first field of each column that is none.
+    /// The first field of each column that is not one.
     pub fn check_numbers(
         &self,
         columns: impl IntoIterator<Item = usize>,
@@ -302,7 +302,7 @@ impl Table {
         Error::Input(vec![self.fault(place, message, hint)])
     }
 
-    /// The refusal of the file for what its names of columns say.
+    /// The refusal of the file because of its names of columns.
     pub fn refuse_columns(&self, message: impl Into<String>, hint: &str) -> Error {
         self.refuse(self.columns_place.clone(), message, hint)
     }

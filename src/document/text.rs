@@ -1,4 +1,4 @@
-//! Texts of files, whatever editor has saved them.
+//! Texts of files, from any editor.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use super::encoding::{TextEncoding, decode, is_utf16};
 use super::file;
 use crate::error::Error;
 
-/// The text of a file of data in any encoding, or in the `wanted` one; `hint` says what the file should be.
+/// The text of a file of data in any encoding, or in the `wanted` one; `hint` describes what the file should be.
 ///
 /// # Errors
-/// [`Error::Input`] when it cannot be read or is no text.
+/// [`Error::Input`] when it cannot be read or is not a text.
 pub fn read_data(
     path: &Path,
     wanted: Option<TextEncoding>,
@@ -34,7 +34,7 @@ fn bytes(path: &Path, most: u64, hint: &str) -> Result<Vec<u8>, Error> {
         .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))
 }
 
-/// The text of a file of so many bytes at most; `hint` says what it should be.
+/// The text of a file of so many bytes at most; `hint` describes what it should be.
 ///
 /// # Errors
 /// [`Error::Input`] when it cannot be read or is not UTF-8.

@@ -1,22 +1,22 @@
-//! How finely the numbers of a table are written.
+//! The precision with which the numbers of a table are written.
 
 use super::Table;
 use super::columns::unquoted;
 use super::lines::line_at;
 
-/// The digits of a number as it stands in a file.
+/// The digits of a number as written in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Those from the first one that is not zero to the last one, zeros at the end included; none of zero.
+    /// Number of digits from the first one that is not zero to the last one, including zeros at the end; 0 for zero.
     pub digits: i32,
-    /// Those behind the point or the comma, less the power of ten.
+    /// Number of digits behind the point or the comma, less the power of ten.
     pub decimals: i32,
 }
 
 impl Written {
-    /// The digits of a field; `None` where it is no number.
+    /// The digits of a field; `None` where it is not a number.
     pub fn of(field: &str) -> Option<Self> {
-        /// Beyond it numbers are nothing, or infinite.
+        /// Beyond this power numbers are zero, or infinite.
         const POWER: i32 = 400;
         let (mantissa, power) = field.split_once(['e', 'E']).unwrap_or((field, "0"));
         let power: i32 = power.parse().ok()?;
@@ -30,14 +30,14 @@ impl Written {
         })
     }
 
-    /// n of the first digit that is not zero, which stands for 10ⁿ.
+    /// n of the first digit that is not zero, whose place is 10ⁿ.
     pub fn exponent(self) -> i32 {
         self.digits - 1 - self.decimals
     }
 }
 
 impl Table {
-    /// How a column is written in each row, as the file has it; `None` where it is no number.
+    /// The precision of a column in each row, as written in the file; `None` where a field is not a number.
     pub fn written(&self, column: usize) -> Vec<Option<Written>> {
         let text = &self.source.text;
         let mut found = Vec::with_capacity(self.rows.len());

@@ -4,8 +4,8 @@
 //! u̇½ = u̇₀ + ½ h ü₀,   u₁ = u₀ + h u̇½,   M ü₁ = f₁ − ∂Π/∂u(u₁) − f_v(u₁, u̇₁),   u̇₁ = u̇½ + ½ h ü₁
 //! ```
 //!
-//! With viscous forces the last two are solved together for u̇₁, so that dashpots do not shorten the longest stable
-//! step 2/ω of the fastest undamped vibration ω.
+//! With viscous forces the last two equations are solved together for u̇₁, so that dashpots do not shorten the
+//! longest stable step 2/ω of the fastest undamped vibration ω.
 //!
 //! # References
 //! T. Belytschko, W. K. Liu, B. Moran, Nonlinear Finite Elements for Continua and Structures, Wiley (2000), § 6.2
@@ -20,10 +20,10 @@ use crate::solve::Assembly;
 use crate::solve::krylov::solve_by_diagonal;
 use crate::solve::vector::{gather, largest};
 
-/// Share of the longest stable step that is taken: at one half the energy of the fastest vibrations is right to a third.
+/// Share of the longest stable step that is taken: at one half the energy of the fastest vibrations is accurate to a third.
 const SHARE: f64 = 0.5;
 
-/// Steps after which the longest stable one is found anew.
+/// Steps after which the longest stable one is computed anew.
 const AGE: usize = 64;
 
 /// The method of central differences.

@@ -4,8 +4,7 @@ use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
 use crate::mass_spring::{DashpotLaw, MassSpring, SpringPose};
 use crate::solve::Inadmissible;
 
-/// Dashpots along the springs of a lattice. A spring whose stress relaxes remembers S∞ = P/λ and the stress Qᵢ of every
-/// branch of the Prony series.
+/// Dashpots along the springs of a lattice. A spring whose stress relaxes stores S∞ = P/λ and the stress Qᵢ of every branch of the Prony series.
 #[derive(Clone, Copy, Debug)]
 pub struct Dashpots<'a> {
     springs: &'a MassSpring,
@@ -29,7 +28,7 @@ impl<'a> Dashpots<'a> {
         }
     }
 
-    /// Second Piola–Kirchhoff stress of long times.
+    /// Second Piola–Kirchhoff stress at long times.
     fn long(pose: &SpringPose) -> f64 {
         pose.response.nominal_stress / pose.stretch
     }

@@ -20,11 +20,11 @@ pub struct Mode {
     pub shape: Vec<f64>,
 }
 
-/// The share of a body's mass that its principal vibration along an axis takes at least: a bar's takes 8/π².
+/// Least share of a body's mass in its principal vibration along an axis: a bar's has 8/π².
 const PRINCIPAL: f64 = 0.25;
 
-/// The mode that takes most of a motion of the whole body along an axis: (Σ mᵢ φᵢ)² over its unknowns is its effective
-/// mass. `None` where that is less than a quarter of the whole: bending takes nothing of a motion along a strip.
+/// The mode with the largest part in a motion of the whole body along an axis: (Σ mᵢ φᵢ)² over its unknowns is its effective
+/// mass. `None` where that is less than a quarter of the whole: bending has no part in a motion along a strip.
 pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
     let along = || (axis..mass.len()).step_by(2);
     let effective = |mode: &Mode| {
@@ -40,8 +40,8 @@ pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
         .map(|(_, mode)| mode)
 }
 
-/// The principal vibration along an axis about a displacement in mm, looked for among ever more of the slowest ones: of slender strips many
-/// of bending are slower. `None` where it is none of the first hundred.
+/// The principal vibration along an axis about a displacement in mm, sought among an increasing number of the slowest
+/// ones: in slender strips many bending vibrations are slower. `None` where it is not among the first hundred.
 ///
 /// # Errors
 /// As [`slowest`].
@@ -68,8 +68,8 @@ pub(super) fn fastest(pattern: &SymmetricPattern, stiffness: &[f64], mass: &[f64
     largest_eigenvalue(mass.len(), apply).sqrt()
 }
 
-/// The `count` slowest vibrations about a displacement in mm, ascending, by inverse iteration of a subspace: with
-/// ψ = M^½ φ they are the largest eigenvalues 1/ω² of M^½ K⁻¹ M^½, several equal ones included. None where nothing is free.
+/// The `count` slowest vibrations about a displacement in mm, ascending, by inverse iteration of a subspace: with ψ = M^½ φ they
+/// are the largest eigenvalues 1/ω² of M^½ K⁻¹ M^½, several equal ones included. Empty where nothing is free.
 ///
 /// # Errors
 /// [`SolveFault`] when the body is not stable there, or when the iteration stalls.

@@ -1,15 +1,15 @@
-//! A motion as it was computed: instants and where the energy is.
+//! A computed motion: its instants and energies.
 
 use crate::statistics::larger;
 
-/// Where the energy is, in mJ.
+/// The energies of a motion, in mJ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
     /// ½ u̇ᵀ M u̇.
     pub kinetic: f64,
     /// Π, the energy of the springs or of the elastic material.
     pub stored: f64,
-    /// Work done against the viscous forces since the start: what is dissipated, and what relaxing stresses keep for a while.
+    /// Work done against the viscous forces since the start: dissipated energy, and energy stored for a while by relaxing stresses.
     pub viscous_work: f64,
     /// Work of loads and supports since the start.
     pub external_work: f64,
@@ -21,7 +21,7 @@ impl EnergyBalance {
         self.kinetic + self.stored + self.viscous_work - self.external_work
     }
 
-    /// The largest of the energies, which their errors are measured by.
+    /// The largest of the energies, relative to which their errors are measured.
     pub fn largest(&self) -> f64 {
         let parts = [self.stored, self.viscous_work, self.external_work];
         parts
@@ -37,23 +37,22 @@ pub struct Instant {
     pub time: f64,
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,
-    /// In mm/s.
+    /// Velocity in mm/s.
     pub velocity: Vec<f64>,
-    /// In mm/s².
+    /// Acceleration in mm/s².
     pub acceleration: Vec<f64>,
-    /// Where the energy is.
+    /// The energies.
     pub energy: EnergyBalance,
-    /// The force of each support on the body in N along both axes, the inertia of its own nodes included; zero
-    /// after its release.
+    /// The force of each support on the body in N along both axes, including the inertia of its own nodes; zero after its release.
     pub support_forces: Vec<[f64; 2]>,
 }
 
-/// A motion as it was computed.
+/// A computed motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// The instants in order, the start first.
     pub instants: Vec<Instant>,
-    /// Steps that were taken, those between the instants included.
+    /// Steps that were taken, including those between the instants.
     pub steps: usize,
     /// Steps that were taken again with half the length.
     pub halved: usize,
@@ -83,7 +82,7 @@ impl History {
             .collect()
     }
 
-    /// How far the energy balance strays from its value at the start, relative to the largest energy of the motion.
+    /// The largest departure of the energy balance from its value at the start, relative to the largest energy of the motion.
     pub fn energy_error(&self) -> f64 {
         let Some(first) = self.instants.first() else {
             return 0.0;

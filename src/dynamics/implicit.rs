@@ -48,21 +48,20 @@ pub(super) struct Implicit {
     /// The step in s whose matrix is factorised.
     factorised: Option<f64>,
     factorisations: usize,
-    /// A hundredth of the slowest period, or of that with which supports or forces swing, in s.
+    /// A hundredth of the slowest period, or of the period of oscillating supports or forces, in s.
     longest: Option<f64>,
 }
 
-/// Iterations of a step.
+/// Most iterations of a step.
 const ITERATIONS: usize = 25;
 
-/// A factor is renewed when an iteration leaves more than this part of the residual: a new one costs as much as five
-/// iterations.
+/// A factor is renewed when the residual after an iteration exceeds this share of the one before: a new one costs as much as five iterations.
 const SLOW: f64 = 0.5;
 
 /// Relative residual at which an iteration that stagnates has converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-9;
 
-/// Steps in the slowest period, and in that of what drives it, where the step is chosen here: the period is right to 3e-4.
+/// Steps in the slowest period, and in that of oscillating supports or forces, where the step is chosen here: the period is accurate to 3e-4.
 const STEPS_IN_PERIOD: f64 = 100.0;
 
 impl Implicit {
@@ -77,7 +76,7 @@ impl Implicit {
         }
     }
 
-    /// Whether there is a factor for a step of this length, rounding of times apart.
+    /// Whether there is a factor for a step of this length, up to rounding of times.
     fn has_factor(&self, step: f64) -> bool {
         self.factorised
             .is_some_and(|own| (own / step - 1.0).abs() < 1e-6)
@@ -106,8 +105,8 @@ impl Implicit {
         Ok(())
     }
 
-    /// Writes u₁ and u̇₁ of the free unknowns that follow from ü₁, which is the unknown: it would lose its digits in
-    /// differences of displacements.
+    /// Writes u₁ and u̇₁ of the free unknowns that follow from ü₁, which is the unknown: from differences of
+    /// displacements it would lose its digits.
     fn follow(&self, before: &BodyState, after: &mut BodyState, step: f64) {
         let Constants { beta, gamma, .. } = self.constants;
         let (assembly, _) = self.system.as_ref().expect("prepared");
@@ -154,7 +153,7 @@ impl Implicit {
         (defect, relative)
     }
 
-    /// The state a step later by the tangent before it: the answer to the motion of the supports and to the imbalance.
+    /// The state a step later by the tangent before the step: the response to the motion of the supports and to the imbalance.
     fn predict(
         &mut self,
         motion: &Motion,
@@ -234,7 +233,7 @@ impl Implicit {
 }
 
 impl BodyState {
-    /// The largest force on an unknown in N, reactions and inertia included.
+    /// The largest force on an unknown in N, including reactions and inertia.
     fn largest_force(&self, motion: &Motion) -> f64 {
         let forces = &self.forces;
         let size = |i: usize| {
@@ -280,7 +279,7 @@ impl Stepper for Implicit {
     ) -> Result<BodyState, SolveFault> {
         let flying = before.moved(motion, step);
         match self.iterate(motion, before, flying, step) {
-            // Supports that move far, or nodes that fly far, turn cells inside out where the tangent's answer does not.
+            // Supports or nodes that move far turn cells inside out where the tangent's response does not.
             Err(SolveFault::Inverted { .. } | SolveFault::Explodes { .. }) => {
                 let predicted = self.predict(motion, before, step, held)?;
                 self.iterate(motion, before, predicted, step)

@@ -1,4 +1,4 @@
-//! Steps from instant to instant, halved where they explode.
+//! Steps from instant to instant, halved where they become unstable.
 
 use super::central::Central;
 use super::history::{EnergyBalance, History};
@@ -8,43 +8,42 @@ use super::state::BodyState;
 use super::stepper::Stepper;
 use crate::error::SolveFault;
 
-/// How a motion is integrated.
+/// The integrator of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// Velocity Verlet, which is the method of central differences; viscous forces are taken at the end of a step.
     VelocityVerlet,
     /// Generalised-α of Chung and Hulbert.
     GeneralisedAlpha {
-        /// ρ∞, the part of the fastest motions that a step leaves: 1 is Newmark's average acceleration, 0 damps them
-        /// at once.
+        /// ρ∞, the share of the fastest motions that remains after a step: 1 is Newmark's average acceleration, 0 damps them at once.
         spectral_radius: f64,
         /// Largest residual of a free unknown relative to the largest force.
         tolerance: f64,
     },
 }
 
-/// How long a step is.
+/// The length of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Half of the longest stable one for Verlet, found from the stiffness again and again; a hundredth of the slowest
-    /// period for generalised-α, or of a shorter one with which supports or forces swing.
+    /// Half of the longest stable step for Verlet, computed from the stiffness repeatedly; a hundredth of the slowest
+    /// period for generalised-α, or of a shorter period of oscillating supports or forces.
     Automatic,
     /// At most so many s.
     AtMost(f64),
 }
 
-/// What is computed, and how.
+/// The settings of a time integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeSettings {
     /// The end in s.
     pub duration: f64,
     /// The time between instants in s; the last instant is the end.
     pub interval: f64,
-    /// How long a step is.
+    /// The length of a step.
     pub step: Step,
-    /// How it is taken.
+    /// The integrator.
     pub integrator: Integrator,
-    /// How many steps may be taken.
+    /// The number of steps allowed.
     pub most_steps: f64,
 }
 
@@ -54,7 +53,7 @@ pub struct TimeSettings {
 pub struct MotionEnd {
     /// The last time in s that was reached.
     pub time: f64,
-    /// Why.
+    /// The fault.
     pub fault: SolveFault,
     /// The instants before it.
     pub history: History,
@@ -67,14 +66,13 @@ impl MotionEnd {
     }
 }
 
-/// Steps that are taken before the longest stable one is looked at again.
+/// Steps that are taken before the longest stable one is checked again.
 const RUN: usize = 64;
 
 /// Runs after which a step may grow, the first time.
 const PATIENCE: usize = 8;
 
-/// Share of the largest energy that a motion may gain from nowhere, or lose to nowhere, since it started or was last
-/// halved, before it counts as exploding.
+/// Share of the largest energy that a motion may gain or lose without work, since it started or was last halved, before it counts as unstable.
 const ASTRAY: f64 = 0.05;
 
 /// The shortest step, as a share of the first.
@@ -102,7 +100,7 @@ pub fn follow(
     }
 }
 
-/// A motion on its way.
+/// The state of a time integration.
 struct March<'a> {
     motion: &'a Motion<'a>,
     stepper: Box<dyn Stepper>,
@@ -147,13 +145,13 @@ fn stops(motion: &Motion, settings: TimeSettings) -> Vec<Stop> {
     stops
 }
 
-/// What a step's energies may tell.
+/// The reliability of a step's energies.
 #[derive(Clone, Copy)]
 enum Trust {
     /// All of them must balance.
     AllEnergies,
-    /// That of viscous forces, which die out faster than the step, may be too large: an exact motion gains nothing without it but what
-    /// relaxing stresses give back.
+    /// The work of viscous forces that decay faster than the step may be too large: without it, an exact motion gains
+    /// only the energy that relaxing stresses give back.
     ViscousWorkTooLarge,
 }
 
@@ -162,7 +160,7 @@ struct Pace {
     /// The longest that the settings allow.
     wanted: f64,
     automatic: bool,
-    /// The one in use.
+    /// The length in use.
     current: f64,
     /// Runs since it was last changed.
     runs: usize,
@@ -170,7 +168,7 @@ struct Pace {
     patience: usize,
     /// Whether it has grown since it was last halved.
     grown: bool,
-    /// The energies that gains are counted from.
+    /// The energies relative to which gains are counted.
     from: EnergyBalance,
 }
 
@@ -190,8 +188,8 @@ impl Pace {
         }
     }
 
-    /// The longest step now: not beyond a limit, and as halving has left it. A step that was halved, or that may be
-    /// twice as long, is doubled after some runs: equal steps keep the energy.
+    /// The longest step now: not beyond a limit, and no longer than halving has left it. A step that was halved, or
+    /// that may be twice as long, is doubled after some runs: equal steps conserve the energy.
     fn within(&mut self, limit: f64) -> f64 {
         if self.current > limit {
             self.current = limit;
@@ -263,7 +261,7 @@ impl<'a> March<'a> {
             let count = (rest / longest * (1.0 - 1e-9)).ceil().max(1.0);
             let step = rest / count;
             let run = (count as usize).min(RUN);
-            // After a jerk viscous forces may die out faster than any step.
+            // After a jerk viscous forces may decay faster than any step.
             let trust = match 0.5 * step < SHORTEST * self.pace.wanted.min(rest) {
                 true => Trust::ViscousWorkTooLarge,
                 false => Trust::AllEnergies,
@@ -289,7 +287,7 @@ impl<'a> March<'a> {
         Ok(at)
     }
 
-    /// The longest step now: as the settings say, as the integrator says, and as halving has left it.
+    /// The longest step now, according to the settings, the integrator and halving.
     fn longest(&mut self, at: &BodyState) -> Result<f64, SolveFault> {
         let limit = match self.pace.automatic {
             true => self
@@ -302,7 +300,7 @@ impl<'a> March<'a> {
         Ok(self.pace.within(limit))
     }
 
-    /// A fault where steps that are as long as they may be are too many to the end.
+    /// A fault where even the longest steps are too many to the end.
     fn afford(&self, time: f64, longest: f64) -> Result<(), SolveFault> {
         let rest = self.settings.duration - time;
         let needed = self.history.steps as f64 + rest / longest;
@@ -316,7 +314,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// The energy in mJ that steps have made of nothing, or lost where they must not.
+    /// The energy in mJ that steps have gained without work, or lost where they must not.
     fn astray(&self, energy: &EnergyBalance, trust: Trust) -> f64 {
         let gain = energy.total() - self.pace.from.total();
         let viscous_work = energy.viscous_work - self.pace.from.viscous_work;
@@ -330,7 +328,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// A run of equal steps; a fault where the energy goes astray.
+    /// A run of equal steps; a fault where the energy balance is violated.
     fn take(
         &mut self,
         start: &BodyState,

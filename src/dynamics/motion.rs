@@ -1,11 +1,11 @@
-//! What moves: energy, mass, viscous forces, supports, loads and the start.
+//! A moving body: energy, mass, viscous forces, supports, loads and the start.
 
 use super::time_function::TimeFunction;
 use super::viscosity::Viscosity;
 use crate::solve::Potential;
 use crate::solve::vector::add_scaled;
 
-/// A body and everything that moves it.
+/// A body with its supports, loads and start.
 pub struct Motion<'a> {
     /// Its strain energy; elements and unknowns are those of this.
     pub energy: &'a dyn Potential,
@@ -13,11 +13,11 @@ pub struct Motion<'a> {
     pub viscosity: Option<&'a dyn Viscosity>,
     /// The mass of each unknown in tonne.
     pub mass: Vec<f64>,
-    /// What moves held unknowns; an unknown must have one support at most.
+    /// The supports that move held unknowns; an unknown must have one support at most.
     pub supports: Vec<MovingSupport>,
-    /// What pushes.
+    /// The loads.
     pub forces: Vec<MovingForce>,
-    /// Where it starts.
+    /// The start.
     pub start: Start,
     /// Names an element of the energy with its place, for messages.
     pub describe: Box<dyn Fn(usize) -> String + Sync + 'a>,
@@ -30,30 +30,29 @@ pub struct MovingSupport {
     pub unknowns: Vec<usize>,
     /// The displacement of each in mm at the time function's 1.
     pub displacement: Vec<f64>,
-    /// How much of it is imposed.
+    /// The share of it that is imposed, as a function of time.
     pub time: TimeFunction,
-    /// The time in s at which it lets go; `None` where it never does.
+    /// The time in s at which the support is released; `None` where it never is.
     pub until: Option<f64>,
 }
 
-/// Dead forces that change in time, gravity among them.
+/// Dead forces that change in time, including gravity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingForce {
     /// The force on each unknown in N at the time function's 1.
     pub force: Vec<f64>,
-    /// How much of it acts.
+    /// The share of it that acts, as a function of time.
     pub time: TimeFunction,
 }
 
 /// A body's state at time 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// In mm; held unknowns are imposed.
+    /// Displacement in mm; held unknowns are imposed.
     pub displacement: Vec<f64>,
-    /// In mm/s; held unknowns are imposed.
+    /// Velocity in mm/s; held unknowns are imposed.
     pub velocity: Vec<f64>,
-    /// Whether it has rested there so long that its viscous stresses have relaxed; otherwise it was brought there at
-    /// once from rest.
+    /// Whether the body has rested there so long that its viscous stresses have relaxed; otherwise it was brought there at once from rest.
     pub relaxed: bool,
 }
 
@@ -63,7 +62,7 @@ impl Start {
         Self::held_at(vec![0.0; unknowns])
     }
 
-    /// A body that has been held for long.
+    /// A body that has been held at a displacement for long.
     pub fn held_at(displacement: Vec<f64>) -> Self {
         Self {
             velocity: vec![0.0; displacement.len()],
@@ -84,7 +83,7 @@ impl MovingSupport {
         }
     }
 
-    /// Whether it holds in the time after `time`.
+    /// Whether it still holds in the time after `time`.
     pub fn holds(&self, time: f64) -> bool {
         self.until.is_none_or(|until| time < until)
     }
@@ -101,7 +100,7 @@ impl Motion<'_> {
         held
     }
 
-    /// The shortest period in s with which supports or forces swing; `None` where none does.
+    /// The shortest period in s of oscillating supports or forces; `None` where none oscillates.
     pub fn shortest_period(&self) -> Option<f64> {
         let supports = self.supports.iter().map(|support| &support.time);
         let forces = self.forces.iter().map(|force| &force.time);
@@ -132,7 +131,7 @@ impl Motion<'_> {
         sum
     }
 
-    /// The times up to `duration` in s at which something lets go, or at which the rate of a support or load jumps.
+    /// The times up to `duration` in s at which a support is released, or at which the rate of a support or load jumps.
     pub(super) fn marks(&self, duration: f64) -> Vec<f64> {
         let supports = self.supports.iter();
         let mut marks: Vec<f64> = supports

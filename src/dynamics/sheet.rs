@@ -8,15 +8,14 @@ use crate::material::viscosity::{
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy, add_stiffness};
 use crate::solve::Inadmissible;
 
-/// The viscous part of a material at the sampling points of an energy. A point remembers S∞ and the stress Qᵢ of every
-/// branch of the Prony series.
+/// The viscous part of a material at the sampling points of an energy. A point stores S∞ and the stress Qᵢ of every branch of the Prony series.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetViscosity<'a> {
     energy: &'a SheetEnergy,
     material: &'a ViscousMaterial,
 }
 
-/// The viscous stress at a point, and its derivatives by F and Ḟ.
+/// The viscous stress at a point, and its derivatives with respect to F and Ḟ.
 struct PointStress {
     stress: PlaneTensor,
     tangents: Option<[nalgebra::Matrix4<f64>; 2]>,
@@ -28,7 +27,7 @@ impl<'a> SheetViscosity<'a> {
         Self { energy, material }
     }
 
-    /// Numbers that a point remembers: S∞ and Qᵢ, three components each.
+    /// Number of values that a point stores: S∞ and Qᵢ, three components each.
     fn of_point(&self) -> usize {
         match self.material.relaxation.len() {
             0 => 0,

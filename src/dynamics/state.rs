@@ -1,4 +1,4 @@
-//! A moving body at one time: its forces, its energies, and what its next step needs.
+//! A moving body at one time: its forces, its energies, and the data for its next step.
 
 use super::history::{EnergyBalance, Instant};
 use super::motion::{Motion, MovingSupport};
@@ -18,7 +18,7 @@ pub(super) struct Forces {
     pub external: Vec<f64>,
 }
 
-/// A moving body at one time, with what its next step needs.
+/// A moving body at one time, with the data for its next step.
 #[derive(Clone, Debug)]
 pub(super) struct BodyState {
     pub time: f64,
@@ -64,21 +64,21 @@ impl Motion<'_> {
             energy: EnergyBalance::default(),
         };
         self.evaluate(&mut state, 0.0)?;
-        // The elements have taken the step to the start at once; from now on they remember it.
+        // The elements take the step to the start at once; from now on they remember it.
         state.memory = self.memory_after(&state.memory, &state, 0.0)?;
         self.accelerate(&mut state, &self.held(0.0))?;
         state.energy.kinetic = self.kinetic(&state.velocity);
         Ok(state)
     }
 
-    /// An element's fault with its name.
+    /// The fault of an inverted element, with its name.
     pub(super) fn inverted(&self, fault: Inadmissible) -> SolveFault {
         SolveFault::Inverted {
             element: (self.describe)(fault.element),
         }
     }
 
-    /// What the elements remember after a step of a length in s that ends at a state.
+    /// The memory of the elements after a step of a length in s that ends at a state.
     pub(super) fn memory_after(
         &self,
         before: &Memory,
@@ -112,7 +112,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Takes the forces and the stored energy of a state that lies `elapsed` after the memory's.
+    /// Computes the forces and the stored energy of a state that lies `elapsed` after the memory's.
     pub(super) fn evaluate(&self, at: &mut BodyState, elapsed: f64) -> Result<(), SolveFault> {
         let stored = Assembly::residual(self.energy, &at.displacement, &mut at.forces.elastic);
         at.energy.stored = stored.map_err(|fault| self.inverted(fault))?;
@@ -120,7 +120,7 @@ impl Motion<'_> {
         self.evaluate_viscous(at, elapsed)
     }
 
-    /// Takes the viscous forces alone.
+    /// Computes the viscous forces alone.
     pub(super) fn evaluate_viscous(
         &self,
         at: &mut BodyState,
@@ -259,9 +259,9 @@ impl Motion<'_> {
         }
     }
 
-    /// Brings the energy balance from the state `before` a step to the one after it, by the trapezoidal rule: of powers for the viscous
-    /// forces, which take energy at every instant, of forces over their ways for the others. The work that moves the mass of held unknowns is
-    /// the change of its kinetic energy.
+    /// Updates the energy balance from the state `before` a step to the one after it, by the trapezoidal rule: powers
+    /// are integrated for the viscous forces, which take energy at every instant, and forces over their displacements
+    /// for the others. The work that moves the mass of held unknowns is the change of its kinetic energy.
     pub(super) fn account(
         &self,
         before: &BodyState,
@@ -291,8 +291,7 @@ impl Motion<'_> {
         energy.kinetic = self.kinetic(&after.velocity);
     }
 
-    /// Gives held unknowns the velocities with which an interval begins: at a kink the supports' work makes them
-    /// jump.
+    /// Gives held unknowns the velocities with which an interval begins: at a kink the work of the supports makes them jump.
     pub(super) fn enter(&self, at: &mut BodyState) {
         let before = self.kinetic(&at.velocity);
         at.impose(self, at.time, at.time);
@@ -302,7 +301,7 @@ impl Motion<'_> {
 }
 
 impl BodyState {
-    /// Moves the held unknowns as [`Motion::impose`] says.
+    /// Moves the held unknowns according to [`Motion::impose`].
     pub fn impose(&mut self, motion: &Motion, time: f64, within: f64) {
         let Self {
             displacement,
@@ -313,7 +312,7 @@ impl BodyState {
         motion.impose(time, within, [displacement, velocity, acceleration]);
     }
 
-    /// The state a step later as far as supports say; everything else is as before.
+    /// The state a step later as far as supports determine it; everything else is as before.
     pub fn moved(&self, motion: &Motion, step: f64) -> Self {
         let mut next = self.clone();
         next.time = self.time + step;

@@ -10,17 +10,17 @@ pub struct StepForces<'a> {
     pub energy: &'a dyn Potential,
     /// f_v.
     pub viscosity: Option<&'a dyn Viscosity>,
-    /// In mm/s, on all unknowns.
+    /// Velocity in mm/s, on all unknowns.
     pub velocity: &'a [f64],
-    /// What the elements remember from the end of the step before.
+    /// The memory of the elements at the end of the step before.
     pub memory: &'a Memory,
     /// Time since then in s.
     pub elapsed: f64,
-    /// Whether ∂Π/∂u counts.
+    /// Whether ∂Π/∂u is included.
     pub elastic: bool,
-    /// How much of ∂f_v/∂u the tangent holds.
+    /// The share of ∂f_v/∂u in the tangent.
     pub by_displacement: f64,
-    /// How much of ∂f_v/∂u̇ the tangent holds, in 1/s.
+    /// The factor of ∂f_v/∂u̇ in the tangent, in 1/s.
     pub by_velocity: f64,
 }
 

@@ -4,9 +4,9 @@ use super::motion::Motion;
 use super::state::BodyState;
 use crate::error::SolveFault;
 
-/// One way to take a step.
+/// A method to take a step.
 pub(super) trait Stepper {
-    /// Makes ready for the supports that hold after a time.
+    /// Prepares for the supports that hold after a time.
     fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault>;
 
     /// The longest step in s that is safe at a state; `None` where any is.
@@ -21,7 +21,7 @@ pub(super) trait Stepper {
         held: &[bool],
     ) -> Result<BodyState, SolveFault>;
 
-    /// Whether an exact step would not change the sum of the energies; otherwise it may lose some.
+    /// Whether an exact step would conserve the sum of the energies; otherwise it may lose some.
     fn conserves(&self) -> bool;
 
     /// Factorisations so far.

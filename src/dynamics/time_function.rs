@@ -1,17 +1,17 @@
-//! How supports and loads change in time.
+//! The time functions of supports and loads.
 
 use std::f64::consts::TAU;
 
-/// A factor without a dimension as a function of time.
+/// A dimensionless factor as a function of time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimeFunction {
-    /// Always the same.
+    /// A constant.
     Constant(f64),
-    /// From 0 at `begin` to 1 at `end`, straight; both in s.
+    /// Linear from 0 at `begin` to 1 at `end`; both in s.
     Ramp {
-        /// Where it begins to rise.
+        /// The time at which it begins to rise.
         begin: f64,
-        /// Where it is complete.
+        /// The time at which it is complete.
         end: f64,
     },
     /// m + a sin(2π f t).
@@ -23,13 +23,13 @@ pub enum TimeFunction {
         /// f in Hz.
         frequency: f64,
     },
-    /// Straight between points of ascending times in s, constant beyond them.
+    /// Linear between points of ascending times in s, constant beyond them.
     Table(Vec<[f64; 2]>),
 }
 
 impl TimeFunction {
-    /// Value, rate in 1/s and second derivative in 1/s² at a time in s, as of the piece that begins at or before the time
-    /// `within`: where the rate jumps, a time before says that the end of the piece before is meant.
+    /// Value, rate in 1/s and second derivative in 1/s² at a time in s, on the piece that begins at or before the
+    /// time `within`: where the rate jumps, an earlier `within` selects the end of the piece before.
     pub fn at(&self, time: f64, within: f64) -> [f64; 3] {
         match self {
             Self::Constant(value) => [*value, 0.0, 0.0],
@@ -56,7 +56,7 @@ impl TimeFunction {
         self.at(time, time)[0]
     }
 
-    /// The period in s; `None` of what does not swing.
+    /// The period in s; `None` for a function that does not oscillate.
     pub fn period(&self) -> Option<f64> {
         match self {
             Self::Sine { frequency, .. } => Some(1.0 / frequency),

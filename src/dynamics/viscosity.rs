@@ -3,14 +3,14 @@
 use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible};
 
-/// The motion of an element: its own unknowns, their velocities, and what it remembers.
+/// The motion of an element: its own unknowns, their velocities, and its memory.
 #[derive(Clone, Copy, Debug)]
 pub struct ElementMotion<'a> {
-    /// In mm.
+    /// Displacement in mm.
     pub displacement: &'a [f64],
-    /// In mm/s.
+    /// Velocity in mm/s.
     pub velocity: &'a [f64],
-    /// What the element knew at the end of the step before.
+    /// The memory of the element at the end of the step before.
     pub memory: &'a [f64],
     /// Time since then in s.
     pub elapsed: f64,
@@ -28,7 +28,7 @@ pub struct ViscousLocal<'a> {
 
 /// Viscous forces f_v(u, u̇, past) of the elements of a potential.
 pub trait Viscosity: Sync {
-    /// How many numbers an element remembers.
+    /// The number of values that an element stores.
     fn memory(&self, _element: usize) -> usize {
         0
     }
@@ -44,7 +44,7 @@ pub trait Viscosity: Sync {
         local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible>;
 
-    /// What an element remembers at the end of a step.
+    /// The memory of an element at the end of a step.
     ///
     /// # Errors
     /// [`Inadmissible`] when the element is inverted.
@@ -57,7 +57,7 @@ pub trait Viscosity: Sync {
         Ok(())
     }
 
-    /// What an element remembers after a long rest at its displacement.
+    /// The memory of an element after a long rest at its displacement.
     ///
     /// # Errors
     /// [`Inadmissible`] when the element is inverted.
@@ -76,7 +76,7 @@ pub trait Viscosity: Sync {
     }
 }
 
-/// The memories of all elements, one after the other; none where nothing is remembered.
+/// The memories of all elements, one after the other; empty where elements have none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
     starts: Vec<usize>,

@@ -1,10 +1,10 @@
 //! The discretisation error of a result from three meshes.
 
-/// The highest order that is believed: that of a force by biquadratic elements on a smooth solution. A higher one is an
-/// accident of three values, such as a change of sign of the error.
+/// The highest order that is trusted: that of a force by biquadratic elements on a smooth solution. A higher one is
+/// an accident of the three values, such as a change of sign of the error.
 const HIGHEST_ORDER: f64 = 4.0;
 
-/// The lowest order that is extrapolated with: below, the extrapolation goes farther than the three values do.
+/// The lowest order used for extrapolation: below it, the extrapolation goes farther than the three values do.
 pub const LOWEST_ORDER: f64 = 0.5;
 
 /// Richardson's extrapolation of a quantity computed with cells of size 4h, 2h and h.
@@ -20,10 +20,10 @@ pub const LOWEST_ORDER: f64 = 0.5;
 pub struct Richardson {
     /// Observed order p; `None` where the three values do not converge monotonically.
     pub order: Option<f64>,
-    /// Extrapolated value f*; that of the finest mesh where there is no order or one below ½.
+    /// Extrapolated value f*; the value of the finest mesh where there is no order or one below ½.
     pub extrapolated: f64,
-    /// The error of fₕ over |f*| in percent: |fₕ − f*| where the order is believed; see [`of_distances`] where there is none,
-    /// or one below ½ or above 4.
+    /// The error of fₕ over |f*| in percent: |fₕ − f*| where the order is trusted; see [`of_distances`] where there
+    /// is none, or one below ½ or above 4.
     pub error_percent: f64,
 }
 
@@ -51,7 +51,7 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
 /// sin αω + α sin ω = 0,   ½ ≤ α < 1            ½ at a crack, 0.5445 where ω = 270°
 /// ```
 ///
-/// Whatever the elements, no error of a force or displacement falls by a higher order than 2α there on cells of equal size.
+/// Whatever the elements, the error of a force or displacement falls there at most with the order 2α on cells of equal size.
 ///
 /// # References
 /// M. L. Williams, J. Appl. Mech. 19, 526 (1952)
@@ -67,7 +67,7 @@ pub fn corner_exponent(angle: f64) -> f64 {
     low
 }
 
-/// An error from the distance |f₂ₕ − fₕ| where no order above `most` is possible, `error` at least.
+/// An error from the distance |f₂ₕ − fₕ| where no order above `most` is possible; at least `error`.
 pub fn at_most_of_order(error: f64, last: f64, most: f64) -> f64 {
     error.max(last / (most.exp2() - 1.0))
 }

@@ -1,4 +1,4 @@
-//! The error of a finite-element solution from that solution alone: how far its gradient is from a recovered one.
+//! The error of a finite-element solution, estimated from that solution alone: the distance of its gradient from a recovered one.
 //!
 //! ```text
 //! ‖v‖² = t ∫ ∇v : 𝔸⁺(∇u_h) : ∇v dA                                                          [mJ]
@@ -20,16 +20,16 @@
 //! R_h − R ≈ t ∫ E : 𝔸 : Z dA + t ∫ (P(∇u_h + E) − P(∇u_h) − 𝔸 : E) : ∇z_h dA                      [N]
 //! ```
 //!
-//! The second integral, ½ ∫ 𝔸'EE : ∇z, is of the order of the first. It counts once as what 𝔸 : E does not see of P, −½, and
-//! once for Z: the recovered gradient is that of the smooth tangent 𝔸(∇u), for which ∫ E : 𝔸(∇u) : ∇z = 0, and 𝔸 at
-//! ∇u_h differs from it by −𝔸'E: +1.
+//! The second integral, ½ ∫ 𝔸'EE : ∇z, is of the order of the first. Its factor is the sum of −½, for the part of P
+//! that 𝔸 : E leaves out, and +1, for Z: the recovered gradient is that of the smooth tangent 𝔸(∇u), for which ∫ E :
+//! 𝔸(∇u) : ∇z = 0, and 𝔸 at ∇u_h differs from it by −𝔸'E.
 //!
-//! **Errors.** Exact in the limit on smooth solutions, as the recovered gradient is of higher order: estimated over true
-//! error of field and force is within 0.8 and 1.25 in `validation/cases/own_error.toml`, but for the force of T2, whose two
-//! integrals nearly cancel there. Beside a singular corner the recovered gradient is no better than the solution's own: on
-//! the clamped plate with equal cells the estimate of the field was 0.8 (Q1) and 1.3 (Q2) of the true error, that of the
-//! force 0.7 … 0.8 (Q1) and 1.8 … 2.0 (Q2); with graded cells both tended to 1, on the finest meshes 1.01 and 1.09 (field),
-//! 1.03 and 1.09 (force). Errors of the outline and of the quadrature are not seen.
+//! **Errors.** Exact in the limit on smooth solutions, because the recovered gradient is of higher order: the ratio of estimated
+//! to true error of field and force is within 0.8 and 1.25 in `validation/cases/own_error.toml`, except for the force of T2,
+//! whose two integrals nearly cancel there. Beside a singular corner the recovered gradient is no better than the solution's own:
+//! on the clamped plate with equal cells the estimate of the field was 0.8 (Q1) and 1.3 (Q2) of the true error, that of the force
+//! 0.7 … 0.8 (Q1) and 1.8 … 2.0 (Q2); with graded cells both tended to 1, on the finest meshes 1.01 and 1.09 (field), 1.03 and
+//! 1.09 (force). Errors of the outline and of the quadrature are not included.
 //!
 //! # References
 //! - O. C. Zienkiewicz, J. Z. Zhu, Int. J. Numer. Methods Eng. 33, 1331 (1992), doi:10.1002/nme.1620330702
@@ -57,7 +57,7 @@ pub struct SheetSolution<'a> {
     pub displacement: &'a [f64],
 }
 
-/// The estimated errors of some fields on one mesh, each with the influence field of its force; where that was not found, why.
+/// The estimated errors of some fields on one mesh, each with the influence field of its force, or with the fault where that was not found.
 pub fn side_by_side(
     solutions: Vec<SheetSolution>,
     recovery: &Recovery,
@@ -75,16 +75,16 @@ pub struct EnergyError {
     pub cells: Vec<f64>,
     /// ‖u_h‖² in mJ.
     pub norm_squared: f64,
-    /// Whether the field has a stress and a tangent at all points of the rule; cells lack the others.
+    /// Whether the field has a stress and a tangent at all points of the rule; the sums over cells lack the other points.
     pub is_complete: bool,
 }
 
 /// The estimated error of a solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorEstimate {
-    /// In the energy norm.
+    /// The error in the energy norm.
     pub energy: EnergyError,
-    /// Of the force, R_h − R, in N.
+    /// The error of the force, R_h − R, in N.
     pub force: f64,
 }
 
@@ -97,7 +97,7 @@ impl EnergyError {
         }
     }
 
-    /// Adds the share of a point with the error of its gradient.
+    /// Adds the contribution of a point with the error of its gradient.
     fn add(&mut self, point: &Point, error: &PlaneTensor) {
         let eigen = point.tangent.symmetric_eigen();
         let size = |v: &PlaneTensor| {
@@ -114,7 +114,7 @@ impl EnergyError {
         self.cells.iter().sum()
     }
 
-    /// 100 η/‖u_h‖ in %; not a number where points are lacking.
+    /// 100 η/‖u_h‖ in %; NaN where points are lacking.
     pub fn percent(&self) -> f64 {
         match self.is_complete {
             true => 100.0 * (self.squared() / self.norm_squared).sqrt(),
@@ -129,7 +129,7 @@ impl EnergyError {
     }
 }
 
-/// Marks the fewest cells that together hold a share of the sum of all cells' squared errors.
+/// Marks the fewest cells that together have a share of the sum of all cells' squared errors.
 ///
 /// # References
 /// W. Dörfler, SIAM J. Numer. Anal. 33, 1106 (1996), doi:10.1137/0733054
@@ -149,7 +149,7 @@ pub fn bulk(squared_errors: &[f64], share: f64) -> Vec<bool> {
     marked
 }
 
-/// What the integrals need at one point.
+/// The values at one point that the integrals need.
 struct Point {
     cell: usize,
     local: [f64; 2],
@@ -206,8 +206,8 @@ impl SheetSolution<'_> {
         Some(self.law.stress(&kinematics).1)
     }
 
-    /// Calls with every point of a rule that resolves errors where the field has a tangent; whether it has one at all of them: a cell that is
-    /// admissible at the points of its own rule may be folded between them, or beyond the limit of its law.
+    /// Calls `call` at every point of a rule that resolves errors where the field has a tangent; returns whether it has one at all of them.
+    /// A cell that is admissible at the points of its own rule may be folded between them, or beyond the limit of its law.
     fn each_point(&self, mut call: impl FnMut(&Point)) -> bool {
         let mut all = true;
         for cell in 0..self.mesh.cell_count() {

@@ -1,16 +1,16 @@
-//! Plates that are the same on both sides of both middle lines, solved by a quarter of their finite elements.
+//! Plates that are symmetric about both middle lines, solved by a quarter of their finite elements.
 //!
-//! Where a plate is stretched, its material is isotropic and its cells are symmetric, so is the field: with the length L, the
-//! width W and the stretch s
+//! Where a plate is stretched, its material is isotropic and its cells are symmetric, the field is symmetric too:
+//! with the length L, the width W and the stretch s
 //!
 //! ```text
 //! ux(L − X, Y) = s L − ux(X, Y)     uy(L − X, Y) = uy(X, Y)         [mm]
 //! ux(X, W − Y) = ux(X, Y)           uy(X, W − Y) = −uy(X, Y)
 //! ```
 //!
-//! and the quarter at the origin, of which ux = s L/2 at X = L/2 and uy = 0 at Y = W/2, tells the whole. Fields that are found so
-//! are not believed: Newton's method on the whole mesh begins with them, ends where they are in balance, and finds whether they are stable. Plates
-//! that are pressed may leave their symmetry, and take the path of the whole.
+//! and the quarter at the origin, with ux = s L/2 at X = L/2 and uy = 0 at Y = W/2, determines the whole. Fields found in this
+//! way are a first guess: Newton's method on the whole mesh begins with them, ends where they are in balance, and checks whether
+//! they are stable. Compressed plates may lose their symmetry, and take the path of the whole.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::solve::{Attendance, LinearSolver, NewtonSettings, State};
 /// The middle lines as groups of the quarter.
 const MIDDLES: [&str; 2] = ["half length", "half width"];
 
-/// A field is symmetric up to so much of its largest displacement.
+/// Largest departure of a symmetric field from symmetry, relative to its largest displacement.
 const SYMMETRIC: f64 = 1e-8;
 
 /// The quarter at the origin of a plate's finite elements.
@@ -33,14 +33,14 @@ pub struct Quarter {
     mesh: Mesh,
     energy: SheetEnergy,
     linear_solver: LinearSolver,
-    /// Of each node of the whole mesh the one of the quarter that it is or mirrors, and along which axes.
+    /// For each node of the whole mesh: the node of the quarter that it is or mirrors, and the axes along which it mirrors it.
     images: Vec<(usize, [bool; 2])>,
     /// Length of the whole plate in mm.
     length: f64,
 }
 
 impl Quarter {
-    /// That of some elements of a plate; `None` where the plate need not stay symmetric, or remembers its loads, or has no cells that are.
+    /// The quarter of a plate's elements; `None` where the plate need not stay symmetric, remembers its loads, or has cells that are not symmetric.
     pub fn of(plate: &ClampedPlate, elements: &FiniteElements) -> Option<Self> {
         let (law, whole) = (&plate.law, &elements.mesh);
         let cells = whole.grid().cells;
@@ -86,8 +86,8 @@ impl Quarter {
         model.solved_by(self.linear_solver)
     }
 
-    /// The states of the whole plate at stretches, beginning with those of coarser elements where there are any; `None` where one
-    /// was not found so, or is not stable.
+    /// The states of the whole plate at stretches, beginning with those of coarser elements where there are any;
+    /// `None` where one was not found in this way, or is not stable.
     pub fn states(
         &self,
         whole: &Model,
@@ -123,8 +123,7 @@ impl Quarter {
         Some(states)
     }
 
-    /// The fields of the whole plate in mm/mm that a motion of the right grip along X brings about at states; `None` where one of
-    /// these is not symmetric.
+    /// The fields of the whole plate in mm/mm caused by a motion of the right grip along X at states; `None` where one of these is not symmetric.
     pub fn influences(&self, states: &[State]) -> Option<Vec<Result<Vec<f64>, SolveFault>>> {
         let own: Option<Vec<State>> = states.iter().map(|state| self.folded(state)).collect();
         let found = self.model().influences(&own?, MIDDLES[0], 0).into_iter();

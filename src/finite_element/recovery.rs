@@ -8,8 +8,8 @@
 //! G*(X) = Σ N_c(X) ∇p_c(X),   p_c = arg min Σ w_a² |p(X_a) − u_a|² over the nodes a around corner c   [–]
 //! ```
 //!
-//! The nodes are those of the cells around the corner with w = 1, and with w = 0.1 those of the cells around these for
-//! corners of the boundary and wherever the first ones do not determine the polynomial.
+//! The nodes are those of the cells around the corner, with w = 1. For corners of the boundary, and wherever these
+//! nodes do not determine the polynomial, the nodes of the cells around those cells are added with w = 0.1.
 //!
 //! # References
 //! - Z. Zhang, A. Naga, SIAM J. Sci. Comput. 26, 1192 (2005), doi:10.1137/S1064827503402837
@@ -39,7 +39,7 @@ struct Polynomial {
     coefficients: Vec<[f64; 2]>,
 }
 
-/// Layers of cells around a corner that are looked for nodes.
+/// Layers of cells around a corner that are searched for nodes.
 const MOST_LAYERS: usize = 4;
 
 /// Smallest pivot over the largest one at which nodes determine a polynomial.
@@ -49,7 +49,7 @@ const DETERMINED: f64 = 1e-4;
 /// make a one-sided fit as wide as its patch.
 const FAR: f64 = 0.1;
 
-/// The recovery on one mesh: what the least squares make of any field.
+/// The recovery on one mesh: the least-squares fit to any field.
 #[derive(Clone, Debug)]
 pub struct Recovery {
     /// One at each corner of a cell.
@@ -81,7 +81,7 @@ impl Recovery {
         }
     }
 
-    /// The gradient of a field, which holds ux, uy of node after node.
+    /// The gradient of a field given as ux, uy of node after node.
     pub fn gradient(&self, displacement: &[f64]) -> RecoveredGradient {
         let fits = self.fits.iter();
         let polynomial = |fit: &Option<Fit>| fit.as_ref().map(|fit| fit.polynomial(displacement));
@@ -164,7 +164,7 @@ fn monomials(degree: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..=degree).flat_map(move |sum| (0..=sum).map(move |j| [sum - j, j]))
 }
 
-/// Which nodes are around each corner.
+/// The nodes around each corner.
 struct Patches<'a> {
     mesh: &'a Mesh,
     degree: usize,
@@ -208,7 +208,7 @@ impl<'a> Patches<'a> {
             }
             self.grow(&mut cells);
         }
-        // A mesh of very few cells: what they determine.
+        // On a mesh of very few cells: the highest degree that they determine.
         let lower = (1..=self.degree).rev();
         let mut found = lower.filter_map(|degree| self.fit_on(corner, &cells, degree));
         found.next().unwrap_or_else(|| Fit {
@@ -270,7 +270,7 @@ impl<'a> Patches<'a> {
     }
 }
 
-/// A⁺ diag(w), which makes arg min |A x − diag(w) b| of b; `None` where A is nearly deficient.
+/// A⁺ diag(w), which maps b to arg min |A x − diag(w) b|; `None` where A is nearly deficient.
 fn least_squares(matrix: DMatrix<f64>, weights: &DVector<f64>) -> Option<DMatrix<f64>> {
     let decomposition = matrix.qr();
     let (mut values, upper) = (decomposition.q().transpose(), decomposition.unpack_r());

@@ -1,8 +1,8 @@
-//! How well a function is known.
+//! The uncertainty of an identified function.
 //!
-//! With the penalty taken as what is known of the function beforehand, its coefficients have the covariance
-//! s² (A + P)⁻¹, which counts the bias of the penalty too. Intervals hold at one place; the band holds at all places
-//! of both functions together: its half width is c standard errors with
+//! With the penalty taken as prior knowledge of the function, its coefficients have the covariance s² (A + P)⁻¹,
+//! which includes the bias of the penalty. Intervals are valid at one place; the band is valid at all places of both
+//! functions together: its half width is c standard errors with
 //!
 //! ```text
 //! Σ [κ/π (1 + c²/ν)^(−ν/2) + P(|t_ν| > c)] = 5 %        κ = ∫ ‖d(l/‖l‖)/dx‖ dx,  l lᵀ = b(x)ᵀ Cov b(x)
@@ -58,7 +58,7 @@ impl Function {
         self.estimate(value, self.product(x, x).max(0.0).sqrt())
     }
 
-    /// The 95 % band at `x`, which holds at all places of both functions together.
+    /// The 95 % band at `x`, which is valid at all places of both functions together.
     pub fn band(&self, x: f64) -> [f64; 2] {
         let Estimate {
             value,

@@ -19,7 +19,7 @@ impl Form {
     /// Highest degree of a polynomial, and fewest and most parts of a spline.
     const LIMITS: [usize; 3] = [6, 4, 60];
 
-    /// Parts of a spline where none are said: more only cost time, since the penalty keeps it smooth.
+    /// Parts of a spline where none are stated: more only cost time, because the penalty keeps it smooth.
     pub const SPLINE: Self = Self::Spline(12);
 
     /// Reads `constant`, `polynomial-N`, `spline` or `spline-N`.
@@ -39,7 +39,7 @@ impl Form {
     }
 }
 
-/// A text that names no [`Form`].
+/// A text that is not the name of a [`Form`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "it must be constant, polynomial-1 to polynomial-{}, spline, or spline-{} to spline-{}",
@@ -47,10 +47,10 @@ impl Form {
 )]
 pub struct UnknownForm;
 
-/// What is known of a spline's shape beforehand.
+/// Prior knowledge of a spline's shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shape {
-    /// Nothing.
+    /// No prior knowledge.
     #[default]
     Free,
     /// It nowhere falls.
@@ -64,7 +64,7 @@ pub enum Shape {
 pub struct Basis {
     /// The form.
     pub form: Form,
-    /// What is known of the shape.
+    /// Prior knowledge of the shape.
     pub shape: Shape,
     /// The range of the argument that the data cover.
     pub range: [f64; 2],
@@ -122,7 +122,7 @@ impl Basis {
         })
     }
 
-    /// What forces a spline into its shape: the square of every first difference of the wrong sign.
+    /// The penalty that forces a spline into its shape: the square of every first difference of the wrong sign.
     pub fn violation(&self, coefficients: &[f64]) -> Option<DMatrix<f64>> {
         let sign = match self.shape {
             Shape::Free => return None,

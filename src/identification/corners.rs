@@ -1,7 +1,7 @@
-//! Corners of a motion, such as a machine makes at constant rates: one smooth spline goes past them.
+//! Corners of a motion, as of a machine at constant rates, which one smooth spline cannot follow.
 //!
-//! The second difference over k instants, xᵢ₊ₖ − 2 xᵢ + xᵢ₋ₖ, is k times the change of the rate within k instants of a corner, and small
-//! beside; of a smooth motion it is nowhere many times larger than what surrounds it.
+//! The second difference over k instants, xᵢ₊ₖ − 2 xᵢ + xᵢ₋ₖ, is k times the change of the rate within k instants of
+//! a corner, and small elsewhere; for a smooth motion it is nowhere many times larger than in its surroundings.
 
 use crate::statistics::median;
 

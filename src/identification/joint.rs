@@ -9,7 +9,7 @@ use super::smoothing::{BandMatrix, SplineValues};
 use crate::solve::{Cholesky, FactorFault};
 use crate::statistics::LocalValues;
 
-/// What D(·) is a function of.
+/// The argument of D(·).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Argument {
     /// The extension in mm.
@@ -38,12 +38,12 @@ pub struct State {
     pub functions: DVector<f64>,
 }
 
-/// What acts at an instant.
+/// The forces at an instant.
 pub struct Instant {
     pub extension: f64,
     pub rate: f64,
     pub acceleration: f64,
-    /// Force in N that the state asks for.
+    /// Force in N that the state requires.
     pub force: f64,
     /// ∂force/∂extension and ∂force/∂rate.
     slopes: [f64; 2],
@@ -51,12 +51,12 @@ pub struct Instant {
     by_functions: DVector<f64>,
 }
 
-/// The derivatives of extension and force by one more parameter, instant after instant, over the noise.
+/// The derivatives of extension and force with respect to one more parameter, instant after instant, over the noise.
 pub type Column = Vec<[f64; 2]>;
 
 /// The equations of one Gauss–Newton step.
 pub struct JointEquations {
-    /// What is left when the motion is eliminated.
+    /// The equations after elimination of the motion.
     pub reduced: NormalEquations,
     elimination: Cholesky,
     /// H⁻¹ G and H⁻¹ g of the motion.
@@ -77,7 +77,7 @@ impl JointEquations {
 }
 
 impl Joint<'_> {
-    /// What acts at an instant: m ẍ + D ẋ + K x and its derivatives.
+    /// The forces at an instant: m ẍ + D ẋ + K x and its derivatives.
     pub fn instant(&self, instant: usize, state: &State) -> Instant {
         let [x, v, a] = [0, 1, 2].map(|order| self.orders[order].value(instant, &state.motion));
         let (stiffness, damping) = (&self.functions[0], &self.functions[1]);
@@ -109,7 +109,7 @@ impl Joint<'_> {
         }
     }
 
-    /// What is left of both signals, over their noise.
+    /// The residuals of both signals, over their noise.
     fn left(&self, instant: usize, at: &Instant) -> [f64; 2] {
         [
             (self.recording.extension[instant] - at.extension) / self.noise[0],
@@ -117,7 +117,7 @@ impl Joint<'_> {
         ]
     }
 
-    /// Sum of squares of all that is left, over the noise.
+    /// Sum of squares of all residuals, over the noise.
     pub fn sum_of_squares(&self, state: &State) -> f64 {
         let square = |instant| -> f64 {
             let left = self.left(instant, &self.instant(instant, state));
@@ -126,7 +126,7 @@ impl Joint<'_> {
         (0..self.recording.times.len()).map(square).sum()
     }
 
-    /// The normal equations with the motion as it is: K(·) and D(·) by linear least squares.
+    /// The normal equations with a fixed motion: K(·) and D(·) by linear least squares.
     pub fn with_motion_fixed(&self, state: &State) -> NormalEquations {
         let count = state.functions.len();
         let mut reduced = NormalEquations::new(count);
@@ -207,8 +207,8 @@ impl Joint<'_> {
         })
     }
 
-    /// The derivatives of force, and of extension where there are more parameters, by the functions' coefficients and these, over the noise:
-    /// the functions alone do not move the extension.
+    /// The derivatives of force, and of extension where there are more parameters, with respect to the functions'
+    /// coefficients and these, over the noise: the functions alone do not move the extension.
     fn by_others(&self, instant: usize, at: &Instant, more: &[Column]) -> Vec<DVector<f64>> {
         let functions = &at.by_functions / self.noise[1];
         if more.is_empty() {
@@ -223,7 +223,7 @@ impl Joint<'_> {
         vec![with_more(functions, 1), with_more(none, 0)]
     }
 
-    /// The derivatives of extension and force by the motion's coefficients, over the noise.
+    /// The derivatives of extension and force with respect to the motion's coefficients, over the noise.
     fn by_motion(&self, instant: usize, at: &Instant) -> (usize, [LocalValues; 2]) {
         let [x, v, a] = [0, 1, 2].map(|order: usize| &self.orders[order].rows[instant].1);
         let mut rows = [LocalValues::default(); 2];

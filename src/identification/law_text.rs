@@ -18,10 +18,10 @@ const POINTS: usize = 25;
 /// f = [K(·) x + D(·) ẋ] = a [E(·) (λ − 1) + η(·) λ̇],   E = K x₀/a in MPa,   η = D x₀/a in MPa·s
 /// ```
 ///
-/// Where the recording has the length x₀ and the cross-section a at rest, E and η are written over the strain λ − 1 or
-/// its rate: they make springs of all lengths one material. Otherwise K in N/mm and D in N·s/mm are written over the
-/// extension in mm or its rate, which no study takes. A function is `constant`, a `polynomial`, or a `table`, between
-/// whose points cubics keep the shape.
+/// Where the recording states the length x₀ and the cross-section a at rest, E and η are written over the strain λ −
+/// 1 or its rate: with them, springs of all lengths represent one material. Otherwise K in N/mm and D in N·s/mm are
+/// written over the extension in mm or its rate, which no study accepts. A function is `constant`, a `polynomial`, or
+/// a `table`, between whose points cubics keep the shape.
 pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> String {
     let head = "# f = m ẍ + D(·) ẋ + K(·) x, identified by `gelbench identify` from";
     let mut text = format!("{head} {file}.\n");
@@ -59,12 +59,12 @@ pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> St
     text + &written(&found.damping, units[1]).text()
 }
 
-/// A function on its way to a file.
+/// A function to be written to a file.
 struct FunctionText<'a> {
     function: &'a Function,
-    /// Of its values.
+    /// Factor of its values.
     factor: f64,
-    /// Of its argument.
+    /// Factor of its argument.
     scale: f64,
     unit: &'static str,
 }
@@ -98,7 +98,7 @@ impl FunctionText<'_> {
         }
     }
 
-    /// Values below zero are written as zero: studies refuse springs that push and dashpots that drive.
+    /// Values below zero are written as zero: studies refuse springs that push and dashpots that add energy.
     fn table(&self) -> String {
         let places = self.function.places(POINTS);
         let estimates: Vec<_> = places.iter().map(|x| self.function.at(*x)).collect();
@@ -136,6 +136,6 @@ impl FunctionText<'_> {
 /// A number with six significant digits, without trailing zeros.
 fn plain(value: f64) -> String {
     let digits: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    // TOML tells whole numbers from others.
+    // TOML distinguishes whole numbers from others.
     format!("{digits:?}")
 }

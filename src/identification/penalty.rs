@@ -1,4 +1,4 @@
-//! How smooth K(·) and D(·) are: penalties on their roughness, chosen by generalised cross-validation.
+//! The smoothness of K(·) and D(·): penalties on their roughness, chosen by generalised cross-validation.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,7 +12,7 @@ pub struct NormalEquations {
     pub information: DMatrix<f64>,
     /// b = Jᵀ r.
     pub gradient: DVector<f64>,
-    /// ‖r‖² that is left when the motion has moved.
+    /// The residual ‖r‖² after the motion has moved.
     pub sum: f64,
 }
 
@@ -23,14 +23,14 @@ pub type Exponents = [f64; 2];
 const RANGE: [f64; 2] = [-6.0, 8.0];
 const STEP: f64 = 0.5;
 
-/// What a coefficient counts in cross-validation: a little more than one, since it is prone to rough functions.
+/// The weight of a coefficient in cross-validation: a little more than one, because cross-validation is prone to rough functions.
 ///
 /// # References
 /// Y.-J. Kim, C. Gu, J. R. Stat. Soc. B 66, 337 (2004), doi:10.1046/j.1369-7412.2003.05316.x
 const DEARNESS: f64 = 1.4;
 
-/// Added to the exponent of least cross-validation: a tenth of that weight keeps the bias of the penalty small compared with
-/// the standard errors, so that intervals hold.
+/// Added to the exponent of least cross-validation: a tenth of that weight keeps the bias of the penalty small
+/// compared with the standard errors, so that intervals are valid.
 ///
 /// # References
 /// P. Hall, Ann. Stat. 20, 675 (1992), doi:10.1214/aos/1176348651
@@ -39,7 +39,7 @@ const UNDERSMOOTHING: f64 = -1.0;
 /// The least pivot of a matrix scaled to a unit diagonal.
 const LEAST_PIVOT: f64 = 1e-7;
 
-/// How strongly a spline is held in its shape, over its share in the information.
+/// Weight of the constraint on a spline's shape, relative to its share in the information.
 const SHAPE_WEIGHT: f64 = 1e6;
 
 /// A minimum of the penalised sum of squares.
@@ -53,12 +53,12 @@ pub struct PenalisedFit {
     pub inverse: DMatrix<f64>,
     /// Effective number of coefficients of either function.
     pub degrees: [f64; 2],
-    /// The sum of squares that is left.
+    /// The remaining sum of squares.
     pub sum: f64,
 }
 
 impl NormalEquations {
-    /// No data yet.
+    /// Normal equations without data.
     pub fn new(count: usize) -> Self {
         Self {
             information: DMatrix::zeros(count, count),
@@ -67,7 +67,7 @@ impl NormalEquations {
         }
     }
 
-    /// Adds an observation: its derivatives and what is left of it.
+    /// Adds an observation: its derivatives and its residual.
     pub fn add(&mut self, row: &DVector<f64>, left: f64) {
         self.information.ger(1.0, row, row, 1.0);
         self.gradient.axpy(left, row, 1.0);
@@ -81,7 +81,7 @@ impl NormalEquations {
         functions: &[Basis; 2],
         exponents: Exponents,
     ) -> Option<PenalisedFit> {
-        /// Changes of which differences have the wrong sign; more than there are differences is a circle.
+        /// Most changes of the set of differences with the wrong sign; more mean a cycle.
         const MOST: usize = 40;
         let mut found = self.solve(from, from, functions, exponents)?;
         for _ in 0..MOST {
@@ -98,7 +98,7 @@ impl NormalEquations {
         Some(found)
     }
 
-    /// A minimum with the shapes held where the coefficients `shaped` break them.
+    /// A minimum with the shapes enforced where the coefficients `shaped` violate them.
     fn solve(
         &self,
         from: &DVector<f64>,

@@ -14,7 +14,7 @@ pub struct Recording {
     pub times: Vec<f64>,
     /// Extension beyond the length at rest in mm.
     pub extension: Vec<f64>,
-    /// Force that pulls, in N.
+    /// Tensile force in N.
     pub force: Vec<f64>,
     /// The mass that the force moves, in tonne; zero where none is stated.
     pub mass: f64,
@@ -24,10 +24,10 @@ pub struct Recording {
     pub area: Option<f64>,
 }
 
-/// Fewest instants that are taken.
+/// Fewest instants that are accepted.
 const FEWEST: usize = 30;
 
-/// How a column tells the motion.
+/// The form in which a column gives the motion.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Motion {
     Extension,
@@ -41,13 +41,12 @@ const MOTIONS: [(&str, Motion, Dimension); 3] = [
     ("stretch", Motion::Stretch, Dimension::Ratio),
 ];
 
-/// What a file or the command line may say about a recording: the mass that the force moves, length and cross-section at
-/// rest.
+/// Statements of a file or the command line about a recording: the mass that the force moves, length and cross-section at rest.
 const KEYS: [&str; 3] = ["mass", "length", "area"];
 
 impl Recording {
-    /// Reads a table with the columns `time`, `extension` or `length` or `stretch`, and `force`; `given` says what the
-    /// head does not: `mass`, `length`, `area`.
+    /// Reads a table with the columns `time`, `extension` or `length` or `stretch`, and `force`; `given` supplements
+    /// the head: `mass`, `length`, `area`.
     ///
     /// # Errors
     /// [`Error::Input`] with all faults of the file.
@@ -55,7 +54,7 @@ impl Recording {
         Self::of_table(&Table::read(path, Table::HINT)?, given)
     }
 
-    /// Takes the columns from a table.
+    /// Reads the columns of a table.
     ///
     /// # Errors
     /// [`Error::Input`] with all faults of the table.

@@ -1,4 +1,4 @@
-//! A recording that gelbench computes itself, of functions that are known.
+//! A recording that gelbench computes itself, with known functions.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::recording::Recording;
 
-/// A spring that stiffens with a dashpot that grows, shaken by a force of several frequencies:
+/// A stiffening spring with a growing dashpot, shaken by a force of several frequencies:
 ///
 /// ```text
 /// K(x) = 0.15 + 0.05 e^(x/8 mm) N/mm,   D(x) = 0.004 + 0.0015 tanh(x/5 mm) N·s/mm,   m = 200 g

@@ -3,15 +3,16 @@
 use crate::solve::{Cholesky, FactorFault, SymmetricPattern};
 use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
-/// Instants for each part of a spline at least.
+/// Least number of instants for each part of a spline.
 const FEWEST: usize = 4;
 
 /// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
-/// motion count, and where it cannot follow them they make a bias. Finer parts cost little, since the equation of
-/// motion ties them together.
+/// motion enter, and where they are not resolved they cause a bias. Finer parts cost little, because the equation of
+/// motion couples them.
 const FINER: usize = 4;
 
-/// Parts of the motion that the longest interval between two instants may span: a spline with more of them empty is hardly determined, and swings there.
+/// Parts of the motion that the longest interval between two instants may span: with more empty parts a spline is hardly determined, and oscillates
+/// there.
 const BRIDGED: f64 = 1.5;
 
 /// A signal's own spline.
@@ -21,7 +22,7 @@ pub struct SignalSpline {
     pub intervals: usize,
     /// Standard deviation of the noise, in the signal's unit.
     pub noise: f64,
-    /// Whether more parts than the sampling allows would be better still.
+    /// Whether more parts than the sampling allows would be better.
     pub coarse: bool,
 }
 
@@ -117,7 +118,7 @@ pub fn nearest(spline: &BSpline, times: &[f64], signal: &[f64]) -> Result<Vec<f6
 }
 
 /// The number of equal parts for which generalised cross-validation, (‖y − ŷ‖²/n)/(1 − p/n)² with p functions, is
-/// least, and the noise √(‖y − ŷ‖²/(n − p)) that is left.
+/// least, and the noise √(‖y − ŷ‖²/(n − p)) of the residuals.
 pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpline> {
     let n = times.len() as f64;
     let range = [times[0], times[times.len() - 1]];

@@ -1,12 +1,12 @@
-//! What could be wrong with a recording that its misfit hardly shows: each as one more parameter, tried in one linearised step.
+//! Possible faults of a recording that its misfit hardly shows: each is one more parameter, tried in one linearised step.
 //!
 //! ```text
 //! r = z τ + J δ + noise,   δ of variance P⁻¹           z the derivative of both signals by a suspect, J those by motion and functions, over the noise
 //! I = zᵀz − zᵀJ (JᵀJ + P)⁻¹ Jᵀz,   τ = zᵀr / I,   t = τ √I
 //! ```
 //!
-//! A zero of the force of a fiftieth of its range bends K(·) by far more than its interval and leaves a misfit of 1.05: the test of one degree of freedom sees it.
-//! So it sees what smooth functions go past: a step of K(·) at rest, and dry friction.
+//! An error of the force's zero by a fiftieth of its range changes K(·) by far more than its interval and leaves a misfit of 1.05: the test
+//! of one degree of freedom detects it. It also detects features that smooth functions miss: a step of K(·) at rest, and dry friction.
 
 use nalgebra::DVector;
 
@@ -15,16 +15,17 @@ use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
 use super::types::FittedMotion;
 
-/// t above which a suspect is told: by chance in less than one recording of a thousand, seven being tried.
+/// t above which a suspect is reported: by chance in less than one recording of a thousand, with seven tried.
 const LIMIT: f64 = 4.0;
 
-/// The share of what is left beyond the noise that a suspect has to take: where forms are wrong, or the noise is not white, suspects take a little of it.
+/// The share of the residuals beyond the noise that a suspect has to explain: where forms are wrong, or the noise is not white, suspects explain a
+/// little of it.
 const TAKEN: f64 = 0.5;
 
-/// The share of zᵀz that has to be left of I: what is less is a part of K(·), D(·) or the motion.
+/// The least share of zᵀz in I: a smaller one is part of K(·), D(·) or the motion.
 const OWN: f64 = 1e-6;
 
-/// What could be wrong.
+/// A possible fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Suspect {
     /// A constant on the force in N.
@@ -54,12 +55,12 @@ impl Suspect {
         Self::Friction,
     ];
 
-    /// Whether it is the body's, and not the recording's.
+    /// Whether it belongs to the body rather than to the recording.
     fn is_of_body(self) -> bool {
         matches!(self, Self::StepOfK | Self::Friction)
     }
 
-    /// In words, with its amount.
+    /// The suspect in words, with its amount.
     fn words(self, amount: f64, error: f64) -> String {
         let around = |factor: f64, unit: &str| {
             format!("{:.3} ± {:.3} {unit}", factor * amount, factor * error)
@@ -84,7 +85,7 @@ impl Suspect {
     }
 }
 
-/// A suspect with how large it is, with the standard error of that.
+/// A suspect with its size and the standard error of the size.
 #[derive(Clone, Copy, Debug)]
 pub struct Suspected {
     pub suspect: Suspect,
@@ -98,7 +99,7 @@ impl Suspected {
     }
 }
 
-/// The derivatives of both signals by a suspect, over the noise.
+/// The derivatives of both signals with respect to a suspect, over the noise.
 fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
     let recording = joint.recording;
     let times = &recording.times;
@@ -124,7 +125,7 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
     (0..times.len()).map(|i| over(of(i))).collect()
 }
 
-/// Those that are surely there, the surest first.
+/// The suspects that are surely present, the surest first.
 pub fn suspects(
     joint: &Joint,
     (state, motion): (&State, &FittedMotion),
@@ -172,7 +173,7 @@ pub fn suspects(
     sure
 }
 
-/// What is said of them.
+/// The warning about the suspects.
 pub fn warning(suspects: &[Suspected]) -> Option<String> {
     let words = suspects
         .iter()

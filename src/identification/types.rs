@@ -1,17 +1,17 @@
-//! What is looked for in a recording, and what was found.
+//! The settings and the result of an identification.
 
 use super::band::Function;
 use super::basis::{Form, Shape};
 use super::joint::Argument;
 
-/// What is looked for.
+/// The settings of an identification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IdentificationSettings {
     /// The forms of K(·) and D(·).
     pub forms: [Form; 2],
-    /// What is known of their shapes.
+    /// Prior knowledge of their shapes.
     pub shapes: [Shape; 2],
-    /// What D(·) is a function of.
+    /// The argument of D(·).
     pub argument: Argument,
 }
 
@@ -49,10 +49,10 @@ pub struct FittedMotion {
     pub force: Vec<f64>,
 }
 
-/// What was found.
+/// The result of an identification.
 #[derive(Clone, Debug)]
 pub struct Identification {
-    /// What was looked for.
+    /// The settings.
     pub settings: IdentificationSettings,
     /// K(·) in N/mm.
     pub stiffness: Function,
@@ -62,10 +62,10 @@ pub struct Identification {
     pub motion: FittedMotion,
     /// Standard deviations of extension in mm and force in N, from either signal alone.
     pub noise: [f64; 2],
-    /// ‖r‖²/(N − p) over these: one where force, motion and forms fit together.
+    /// ‖r‖²/(N − p) relative to this noise: one where force, motion and forms are consistent.
     pub misfit: f64,
     /// N − p.
     pub freedom: f64,
-    /// What deserves attention.
+    /// Warnings.
     pub warnings: Vec<String>,
 }

@@ -1,18 +1,18 @@
-//! What deserves attention in an identification.
+//! The warnings of an identification.
 
 use super::recording::Recording;
 use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
 use super::types::Identification;
 use crate::statistics::{Estimate, median};
 
-/// A longest interval that leaves the motion less than this share of the parts that both signals ask for is a gap, ...
+/// A longest interval is a gap if it leaves the motion less than this share of the parts that both signals ask for, ...
 const FEW: f64 = 0.5;
 
-/// ... and so is one of so many usual ones, and of such a part of the duration.
+/// ... or if it is as long as so many usual intervals and as such a part of the duration.
 const INTERVALS: f64 = 20.0;
 const PART: f64 = 0.05;
 
-/// The warning about a gap in the rows: a spline has only as many parts as the gap leaves it, and what they miss is taken for noise.
+/// The warning about a gap in the rows: a spline has only as many parts as the gap allows, and features that these miss are taken for noise.
 fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
     let length = |pair: &[f64]| pair[1] - pair[0];
     let usual = median(times.windows(2).map(length));
@@ -30,7 +30,7 @@ fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
     })
 }
 
-/// A corner alone is a jerk, or chance.
+/// Fewest corners that count: a single one is a jerk, or chance.
 pub const FEWEST_CORNERS: usize = 4;
 
 /// The warnings of an identification from the splines of extension and force, and the number of the motion's corners.

@@ -1,9 +1,9 @@
-//! Columns that the user names: what each of them holds.
+//! Columns named by the user, with their roles.
 
 use crate::document::{Column, Table, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
 
-/// What a column holds.
+/// The role of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The place along x.
@@ -46,7 +46,7 @@ impl ChosenColumns {
     /// Reads parts such as `ux=disp_u`.
     ///
     /// # Errors
-    /// A fault where a part is none, its role is unknown, or a role or a column stands twice.
+    /// A fault where a part is malformed, its role is unknown, or a role or a column occurs twice.
     pub fn parse<'a>(parts: impl IntoIterator<Item = &'a str>) -> Result<Self, Diagnostic> {
         let mut all: Vec<(Role, String)> = Vec::new();
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
@@ -119,7 +119,7 @@ impl FoundColumns {
     }
 }
 
-/// The only column of a name: as it is written with or without its unit, else in any case.
+/// The only column with a name: as written, with or without its unit, otherwise in any case.
 ///
 /// # Errors
 /// A fault with the columns that there are, where there is none of this name, or more than one.

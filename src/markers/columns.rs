@@ -1,28 +1,28 @@
 //! The columns of a table of displacements: found by name, lengths with their units, and none of them overlooked.
 //!
-//! A reader names the columns that it takes. Columns that other programs write and that say nothing about the displacement
-//! ([`is_harmless`]) are passed over, and so are those that the user names; any other one is refused, because a column that
-//! is silently ignored may hold what the user relies on.
+//! A reader names the columns that it takes. Columns that other programs write and that contain nothing about the
+//! displacement ([`is_harmless`]) are ignored, and so are those that the user names; any other one is refused,
+//! because a column that is silently ignored may contain what the user relies on.
 
 use crate::document::{Column, Table, is_pixel, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
 use crate::statistics::extremes;
 use crate::units::{self, Dimension};
 
-/// Names that a column may have; one that begins with `=` is the name as it is written, with its capitals.
+/// Names that a column may have; one that begins with `=` is the exact name, with its capitals.
 pub type Names = &'static [&'static str];
 
 /// A column of lengths and its unit in mm.
 pub type Length = (usize, f64);
 
-/// What is said of units besides the heads of columns.
+/// Statements on units besides the heads of columns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Units<'a> {
     /// The length of the unit in mm, or of a pixel.
     pub given: Option<f64>,
     /// A unit of heads that the given one corrects.
     pub corrected: Option<&'a str>,
-    /// Whether lengths are pixels where the head says nothing.
+    /// Whether lengths are in pixels where the head states no unit.
     pub pixels: bool,
 }
 
@@ -44,7 +44,7 @@ pub fn mixed_units<'a>(heads: impl Iterator<Item = Option<&'a str>>) -> Option<D
     })
 }
 
-/// The first column of one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
+/// The first column with one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
 pub fn find(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
     names.iter().find_map(|name| {
         let mut columns = table.columns.iter().enumerate();
@@ -58,7 +58,7 @@ pub fn find(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
     })
 }
 
-/// What stands in a column's name after one of [`Names`].
+/// The part of a column's name after one of [`Names`].
 fn after<'a>(column: &'a Column, name: &str) -> Option<&'a str> {
     match name.strip_prefix('=') {
         Some(written) => column.written.strip_prefix(written),
@@ -93,10 +93,10 @@ pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Opti
         .filter(|unit| !is_pixel(unit))
 }
 
-/// The first column of one of the names, and its unit.
+/// The first column with one of the names, and its unit.
 ///
 /// # Errors
-/// [`Error::Input`] where there is none, with those that there are.
+/// [`Error::Input`] with the existing columns where there is none.
 pub fn required(table: &Table, names: Names) -> Result<(usize, Option<String>), Error> {
     find(table, names).ok_or_else(|| {
         let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
@@ -118,7 +118,7 @@ pub fn plainly(names: Names) -> &'static str {
         .map_or("", |name| name.trim_start_matches('='))
 }
 
-/// A column of lengths and its unit: that of its head, else the one that was given.
+/// A column of lengths and its unit: that of its head, otherwise the given one.
 ///
 /// # Errors
 /// [`Error::Input`] where its unit is unknown.
@@ -149,7 +149,7 @@ pub fn length(
     }
 }
 
-/// Where a given unit corrects the head of a file, with a word about it.
+/// A remark where a given unit corrects the head of a file.
 pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Option<Diagnostic> {
     let (head, given) = (head?, given?);
     let said = millimetres(head)?;
@@ -162,9 +162,9 @@ pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Opti
     })
 }
 
-/// Results of other programs, and of this one, that say nothing of the displacement: strains (`exx`, `e1`, all names with
-/// `strain`), DICe's figures of its correlation, stretches, rotations and coordinates of other systems, and what a correction
-/// writes beside its markers and nodes.
+/// Results of other programs, and of this one, that contain nothing about the displacement: strains (`exx`, `e1`, all
+/// names with `strain`), DICe's figures of its correlation, stretches, rotations and coordinates of other systems,
+/// and what a correction writes beside its markers and nodes.
 pub fn is_harmless(name: &str) -> bool {
     const NAMES: &str = "exx eyy exy e_xx e_yy e_xy e1 e2 gamma beta sigma contrast match noise_level active_pixels \
         iterations status_flag neighbor_id condition_number uncertainty uncertainty_angle corr correlation zncc \
@@ -178,7 +178,7 @@ pub fn is_harmless(name: &str) -> bool {
         || BEGINNINGS.split_whitespace().any(begins)
 }
 
-/// Whether the user passes over a column, by its name with or without its unit.
+/// Whether the user ignores a column, by its name with or without its unit.
 fn is_ignored(name: &str, ignored: &[String]) -> bool {
     ignored.iter().any(|ignored| {
         let rest = name.strip_prefix(&*plain_name(ignored));
@@ -187,7 +187,7 @@ fn is_ignored(name: &str, ignored: &[String]) -> bool {
     })
 }
 
-/// The columns that are neither used, nor harmless, nor to be passed over by the user's wish.
+/// The columns that are neither used, nor harmless, nor ignored by the user.
 pub fn others<'a>(table: &'a Table, used: &[usize], ignored: &[String]) -> Vec<&'a Column> {
     let columns = table.columns.iter().enumerate();
     let other = columns.filter(|(index, column)| {
@@ -197,10 +197,10 @@ pub fn others<'a>(table: &'a Table, used: &[usize], ignored: &[String]) -> Vec<&
     other.map(|(_, column)| column).collect()
 }
 
-/// Whether every column is used, harmless, or to be passed over by the user's wish.
+/// Checks that every column is used, harmless, or ignored by the user.
 ///
 /// # Errors
-/// [`Error::Input`] with every column that is neither, and the `known` ones.
+/// [`Error::Input`] with every other column, and the `known` ones.
 pub fn check_all(
     table: &Table,
     used: &[usize],
@@ -238,10 +238,10 @@ pub const FRAME: Names = &["frame", "frame_number", "image"];
 /// Times.
 pub const TIME: Names = &["time", "t", "zeit"];
 
-/// The unit of a column of times in s, which is 1 s where the head says none.
+/// The unit of a column of times in s, which is 1 s where the head states none.
 ///
 /// # Errors
-/// [`Error::Input`] where it is no unit of time.
+/// [`Error::Input`] where it is not a unit of time.
 pub fn seconds(table: &Table, column: usize) -> Result<f64, Error> {
     let Some(unit) = table.columns[column].unit.as_deref() else {
         return Ok(1.0);
@@ -252,7 +252,7 @@ pub fn seconds(table: &Table, column: usize) -> Result<f64, Error> {
     })
 }
 
-/// The fault of a head whose unit is none of a dimension, with those that there are.
+/// The fault of a head whose unit is not one of a dimension, with the known ones.
 pub fn unknown_unit(table: &Table, unit: &str, dimension: Dimension, message: String) -> Error {
     let known: Vec<_> = dimension.units().collect();
     let hint = suggestion(unit, &known, "known units:");
@@ -267,15 +267,15 @@ pub const LIFT: Names = &["uz", "w", "u_z"];
 /// Heights and displacements out of the plane.
 pub const OUT_OF_PLANE: [Names; 2] = [HEIGHT, LIFT];
 
-/// The columns out of the plane that are there and not passed over.
+/// The columns out of the plane that are present and not ignored.
 pub fn out_of_plane(table: &Table, names: [Names; 2], ignored: &[String]) -> Vec<usize> {
     let found = names.map(|names| find(table, names).map(|(index, _)| index));
     let wanted = |index: &usize| !is_ignored(&table.columns[*index].name, ignored);
     found.into_iter().flatten().filter(wanted).collect()
 }
 
-/// Whether the points stay in a plane: heights differ by less than a hundredth of the field's size, and no displacement out
-/// of the plane is more than a hundredth of the largest one.
+/// Checks that the points stay in a plane: heights differ by less than a hundredth of the field's size, and no
+/// displacement out of the plane is more than a hundredth of the largest one.
 ///
 /// # Errors
 /// [`Error::Input`] with how far they leave it.

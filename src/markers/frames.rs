@@ -9,7 +9,7 @@ pub struct MarkerSeries {
     pub frames: Vec<Frame>,
     /// Places at rest in mm of markers that were found in no frame.
     pub lost: Vec<[f64; 2]>,
-    /// The numbers of frames in which no marker moves, as in the picture at rest: they are left out.
+    /// The numbers of frames in which no marker moves, as in the picture at rest; these frames are left out.
     pub at_rest: Vec<usize>,
 }
 
@@ -18,7 +18,7 @@ pub struct MarkerSeries {
 pub struct Frame {
     /// Its number in the series.
     pub number: usize,
-    /// Its time, where the data say it.
+    /// Its time, where the data state it.
     pub time: Option<f64>,
     /// The markers that were found.
     pub markers: Vec<Marker>,
@@ -33,7 +33,7 @@ pub struct Marker {
     pub place: [f64; 2],
     /// ux, uy in mm.
     pub displacement: [f64; 2],
-    /// Standard deviation of each component of the displacement in mm, where the data say it.
+    /// Standard deviation of each component of the displacement in mm, where the data state it.
     pub standard_deviation: Option<f64>,
 }
 
@@ -45,7 +45,7 @@ impl MarkerSeries {
         found.chain(self.lost.iter().copied()).collect()
     }
 
-    /// The same without those that were found in none.
+    /// The same places without those of markers that were found in no frame.
     pub fn places_of_found(&self) -> Vec<[f64; 2]> {
         let mut seen = HashSet::new();
         let markers = self.frames.iter().flat_map(|frame| &frame.markers);

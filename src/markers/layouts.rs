@@ -31,7 +31,7 @@
 use super::columns::{HEIGHT, LIFT, Names};
 use crate::document::{Table, is_pixel};
 
-/// Where a layout keeps what.
+/// The columns and conventions of a layout.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub name: &'static str,
@@ -42,13 +42,13 @@ pub(super) struct Layout {
     pub out_of_plane: [Names; 2],
     /// A column that is below zero where a point was not found.
     pub lost: Names,
-    /// Columns that the program writes and that say nothing of the displacement.
+    /// Columns that the program writes and that contain nothing about the displacement.
     pub harmless: Names,
     /// Whether the y axis points downwards, as in an image.
     pub downwards: bool,
-    /// Whether places are those of the frame, not at rest.
+    /// Whether places are those in the frame, instead of at rest.
     pub deformed: bool,
-    /// Whether lengths are pixels where the head says nothing.
+    /// Whether lengths are in pixels where the head states no unit.
     pub pixels: bool,
 }
 
@@ -65,7 +65,7 @@ const COLUMNS: Layout = Layout {
     pixels: false,
 };
 
-/// Columns that the user names; what a program calls `sigma` may be anything then.
+/// Columns named by the user; a column that a program calls `sigma` may then be anything.
 pub(super) const NAMED: Layout = Layout {
     deviation: &["standard_deviation"],
     ..COLUMNS

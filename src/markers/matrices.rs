@@ -1,4 +1,4 @@
-//! Matrices of displacements on a regular grid of points, as Ncorr keeps them.
+//! Matrices of displacements on a regular grid of points, as Ncorr stores them.
 //!
 //! Ncorr writes no table of points: its results are the matrices `plot_u_ref_formatted` and `plot_v_ref_formatted`
 //! of `data_dic_save.displacements` in MATLAB, one row of the image after the other, in the unit that was chosen
@@ -62,7 +62,7 @@ pub fn series(stem: &str) -> Option<&str> {
 /// Reads the two matrices of a frame.
 ///
 /// # Errors
-/// [`Error::Input`] with the file, what is wrong and what to do.
+/// [`Error::Input`] with the file, the fault and the remedy.
 pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let Some(step) = reading.grid else {
         return Err(Error::input(

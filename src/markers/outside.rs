@@ -1,14 +1,14 @@
-//! Points without a displacement that lie outside of the specimen: exports as whole matrices have a value for every point of the picture,
-//! and none where there is no specimen.
+//! Points without a displacement that lie outside of the specimen: exports as whole matrices have an entry for every
+//! point of the picture, without a value where there is no specimen.
 
 /// Gaps at the rim of a matrix up to this share of it are taken for places where markers were lost.
 const LOST: f64 = 0.1;
 
-/// Points of a matrix that may be missing.
+/// Share of the points of a matrix that must be present.
 const FULL: f64 = 0.99;
 
-/// The lost points that lie within the specimen, as far as the points say it: of a whole matrix no row or column at the rim that has
-/// no marker at all, and no gaps at the rim that are more than a tenth of the rest. Points that are no matrix all count.
+/// The lost points within the specimen, as far as the points show it: in a whole matrix without rows or columns at the rim that
+/// have no marker at all, and without gaps at the rim of more than a tenth of the rest. Points that are not a matrix all count.
 pub fn within(found: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     match Matrix::of(found, &lost) {
         Some(matrix) => {
@@ -31,7 +31,7 @@ struct Matrix {
 }
 
 impl Matrix {
-    /// The matrix of all points; `None` where they are none, or nothing is lost.
+    /// The matrix of all points; `None` where they are not a matrix, or nothing is lost.
     fn of(found: &[[f64; 2]], lost: &[[f64; 2]]) -> Option<Self> {
         if lost.is_empty() || found.is_empty() {
             return None;

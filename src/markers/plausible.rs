@@ -5,25 +5,25 @@ use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::check_size;
 
-/// Displacements of more than so many sizes of the specimen are in another unit.
+/// Displacements of more than so many sizes of the specimen are taken to be in another unit.
 const LARGEST: f64 = 20.0;
 
-/// A largest displacement below this share of the specimen's size is told.
+/// A largest displacement below this share of the specimen's size is reported.
 const SMALLEST: f64 = 1e-5;
 
 /// Markers up to so many sizes of a cell outside of the mesh belong to its boundary.
 const NEAR_CELLS: f64 = 0.25;
 
-/// No marker farther outside of the box around the mesh than this share of its size is looked for.
+/// Markers farther outside of the box around the mesh than this share of its size are not looked for.
 const MARGIN: f64 = 0.5;
 
 /// Ratios of the units of length that are in use.
 const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
 
-/// A sheet thicker than this share of its smaller extent is told.
+/// A sheet thicker than this share of its smaller extent is reported.
 pub const THICK: f64 = 0.5;
 
-/// Whether a sheet is thin: where it is not, one of the lengths is in another unit.
+/// Checks that a sheet is thin: otherwise one of the lengths is in another unit.
 pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
     let extent = extent(mesh.nodes.iter().copied());
     let across = extent[0].min(extent[1]);
@@ -37,7 +37,7 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
     })
 }
 
-/// Whether the data hold a displacement that fits the places.
+/// Checks that the data have displacements that are consistent with the places.
 ///
 /// # Errors
 /// [`Error::Input`] when there is no displacement, or one in another unit.
@@ -92,14 +92,14 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
 pub struct MarkersOnMesh {
     /// The markers on the mesh.
     pub series: MarkerSeries,
-    /// How many are left out, over all frames.
+    /// The number of markers left out, over all frames.
     pub outside: usize,
 }
 
 /// Leaves out the markers that lie outside of a mesh by more than a quarter of a cell.
 ///
 /// # Errors
-/// [`Error::Input`] when most do, with what is likely: another unit, or another origin.
+/// [`Error::Input`] when most do, with the likely reason: another unit, or another origin.
 pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Error> {
     let [low, high] = mesh.bounding_box();
     let near = |place: [f64; 2]| {

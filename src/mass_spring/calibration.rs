@@ -6,10 +6,10 @@
 //! C_ijkl = E/(A t) Σ a x₀ nᵢ nⱼ nₖ nₗ                                                     [MPa]
 //! ```
 //!
-//! with a the cross-section, x₀ the length and n the direction of a spring, A the area of the cell. It is
-//! symmetric in all indices (Cauchy's relations), so the nearest isotropic sheet has ν = ⅓:
-//! C₁₁₁₁ = C₂₂₂₂ = 9/8 E, C₁₁₂₂ = C₁₂₁₂ = 3/8 E. The cross-sections of a cell are those that come nearest to this
-//! tensor by least squares, none below zero, and among equally good ones those that are nearest to Van Gelder's
+//! with a the cross-section, x₀ the length and n the direction of a spring, A the area of the cell. It is symmetric
+//! in all indices (Cauchy's relations), so the nearest isotropic sheet has ν = ⅓: C₁₁₁₁ = C₂₂₂₂ = 9/8 E, C₁₁₂₂ =
+//! C₁₂₁₂ = 3/8 E. The cross-sections of a cell approximate this tensor in the least-squares sense, with none below
+//! zero, and among equally good ones are those nearest to Van Gelder's
 //!
 //! ```text
 //! a = t A/x₀   for each edge of a triangle; quadrilaterals are halved along both diagonals   [mm²]
@@ -39,7 +39,7 @@ pub fn springs(mesh: &Mesh, thickness: f64) -> Vec<Spring> {
     all.springs(&mesh.nodes)
 }
 
-/// The pairs of corners that springs join: all of them.
+/// All pairs of corners; a spring joins each pair.
 fn pairs(corners: usize) -> Vec<[usize; 2]> {
     let all = (0..corners).flat_map(|b| (0..b).map(move |a| [a, b]));
     all.collect()
@@ -49,7 +49,7 @@ fn pairs(corners: usize) -> Vec<[usize; 2]> {
 fn sections(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
     let area = polygon_area(corners);
     let vector = |[a, b]: &[usize; 2]| [0, 1].map(|axis| corners[*b][axis] - corners[*a][axis]);
-    // Components 1111, 1112, 1122, 1222, 2222 with the roots of how often each stands in the tensor.
+    // Components 1111, 1112, 1122, 1222, 2222, with the square roots of their multiplicities in the tensor.
     let often = [1.0, 2.0, 6.0_f64.sqrt(), 2.0, 1.0];
     let target = [9.0 / 8.0, 0.0, 3.0 / 8.0, 0.0, 9.0 / 8.0];
     let column = |pair: &[usize; 2]| {

@@ -76,7 +76,7 @@ impl Lattice {
         self.spring_law.tension(&*self.law, unit, strain)
     }
 
-    /// How a spring lies with the displacements `u` of its ends, whose largest energy so far is that of a history.
+    /// Geometry of a spring with the displacements `u` of its ends, and with the largest energy so far from a history.
     pub fn pose_after(&self, index: usize, u: &[f64], history: &[f64]) -> SpringPose {
         let pose = self.pose(index, u);
         let softened = self.law.softening().zip(history.get(index));
@@ -87,7 +87,7 @@ impl Lattice {
         }
     }
 
-    /// How a spring that was never loaded lies with the displacements `u` of its ends.
+    /// Geometry of a spring that was never loaded, with the displacements `u` of its ends.
     pub fn pose(&self, index: usize, u: &[f64]) -> SpringPose {
         let rest_length = self.springs[index].rest_length;
         let direction = self.directions[index];
@@ -120,7 +120,7 @@ impl Lattice {
         area * rest_length * response.energy
     }
 
-    /// Energy ½ κ A₀ (A/A₀ − 1)² of one cell; refuses a cell that has no positive area.
+    /// Energy ½ κ A₀ (A/A₀ − 1)² of one cell; a cell without a positive area is refused.
     ///
     /// ```text
     /// A = ½ Σ (xᵢ yᵢ₊₁ − xᵢ₊₁ yᵢ),   ∂A/∂xᵢ = ½ (yᵢ₊₁ − yᵢ₋₁),   ∂A/∂yᵢ = ½ (xᵢ₋₁ − xᵢ₊₁)
@@ -186,7 +186,7 @@ impl Potential for Lattice {
         self.evaluate_after(element, u, local, &[])
     }
 
-    /// A spring whose force falls while it grows.
+    /// Describes a spring whose force falls while it lengthens.
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         let direction = *self.directions.get(element)?;
         let strain = strain(direction, [u[2] - u[0], u[3] - u[1]]);

@@ -15,7 +15,7 @@ pub struct Spring {
     pub area: f64,
 }
 
-/// Springs between nodes with the sums of cross-sections in mm² that the cells beside them give.
+/// Springs between nodes, with the sums of the cross-sections in mm² from the adjacent cells.
 #[derive(Default)]
 pub(super) struct CrossSections(BTreeMap<[usize; 2], f64>);
 
@@ -39,7 +39,7 @@ impl CrossSections {
     }
 }
 
-/// A spring in a deformed lattice, with what its forces follow from.
+/// A spring in a deformed lattice, with the data for its forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringPose {
     /// λ = |x|/x₀.

@@ -5,8 +5,8 @@
 //! K(λ) = a E(λ)/x₀,   D(λ, λ̇) = a η(λ, λ̇)/x₀
 //! ```
 //!
-//! a is a spring's cross-section in mm² and x₀ its rest length in mm, so that one secant modulus E(·) in MPa and one
-//! viscosity η(·) in MPa·s make springs of all lengths one material.
+//! a is a spring's cross-section in mm² and x₀ its rest length in mm, so that springs of all lengths represent one
+//! material with the secant modulus E(·) in MPa and the viscosity η(·) in MPa·s.
 
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::material::scalar_function::ScalarFunction;
@@ -29,9 +29,9 @@ pub enum DashpotLaw {
     Material(ViscousMaterial),
     /// η(·) in MPa·s as the product of a function of λ − 1 and one of λ̇ in 1/s.
     Viscosity {
-        /// By λ − 1.
+        /// The factor that depends on λ − 1.
         by_stretch: ScalarFunction,
-        /// By λ̇.
+        /// The factor that depends on λ̇.
         by_rate: ScalarFunction,
     },
 }
@@ -59,7 +59,7 @@ impl SpringLaw {
 }
 
 impl DashpotLaw {
-    /// The nominal stress in MPa that depends on the rate alone, and its derivative by λ̇ in MPa·s.
+    /// The nominal stress in MPa that depends on the rate alone, and its derivative with respect to λ̇ in MPa·s.
     pub fn stress(&self, stretch: f64, rate: f64) -> [f64; 2] {
         match self {
             Self::Material(material) => material.newtonian_tension(stretch, rate),
@@ -74,7 +74,7 @@ impl DashpotLaw {
         }
     }
 
-    /// The material whose stresses relax, if any do.
+    /// The material whose stresses relax, if there is one.
     pub fn relaxing(&self) -> Option<&ViscousMaterial> {
         match self {
             Self::Material(material) if !material.relaxation.is_empty() => Some(material),

@@ -6,16 +6,16 @@
 //! W(a, z, b),   a = ln J,   z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1,   b = ln λ₃           [MPa = mJ/mm³]
 //! ```
 //!
-//! C = FᵀF and J = det F are those of the plane; J₃ = e^(a + b). In plane stress the thickness follows from the free surface, and is
-//! condensed; what is left is a law of a and z:
+//! C = FᵀF and J = det F are in-plane quantities; J₃ = e^(a + b). In plane stress the thickness follows from the free
+//! surface, and is condensed; the result is a law of a and z:
 //!
 //! ```text
 //! λ₃ P₃₃ = W_b = 0,   W̄_i = W_i − W_ib W_b/W_bb,   W̄_ij = W_ij − W_ib W_jb/W_bb              [MPa]
 //! ```
 //!
-//! In plane strain b = 0. `measures` has stress and tangent of a law of a and z.
+//! In plane strain b = 0. `measures` computes stress and tangent of a law of a and z.
 //!
-//! Derivatives by a and b are sums of terms that vanish at rest, so no digit is lost at strains of 1e-8. At small strain, W_bb =
+//! Derivatives with respect to a and b are sums of terms that vanish at rest, so no digit is lost at strains of 1e-8. At small strain, W_bb =
 //! κ + 4/3 μ and W_z = μ.
 //!
 //! # References
@@ -34,18 +34,18 @@ use super::sheet::{COMPONENTS, Kinematics, PlaneState, PlaneTensor, SheetRespons
 mod points;
 mod thickness;
 
-/// How a body is stretched. Of a, z and b only z is kept as it is: a law that is rational in J and λ₃ needs no logarithm.
+/// The stretches of a body. Of a, z and b only z is stored as such: a law that is rational in J and λ₃ needs no logarithm.
 ///
 /// ```text
 /// J₃ = (1 + q)³,   λ₃ = J₃/J,   a = ln J,   b = 3 ln(1 + q) − a                                     [–]
 /// ```
 ///
-/// `S` is what a law makes of J and z once for all thicknesses.
+/// `S` is the value that a law computes from J and z once for all thicknesses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyStretches<S = f64> {
     /// J − 1.
     pub area_change: f64,
-    /// What [`BodyLaw::shape`] makes of J and z = (tr C − 2J)/(2J).
+    /// The value of [`BodyLaw::shape`] for J and z = (tr C − 2J)/(2J).
     pub shape: S,
     /// q = J₃^⅓ − 1.
     pub volume_root_change: f64,
@@ -84,7 +84,7 @@ impl<S> BodyStretches<S> {
     }
 }
 
-/// The energy per reference volume of a body and its derivatives by a, z and b, in MPa.
+/// The energy per reference volume of a body and its derivatives with respect to a, z and b, in MPa.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodyDerivatives {
     /// W.
@@ -111,16 +111,16 @@ pub struct BodyDerivatives {
 
 /// An isotropic law of a body that changes its volume. [`BodySheet`] is the sheet made of it.
 pub trait BodyLaw: Clone + Send + Sync + Debug {
-    /// What is made of J and z once, while the thickness is looked for: z itself, unless there is more that is dear.
+    /// The value computed once from J and z before the search for the thickness: z itself, unless other costly terms depend on it.
     type Shape: Copy + Send + Sync + Debug;
 
-    /// The same of J − 1 and z.
+    /// Computes that value from J − 1 and z.
     fn shape(&self, area_change: f64, z: f64) -> Self::Shape;
 
     /// W and its derivatives.
     fn evaluate(&self, at: BodyStretches<Self::Shape>) -> BodyDerivatives;
 
-    /// W_b alone, for the search of a thickness; not a number where W is none.
+    /// W_b alone, for the search for a thickness; NaN where W has no value.
     fn thickness_slope(&self, at: BodyStretches<Self::Shape>) -> f64 {
         let w = self.evaluate(at);
         if w.energy.is_finite() { w.b } else { f64::NAN }
@@ -137,8 +137,8 @@ pub trait BodyLaw: Clone + Send + Sync + Debug {
 pub struct BodySheet<L> {
     law: L,
     plane: PlaneState,
-    /// ln J₃ = 3 (c₁ a + c₂ a² + c₃ a³ + c₄ z + c₅ a z) where W_b = 0, to the third order of the strain, with 2 (J − 1)/(J + 1) for a: where
-    /// the search for q begins.
+    /// ln J₃ = 3 (c₁ a + c₂ a² + c₃ a³ + c₄ z + c₅ a z) where W_b = 0, to the third order of the strain, with 2 (J −
+    /// 1)/(J + 1) for a: the search for q begins there.
     series: [f64; 5],
 }
 
@@ -162,7 +162,7 @@ impl<L: BodyLaw> BodySheet<L> {
         }
     }
 
-    /// q where the sheet's surfaces are as its plane state wants them.
+    /// q with which the sheet's surfaces satisfy its plane state.
     #[inline(always)]
     fn at<const N: usize>(
         &self,
@@ -195,7 +195,7 @@ impl<L: BodyLaw> BodySheet<L> {
         };
         let w = self.law.evaluate(stretches);
         if self.plane == PlaneState::Stress {
-            // What the search for b has left.
+            // The residual of the search for b.
             stretches.volume_root_change -= (1.0 + volume_root_change) * w.b / (3.0 * w.bb);
         }
         (measures, stretches, w)
@@ -210,16 +210,16 @@ impl<L: BodyLaw> BodySheet<L> {
         self.state(&Kinematics::rest()).2
     }
 
-    /// The law of a and z that is left.
+    /// The condensed law of a and z.
     #[inline(always)]
     fn condensed(&self, w: &BodyDerivatives) -> Derivatives {
-        // No branch, for the sake of vectorised loops.
+        // No branch, so that loops are vectorised.
         let free = if self.plane == PlaneState::Stress {
             1.0 / w.bb
         } else {
             0.0
         };
-        // What the search for b has left.
+        // The residual of the search for b.
         let left = w.b * free;
         Derivatives {
             energy: w.energy - 0.5 * w.b * left,

@@ -21,15 +21,15 @@ mod resistance;
 /// A material: law, parameters and provenance.
 #[derive(Clone, Debug)]
 pub struct Card {
-    /// The name it was asked for by.
+    /// The name by which it was loaded.
     pub name: String,
     /// One line for people.
     pub title: String,
-    /// The law's name: in the registry, or that of a law that a program brings along.
+    /// The law's name: in the registry, or that of a law that a program defines.
     pub law_name: String,
     /// The law's formula.
     pub formula: &'static str,
-    /// The law with its parameters, and with the resistance to a change of volume.
+    /// The law with its parameters, including the resistance to a change of volume.
     pub law: Arc<dyn HyperelasticLaw>,
     /// The law without the card's change of volume; `None` where the card states none.
     isochoric: Option<Arc<dyn HyperelasticLaw>>,
@@ -39,17 +39,17 @@ pub struct Card {
     pub poisson_ratio: Option<f64>,
     /// The parameters in internal units.
     pub parameters: Vec<Parameter>,
-    /// What else the law's card states: key and choice.
+    /// Other entries of the law: key and choice.
     pub choices: Vec<(&'static str, String)>,
     /// Mass density in tonne/mm³; `None` where the card does not say it.
     pub density: Option<f64>,
-    /// The viscous part; none at all where the card does not say it.
+    /// The viscous part; empty where the card does not state it.
     pub viscosity: ViscousMaterial,
-    /// The stress that the curve behind the card gives.
+    /// The stress measure of the curve behind the card.
     pub stress_measure: StressMeasure,
-    /// The strain that the curve behind the card takes.
+    /// The strain measure of the curve behind the card.
     pub strain_measure: StrainMeasure,
-    /// What is done with a stress at rest.
+    /// The treatment of a stress at rest.
     pub offset: OffsetTreatment,
     /// The kind of test behind the card.
     pub test: String,
@@ -61,7 +61,7 @@ pub struct Card {
     pub doi: String,
     /// What was tested.
     pub specimen: String,
-    /// Anything a user must know; may be empty.
+    /// Remarks for users; may be empty.
     pub note: String,
     /// How the card was fitted; `None` where it was not.
     pub fit: Option<FitRecord>,
@@ -69,24 +69,24 @@ pub struct Card {
     pub text: String,
 }
 
-/// What a card needs to be fitted again.
+/// What is needed to fit a card again.
 #[derive(Clone, Debug)]
 pub struct FitRecord {
     /// The files of test data, relative to the card.
     pub data: Vec<String>,
-    /// What the files do not say: `key: value`.
+    /// Statements that the files do not contain: `key: value`.
     pub reading: Vec<String>,
     /// The weighting's name.
     pub weighting: String,
-    /// How many starts were improved.
+    /// The number of starts that were improved.
     pub starts: usize,
     /// Bounds as `key=low..high`.
     pub bounds: Vec<String>,
-    /// How many terms of a Prony series were fitted; `None` where the law alone was.
+    /// The number of fitted terms of a Prony series; `None` where the law alone was fitted.
     pub relaxation_terms: Option<usize>,
     /// Whether softening was fitted.
     pub softening: bool,
-    /// The card on top of whose law it was, relative to this one; `None` where the law was fitted with it.
+    /// The card, relative to this one, whose law is the base of the fitted softening; `None` where the law was fitted with it.
     pub base_card: Option<String>,
 }
 
@@ -123,7 +123,7 @@ impl Card {
         Ok(card)
     }
 
-    /// The keys that are asked for when a card's text is read.
+    /// The keys that are looked up when a card's text is read.
     pub fn keys(text: &str) -> Vec<Key> {
         let faults = Faults::default();
         Self::read("", "", text, &faults);
@@ -171,8 +171,8 @@ impl Card {
         card
     }
 
-    /// A card of any law, in the registry or not, for the stretches within `stretch_range`: studies run with it as with a
-    /// card that was read. What else a card may state (density, viscosity, formula, source) is set in its fields.
+    /// A card of any law, in the registry or not, for the stretches within `stretch_range`: studies run with it as with a card
+    /// that was read. Other entries of a card (density, viscosity, formula, source) are set in its fields.
     pub fn of_law(name: &str, law: Arc<dyn HyperelasticLaw>, stretch_range: [f64; 2]) -> Self {
         let unstated = || "not stated".to_owned();
         Self {
@@ -229,7 +229,7 @@ impl Card {
         source.unknown_keys();
     }
 
-    /// ` (uniaxial test)`; nothing where no test stands behind the card.
+    /// ` (uniaxial test)`; empty where the card is not based on a test.
     pub fn in_tests(&self) -> String {
         match &*self.test {
             "none" => String::new(),
@@ -329,7 +329,7 @@ fn read_fit(section: &Section) -> FitRecord {
     record
 }
 
-/// What to do about a parameter that only other laws have.
+/// Advice on a parameter that only other laws have.
 fn of_other_laws(key: &str, own: &str) -> Option<String> {
     let has = |law: &&Law| {
         let (_, entries) = law.with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);

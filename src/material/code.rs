@@ -1,4 +1,4 @@
-//! How other codes write a law.
+//! The form of a law in other codes.
 
 use crate::document::name_of;
 
@@ -35,7 +35,7 @@ impl Code {
         }
     }
 
-    /// The ending of its input files.
+    /// The extension of its input files.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Abaqus | Self::CalculiX => "inp",
@@ -59,12 +59,12 @@ impl Code {
     }
 }
 
-/// A law as another code takes it.
+/// A law in the form of another code.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CodeLaw {
     /// A law that the code has.
     Named {
-        /// The code's word for it, with what that word needs: `OGDEN, N=2`.
+        /// The code's keyword with its options: `OGDEN, N=2`.
         keyword: String,
         /// Parameters by name, in the order in which the code reads them.
         parameters: Vec<(String, f64)>,
@@ -72,7 +72,7 @@ pub enum CodeLaw {
         /// (FEBio).
         directions: Vec<[f64; 2]>,
     },
-    /// Marlow's law by points of the tension curve: exact where the energy depends on I₁ alone, wrong anywhere else.
+    /// Marlow's law by points of the tension curve: exact where the energy depends on I₁ alone, wrong otherwise.
     TensionCurve,
 }
 

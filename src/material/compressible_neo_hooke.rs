@@ -7,7 +7,7 @@ use super::parameters::Parameters;
 use super::sheet::PlaneState;
 use super::volume::{VolumeEnergy, lame_modulus};
 
-/// Neo-Hooke laws whose energy is not split into one of shape and one of volume.
+/// Neo-Hooke laws whose energy is not split into an isochoric and a volumetric part.
 ///
 /// ```text
 /// W = ½ μ (I₁ − 3 − 2 ln J₃) + Λ U(J₃),   I₁ = λ₁² + λ₂² + λ₃²,   J₃ = λ₁ λ₂ λ₃    [MPa = N·mm/mm³]
@@ -22,12 +22,11 @@ use super::volume::{VolumeEnergy, lame_modulus};
 ///
 /// `LOGARITHM` is true for the energy of Simo and Pister.
 ///
-/// The third variant in use, ½ μ (Ī₁ − 3) + ½ κ ln² J₃ with the invariant of the shape alone, is the law `neo-hooke` with the volume
+/// The third variant in use, ½ μ (Ī₁ − 3) + ½ κ ln² J₃ with the isochoric invariant, is the law `neo-hooke` with the volume
 /// energy `logarithmic`.
 ///
 /// **Limits.** ν → ½ in plane stress: neo-Hooke with C₁₀ = ½ μ. Small strain: μ and Λ are Lamé's.
-/// **Not covered.** Above J₃ = e the logarithmic energy of Simo and Pister is not convex in J₃: its pressure falls as the body
-/// swells on.
+/// **Not covered.** Above J₃ = e the logarithmic energy of Simo and Pister is not convex in J₃: its pressure falls as the body swells further.
 ///
 /// # References
 /// J. C. Simo, K. S. Pister, Comput. Methods Appl. Mech. Eng. 46, 201 (1984), doi:10.1016/0045-7825(84)90062-8;

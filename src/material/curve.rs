@@ -30,8 +30,7 @@ impl Mode {
         name_of(&Self::ALL, self)
     }
 
-    /// The displacement gradient of the test at λ = 1 + `strain`; `None` where the edges of a strip find
-    /// no equilibrium.
+    /// The displacement gradient of the test at λ = 1 + `strain`; `None` where a strip with free edges has no equilibrium.
     pub fn gradient(self, law: &dyn HyperelasticLaw, strain: f64) -> Option<PlaneTensor> {
         match self {
             Self::Uniaxial => free_edges(&|kinematics| law.response(kinematics), strain),
@@ -74,7 +73,7 @@ impl Sample {
     }
 }
 
-/// The end of a range of stretches to which a material is loaded: the upper one where it reaches into tension.
+/// The end of a range of stretches to which a material is loaded: the upper one where the range includes tension.
 pub fn far_end([low, high]: [f64; 2]) -> f64 {
     if high > 1.0 { high } else { low }
 }
@@ -97,11 +96,11 @@ pub fn samples(law: &dyn HyperelasticLaw, range: [f64; 2]) -> Vec<Sample> {
     modes.chain([None]).map(sample).collect()
 }
 
-/// The displacement gradient of a strip along the first axis with free edges: H₁₁ = `strain`, H₂₁ = 0, and
-/// H₁₂, H₂₂ such that P₁₂ = P₂₂ = 0. Nothing where there is no such state.
+/// The displacement gradient of a strip along the first axis with free edges: H₁₁ = `strain`, H₂₁ = 0, and H₁₂, H₂₂
+/// such that P₁₂ = P₂₂ = 0. `None` where there is no such state.
 ///
-/// Newton's method with halved steps from the contraction of an isotropic strip, for H₁₂ and H₂₂, or where that ends beyond the largest
-/// P₂₂, as in a pressed foam, for H₁₂ and ln (1 + H₂₂) with the residual (P₁₂, (1 + H₂₂) P₂₂).
+/// Newton's method with step halving from the contraction of an isotropic strip, for H₁₂ and H₂₂. Where that ends beyond the
+/// largest P₂₂, as in a compressed foam, it is repeated for H₁₂ and ln (1 + H₂₂) with the residual (P₁₂, (1 + H₂₂) P₂₂).
 pub fn free_edges(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
     strain: f64,
@@ -113,14 +112,14 @@ pub fn free_edges(
 /// What Newton's method looks for across a strip.
 #[derive(Clone, Copy)]
 enum Scale {
-    /// H₂₂ where P₂₂ is none.
+    /// H₂₂, with the residual P₂₂.
     Stretch,
-    /// ln (1 + H₂₂) where (1 + H₂₂) P₂₂ is none.
+    /// ln (1 + H₂₂), with the residual (1 + H₂₂) P₂₂.
     Logarithm,
 }
 
 impl Scale {
-    /// Residual, and its tangent by H₁₂ and the unknown.
+    /// Residual, and its tangent with respect to H₁₂ and the unknown.
     fn linearised(self, h: &PlaneTensor, state: &SheetResponse) -> (Vector2<f64>, Matrix2<f64>) {
         let (stress, a) = (&state.first_piola_kirchhoff_stress, &state.tangent);
         match self {
@@ -173,15 +172,15 @@ fn free_edges_by(
         };
         match (0..30).find_map(|halvings| shorter(0.5_f64.powi(halvings))) {
             Some(moved) => (h, state) = moved,
-            // Rounding alone is left, or there is no way on.
+            // Only rounding is left, or the iteration cannot go on.
             None => return (step.norm() <= 1e-9 * h.norm()).then_some(h),
         }
     }
     None
 }
 
-/// The tension curve of a strip with free edges along the first axis, from the sheet's response: the
-/// slope is condensed over H₁₂ and H₂₂. Not numbers where the strip finds no equilibrium.
+/// The tension curve of a strip with free edges along the first axis, from the sheet's response: the slope is
+/// condensed over H₁₂ and H₂₂. NaN where the strip has no equilibrium.
 pub fn tension(response: &dyn Fn(&Kinematics) -> SheetResponse, strain: f64) -> TensionResponse {
     let condensed = || {
         let state = response(&Kinematics::new(&free_edges(response, strain)?).ok()?);

@@ -9,7 +9,7 @@
 pub(super) const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
 pub(super) const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
-/// 1.5 · 2⁵²: a number to which this is added is rounded to an integer, which is found in the lowest bits.
+/// 1.5 · 2⁵²: adding it to a number rounds that number to an integer, which is then in the lowest bits.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 /// 1/(n + 2)! for n = 0 … 11.
@@ -28,14 +28,14 @@ const COEFFICIENTS: [f64; 12] = [
     1.0 / 6_227_020_800.0,
 ];
 
-/// k, 2ᵏ, r and q(r) of a number of at most 708 in size.
+/// k, 2ᵏ, r and q(r) of a number of magnitude 708 at most.
 #[inline(always)]
 fn reduce(z: f64) -> (f64, f64, f64, f64) {
     let rounded = z * std::f64::consts::LOG2_E + ROUNDING;
     let k = rounded - ROUNDING;
     let r = (z - k * LN_2_HIGH) - k * LN_2_LOW;
     let power = f64::from_bits((rounded.to_bits() << 52).wrapping_add(1.0_f64.to_bits()));
-    // In pairs of pairs: a short chain of dependent operations.
+    // Evaluated in pairs of pairs: a short chain of dependent operations.
     let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11] = COEFFICIENTS;
     let r2 = r * r;
     let r4 = r2 * r2;

@@ -1,11 +1,11 @@
-//! Laws of bodies that keep their volume, with a resistance to a change of it.
+//! Laws of bodies that keep their volume, extended by a resistance to a change of volume.
 //!
 //! ```text
 //! W = Ψ(λ̄₁, λ̄₂, λ̄₃) + U(J₃),   λ̄ᵢ = J₃^(−⅓) λᵢ,   J₃ = J λ₃                       [MPa = mJ/mm³]
 //! ```
 //!
-//! **Derivation.** λ̄₁ and λ̄₂ are the stretches of a sheet that keeps its volume, of the same shape z and the area ratio e^s with
-//! s = (a − 2 b)/3; so any law Ψ(s, z) of such a sheet becomes one of the body.
+//! **Derivation.** λ̄₁ and λ̄₂ are the stretches of a sheet that keeps its volume, with the same shape z and the area
+//! ratio e^s, s = (a − 2 b)/3; any law Ψ(s, z) of such a sheet therefore becomes a law of the body.
 //!
 //! # References
 //! P. J. Flory, Trans. Faraday Soc. 57, 829 (1961), doi:10.1039/TF9615700829
@@ -32,19 +32,19 @@ pub fn sheet<L: IsochoricLaw + 'static>(law: Arc<L>, volume: Volume) -> Arc<dyn 
     }
 }
 
-/// An isotropic law of a sheet that keeps its volume, by s = ln J and z.
+/// An isotropic law of a sheet that keeps its volume, as a function of s = ln J and z.
 pub trait IsochoricLaw: Send + Sync + Debug {
     /// As [`BodyLaw::Shape`].
     type Shape: Copy + Send + Sync + Debug;
 
-    /// As [`BodyLaw::shape`], of z alone.
+    /// As [`BodyLaw::shape`], from z alone.
     fn shape(&self, z: f64) -> Self::Shape;
 
-    /// Ψ and its derivatives by s and z, where e^s − 1 is `area_change`.
+    /// Ψ and its derivatives with respect to s and z, where e^s − 1 is `area_change`.
     fn at(&self, area_change: f64, shape: Self::Shape) -> Derivatives;
 }
 
-/// W = Ψ(s, z) + U(J₃); whether U' has a logarithm is known in advance, for the sake of the others' time.
+/// W = Ψ(s, z) + U(J₃). Whether U' has a logarithm is known in advance, which saves time where it has none.
 #[derive(Debug)]
 struct FlorySplit<L, const LOGARITHM: bool> {
     law: Arc<L>,

@@ -46,7 +46,7 @@ impl InvariantLaw for Gent {
     #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let share = invariants.i1_minus_3 / self.jm;
-        // Beyond the limit there is no stress either, though the formula has one.
+        // Beyond the limit there is no stress, though the formula gives one.
         let left = if share < 1.0 { 1.0 - share } else { f64::NAN };
         EnergyDerivatives {
             energy: -0.5 * self.mu * self.jm * logarithm_of_one_plus(-share),

@@ -27,11 +27,11 @@ use crate::document::Bound;
 /// Fibres carry load only where ⟨E⟩ is positive; the stress is continuous there, the tangent is not. At rest the
 /// tangent is that of stretched fibres.
 ///
-/// A strip cut from the sheet finds its contraction and its shear by itself: its curve has no closed form
+/// The contraction and the shear of a strip cut from the sheet follow from equilibrium: its curve has no closed form
 /// and is found by Newton's method.
 ///
 /// **Limits.** k₁ → 0: neo-Hooke. κ = ⅓: isotropic.
-/// **Not covered.** Fibres out of the plane, and buckling of pressed fibres.
+/// **Not covered.** Fibres out of the plane, and buckling of compressed fibres.
 ///
 /// # References
 /// G. A. Holzapfel, T. C. Gasser, R. W. Ogden, J. Elasticity 61, 1 (2000), doi:10.1023/A:1010835316564;
@@ -82,7 +82,7 @@ impl HolzapfelGasserOgden {
         }
     }
 
-    /// Eₐ, ∂Eₐ/∂F, and Ψ, Ψ′, Ψ″ of one family; `None` for fibres that are pressed.
+    /// Eₐ, ∂Eₐ/∂F, and Ψ, Ψ′, Ψ″ of one family; `None` for compressed fibres.
     fn family(&self, kinematics: &Kinematics, [x, y]: [f64; 2]) -> Option<Family> {
         let [e11, e12, e22] = kinematics.twice_green_lagrange;
         let stretched = x * x * e11 + 2.0 * x * y * e12 + y * y * e22; // I₄ − 1
@@ -161,7 +161,7 @@ impl HyperelasticLaw for HolzapfelGasserOgden {
         self.k1 == 0.0 || 3.0 * self.kappa == 1.0
     }
 
-    /// FEBio has two families at ±γ always: one goes out as two of half the stiffness at γ = 0 in turned axes.
+    /// FEBio always has two families at ±γ: a single family is written as two of half the stiffness at γ = 0 in turned axes.
     fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
         let febio = |k1: f64, gamma: f64, axis: &[[f64; 2]]| {
             let matrix = [

@@ -145,9 +145,9 @@ impl<L: InvariantLaw> IsochoricLaw for L {
     }
 }
 
-/// What is made of the kinematics and derivatives at a point.
+/// A result computed from the kinematics and derivatives at a point.
 trait Made<const N: usize> {
-    /// Component by component.
+    /// The components of the result.
     fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; N];
 }
 
@@ -169,7 +169,7 @@ impl Made<COMPONENTS> for Response {
     }
 }
 
-/// Straight-line code for each point: the compiler makes one instruction of several points, with the widest
+/// Straight-line code for each point: the compiler handles several points with one instruction, with the widest
 /// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
 struct PointLoop<'a, L, M, const N: usize> {
     law: &'a L,
@@ -187,7 +187,7 @@ impl<L: InvariantLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_
         let mut inverted = 0_u64;
         for first in (0..points).step_by(LANES) {
             let count = LANES.min(points - first);
-            // Places of their own, which no store reaches; behind the last point rest.
+            // Local copies, which no store aliases; entries behind the last point are at rest.
             let mut gradients = [[0.0; LANES]; 4];
             for (own, component) in gradients.iter_mut().zip(&self.gradients) {
                 own[..count].copy_from_slice(&component[first..first + count]);

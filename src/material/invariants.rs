@@ -1,4 +1,4 @@
-//! Invariants of an incompressible body, and an energy's derivatives by them.
+//! Invariants of an incompressible body, and an energy's derivatives with respect to them.
 
 /// The first two invariants of the right Cauchy–Green tensor of an incompressible body,
 /// each less its value at rest.
@@ -17,7 +17,7 @@ pub struct Invariants {
     pub i2_minus_3: f64,
 }
 
-/// The strain energy per reference volume and its derivatives by the invariants.
+/// The strain energy per reference volume and its derivatives with respect to the invariants.
 ///
 /// Energies are in mJ/mm³ = MPa; the invariants have no unit, so the derivatives are in MPa too.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,4 +1,4 @@
-//! What a hyperelastic law is: energy, stress and tangent of a sheet.
+//! The interface of hyperelastic laws: energy, stress and tangent of a sheet.
 
 use std::sync::Arc;
 
@@ -7,12 +7,12 @@ use super::sheet::{COMPONENTS, Kinematics, PlaneState, PlaneTensor, SheetRespons
 use super::softening::Softening;
 use super::volume::Volume;
 
-/// A hyperelastic law, as a sheet in its plane sees it: incompressible and in plane stress unless it says otherwise.
+/// A hyperelastic law as the response of a sheet in its plane: incompressible and in plane stress unless the law states otherwise.
 ///
-/// A law of the first two invariants is an [`InvariantLaw`](super::InvariantLaw), which needs scalars only and becomes a
-/// `HyperelasticLaw` by itself. Laws of the principal stretches and laws with fibres give the sheet's
-/// response themselves. The curves of the usual tests and the stable range are derived from it once for
-/// all laws, in [`super::curve`] and [`super::stability`].
+/// A law of the first two invariants is an [`InvariantLaw`](super::InvariantLaw), which needs scalars only and is a
+/// `HyperelasticLaw` automatically. Laws of the principal stretches and laws with fibres implement the sheet's
+/// response themselves. The curves of the usual tests and the stable range are derived from it once for all laws, in
+/// [`super::curve`] and [`super::stability`].
 pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     /// Energy per reference volume in mJ/mm³ and first Piola–Kirchhoff stress P = ∂Ψ/∂F in MPa.
     fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor);
@@ -24,8 +24,7 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     /// λ = 1 + `strain` while its edges are free; `strain` > −1.
     fn tension(&self, direction: [f64; 2], strain: f64) -> TensionResponse;
 
-    /// Nominal stresses along both axes of a sheet stretched by 1 + ε₁ and 1 + ε₂ along them, in MPa; not
-    /// numbers where a stretch is not positive.
+    /// Nominal stresses along both axes of a sheet stretched by 1 + ε₁ and 1 + ε₂ along them, in MPa; NaN where a stretch is not positive.
     fn biaxial(&self, [first, second]: [f64; 2]) -> [f64; 2] {
         match Kinematics::new(&PlaneTensor::new(first, 0.0, 0.0, second)) {
             Ok(kinematics) => {
@@ -36,9 +35,9 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         }
     }
 
-    /// P at many points at once; whether J is positive at all of them.
+    /// P at many points at once; returns whether J is positive at all of them.
     ///
-    /// All slices have one length.
+    /// All slices have the same length.
     fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
         let [p11, p12, p21, p22] = stresses;
         for point in 0..p11.len() {
@@ -53,10 +52,10 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         true
     }
 
-    /// Energy, P and the components of ∂P/∂F on and below the diagonal, column by column, at many points at once; whether
-    /// J is positive at all of them.
+    /// Energy, P and the components of ∂P/∂F on and below the diagonal, column by column, at many points at once;
+    /// returns whether J is positive at all of them.
     ///
-    /// All slices have one length.
+    /// All slices have the same length.
     fn responses(&self, gradients: [&[f64]; 4], mut responses: [&mut [f64]; COMPONENTS]) -> bool {
         for point in 0..gradients[0].len() {
             let h = gradients.map(|component| component[point]);
@@ -71,25 +70,24 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         true
     }
 
-    /// The law in the words of another code; `None` where that code has no law that equals it.
+    /// The law in the form of another code; `None` where that code has no equal law.
     ///
-    /// `bulk_modulus` in MPa stands for incompressibility; it is infinite for a code that has incompressible sheets, so
-    /// that D = 2/K vanishes.
+    /// `bulk_modulus` in MPa represents incompressibility; it is infinite for a code that has incompressible sheets, so that D = 2/K vanishes.
     fn in_code(&self, _code: Code, _bulk_modulus: f64) -> Option<CodeLaw> {
         None
     }
 
-    /// J₃ = J λ₃, the volume over that at rest: 1 unless the law says otherwise.
+    /// J₃ = J λ₃, the volume relative to that at rest: 1 unless the law states otherwise.
     fn volume_ratio(&self, _kinematics: &Kinematics) -> f64 {
         1.0
     }
 
-    /// λ₃ = J₃/J, the thickness over that at rest.
+    /// λ₃ = J₃/J, the thickness relative to that at rest.
     fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
         self.volume_ratio(kinematics) / kinematics.area_ratio()
     }
 
-    /// ∂λ₃/∂F: −cof F/J² where the volume stays as it is.
+    /// ∂λ₃/∂F: −cof F/J² where the volume is constant.
     fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
         -cofactor(&kinematics.deformation_gradient) / kinematics.area_ratio().powi(2)
     }
@@ -105,28 +103,27 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         kinematics.kirchhoff_stress(stress).map(|tau| tau / volume)
     }
 
-    /// What is known of the third direction.
+    /// The state of the third direction.
     fn plane_state(&self) -> PlaneState {
         PlaneState::Stress
     }
 
-    /// Whether it holds for strains and rotations alone that are small against 1.
+    /// Whether the law is valid only for strains and rotations that are small against 1.
     fn is_for_small_strains(&self) -> bool {
         false
     }
 
-    /// The same law in plane strain; `None` for a law without a change of volume, which has no stress there that follows from
-    /// the strain.
+    /// The same law in plane strain; `None` for a law without a change of volume, whose stress there does not follow from the strain.
     fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
         None
     }
 
-    /// The initial bulk modulus κ in MPa; `None` for a law whose volume stays as it is.
+    /// The initial bulk modulus κ in MPa; `None` for a law whose volume is constant.
     fn bulk_modulus(&self) -> Option<f64> {
         None
     }
 
-    /// The law of a body that keeps its volume with a resistance to a change of it; `None` where there is no such law.
+    /// A law that keeps its volume, extended by a resistance to a change of volume; `None` where there is no such law.
     fn with_volume(self: Arc<Self>, _volume: Volume) -> Option<Arc<dyn HyperelasticLaw>>
     where
         Self: 'static,
@@ -134,23 +131,23 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// How the material softens by its largest load; `None` where it remembers nothing. Energy, stress and tangent of a law of a card are
-    /// those of the first loading, from which those after it follow.
+    /// Softening by the largest load so far; `None` for a material without memory. Energy, stress and tangent of a
+    /// card's law are those of the first loading, from which the softened ones follow.
     fn softening(&self) -> Option<Softening> {
         None
     }
 
-    /// Whether a rotation of the deformed sheet rotates its stress and changes nothing else.
+    /// Whether a rotation of the deformed sheet rotates its stress and has no other effect.
     fn is_objective(&self) -> bool {
         true
     }
 
-    /// What follows from the parameters and deserves to be read beside them: names and sentences.
+    /// Consequences of the parameters that are reported beside them: names and sentences.
     fn statements(&self) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 
-    /// Whether all directions of the sheet are alike.
+    /// Whether all directions of the sheet are equivalent.
     fn is_isotropic(&self) -> bool {
         true
     }
@@ -180,7 +177,7 @@ pub struct TensionResponse {
 /// Points that are evaluated side by side.
 pub(super) const LANES: usize = 16;
 
-/// Copies what was found at `count` points to the places from `first` on.
+/// Copies the results at `count` points to the places from `first` on.
 #[inline(always)]
 pub(super) fn store<const N: usize>(
     all: &mut [&mut [f64]; N],

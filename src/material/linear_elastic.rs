@@ -22,15 +22,15 @@ use super::volume::lame_modulus;
 /// | ν | `poisson_ratio` | – | −0.9 … 0.4999 | Poisson's ratio; Λ = 2 μ ν/(1 − 2 ν) |
 ///
 /// **Limits.** Every law of the same μ and ν at strains and rotations that are small against 1.
-/// **Not covered.** Rotations: a sheet that turns has a stress, of the order of the square of the angle. Stresses on the deformed
-/// sheet are those on the sheet at rest. Take the law of Saint Venant and Kirchhoff where a sheet turns.
+/// **Not covered.** Rotations: a rigid rotation causes a stress of the order of the square of the angle. Stresses on the deformed
+/// sheet equal those on the sheet at rest. Take the law of Saint Venant and Kirchhoff where a sheet rotates.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearElastic {
     /// μ in MPa.
     pub shear_modulus: f64,
     /// Λ in MPa.
     pub lame_modulus: f64,
-    /// What is known of the third direction.
+    /// The state of the third direction.
     pub plane: PlaneState,
 }
 

@@ -4,7 +4,7 @@
 //! 1 + y = 2ᵏ (1 + f),   √½ ≤ 1 + f < √2,   ln(1 + f) = 2 Σ s²ⁿ⁺¹/(2n + 1),   s = f/(2 + f)
 //! ```
 //!
-//! What 1 + y loses of y by rounding is added to the first order.
+//! The part of y that 1 + y loses by rounding is added to first order.
 
 use super::exponential::{LN_2_HIGH, LN_2_LOW};
 
@@ -13,7 +13,7 @@ const ROOT_OF_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
 const EXPONENT: u64 = 0xfff0_0000_0000_0000;
 
-/// 2⁵²: the bits of it and of a small whole number added are those of their sum.
+/// 2⁵²: adding a small whole number to it adds that number to its bits.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// ln(1 + y) within 2 units in the last place where 1 + y is a positive normal number, without cancellation where y is small.

@@ -1,4 +1,4 @@
-//! Area and shape of a sheet's deformation, and the response of a law of them.
+//! Area and shape measures of a sheet's deformation, and the response of a law that depends on them.
 //!
 //! ```text
 //! m = ln J,   z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1                                      [–]
@@ -13,7 +13,7 @@ use nalgebra::Matrix4;
 
 use super::sheet::{Kinematics, PlaneTensor, SheetResponse, cofactor, cofactor_derivative};
 
-/// An energy and its derivatives by m and z.
+/// An energy and its derivatives with respect to m and z.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Derivatives {
     /// Ψ in mJ/mm³.
@@ -30,7 +30,7 @@ pub struct Derivatives {
     pub zz: f64,
 }
 
-/// z, and the derivatives of m and z by F.
+/// z, and the derivatives of m and z with respect to F.
 #[derive(Clone, Copy, Debug)]
 pub struct Measures {
     /// z.

@@ -88,11 +88,11 @@ pub fn slopes(points: &[[f64; 2]]) -> Vec<f64> {
     slopes
 }
 
-/// Three-point slope at an end, kept within what leaves the curve monotone.
+/// Three-point slope at an end, limited so that the curve is monotone.
 fn end_slope(h: f64, next_h: f64, mean: f64, next_mean: f64) -> f64 {
     let slope = ((2.0 * h + next_h) * mean - h * next_mean) / (h + next_h);
     if slope * mean <= 0.0 {
-        // A curve that would begin flat has no modulus: the secant stands in.
+        // A curve with a flat start would have no modulus: the secant slope is taken instead.
         mean
     } else if mean * next_mean < 0.0 && slope.abs() > 3.0 * mean.abs() {
         3.0 * mean

@@ -20,7 +20,7 @@ pub const GAS_CONSTANT: f64 = 8_314.462_618;
 /// φ    polymer fraction of the freely swollen gel, W is per its volume
 /// ```
 ///
-/// W is the free energy at a fixed chemical potential R T ln a of the solvent: solvent comes and goes as the gel is stretched.
+/// W is the free energy at a fixed chemical potential R T ln a of the solvent: solvent flows in and out as the gel is stretched.
 /// It vanishes at rest, where the gel has swollen freely:
 ///
 /// ```text
@@ -34,14 +34,14 @@ pub const GAS_CONSTANT: f64 = 8_314.462_618;
 /// | χ | `chi` | – | −2 … 2 | Flory's interaction parameter |
 /// | φ₀ | `preparation_fraction` | – | 0 … 1 | polymer fraction as prepared; 1 for a network made dry |
 /// | B | `chains` | | `"affine"`, `"phantom"` | 1 for affine chains, 0 for phantom ones, on junctions of four strands |
-/// | V₁ | `molar_volume` | mm³/mol | > 0 | of the solvent; 18.07 cm³/mol of water where it is not said |
-/// | T | `temperature` | K | > 0 | 298.15 K where it is not said |
-/// | a | `activity` | – | 0 … 1 | of the solvent: relative humidity; 1, in the liquid, where it is not said |
+/// | V₁ | `molar_volume` | mm³/mol | > 0 | of the solvent; default: 18.07 cm³/mol, water |
+/// | T | `temperature` | K | > 0 | default: 298.15 K |
+/// | a | `activity` | – | 0 … 1 | of the solvent: relative humidity; default: 1, in the liquid |
 ///
-/// **Limits.** Swollen shear modulus G₀ (φ/φ₀)^⅓. Stretched so fast that no solvent moves, the gel is neo-Hookean with this
-/// modulus; this law is for stretches so slow that solvent has come to rest.
-/// **Not covered.** χ that depends on the polymer fraction, charged networks, chains near their full length, the time that
-/// solvent takes.
+/// **Limits.** Swollen shear modulus G₀ (φ/φ₀)^⅓. Stretched so fast that no solvent moves, the gel is neo-Hookean
+/// with this modulus; this law is for stretching so slow that the solvent is in equilibrium.
+/// **Not covered.** χ that depends on the polymer fraction, charged networks, chains near their full length, the time
+/// that the flow of solvent takes.
 ///
 /// # References
 /// P. J. Flory, J. Rehner, J. Chem. Phys. 11, 521 (1943), doi:10.1063/1.1723792;
@@ -114,20 +114,19 @@ impl Network {
         ))
     }
 
-    /// ln(1 − φ) + φ + χ φ² − ln a: the chemical potential of the solvent in the polymer without a network, less that outside,
-    /// over R T.
+    /// ln(1 − φ) + φ + χ φ² − ln a: the chemical potential of the solvent in the polymer without a network, less the potential outside, over R T.
     fn mixing(&self, fraction: f64) -> f64 {
         (-fraction).ln_1p() + fraction + self.chi * fraction * fraction - self.activity.ln()
     }
 
-    /// The stress of the isotropically swollen gel in MPa: negative where it swells on.
+    /// The stress of the isotropically swollen gel in MPa: negative where it swells further.
     fn stress(&self, fraction: f64) -> f64 {
         let ratio = fraction / self.preparation_fraction;
         self.modulus * (ratio.cbrt() - 0.5 * self.logarithm * ratio)
             + self.osmotic_modulus * self.mixing(fraction)
     }
 
-    /// φ: the polymer fraction of the gel that has swollen freely; not a number where a parameter is none.
+    /// φ: the polymer fraction of the gel that has swollen freely; NaN where a parameter is NaN.
     ///
     /// The stress is positive for the thinnest gel and negative for a dry one. Bisection between them, to the last digit.
     pub fn free_swelling(&self) -> f64 {
@@ -176,8 +175,8 @@ impl SwollenNetwork {
         }
     }
 
-    /// The energy of all but the squares of the stretches, its slope and curvature by c = ln J₃, less what they have at first
-    /// order, at v = J₃ − 1: U(c) − U(0) − c U′(0), U′(c) − U′(0) and U″(c). With ϕ = φ/J₃:
+    /// The part U of the energy without the squares of the stretches, at v = J₃ − 1: U(c) − U(0) − c U′(0), U′(c) −
+    /// U′(0) and U″(c) with c = ln J₃. With ϕ = φ/J₃:
     ///
     /// ```text
     /// U = −½ B G₀ φ/φ₀ c + R T/V₁ ((J₃ − φ) ln(1 − ϕ) + χ (φ − φ ϕ) − J₃ ln a)
@@ -189,7 +188,7 @@ impl SwollenNetwork {
         // J₃ − 1 − c, and 1/J₃ − 1 + c
         let swelling = -logarithm_beyond_first_order(v);
         let shrinking = v * v / (1.0 + v) - swelling;
-        // ϕ − φ, and ln((1 − ϕ)/(1 − φ)) with what it has beyond first order
+        // ϕ − φ, and ln((1 − ϕ)/(1 − φ)) with its part beyond first order
         let thinner = -phi * v / (1.0 + v);
         let beyond = logarithm_beyond_first_order(-thinner / dry);
         let logarithm = beyond - thinner / dry;

@@ -93,7 +93,7 @@ impl Ogden {
         Powers::new(self.terms.iter().map(|[_, alpha]| 0.5 * alpha), z)
     }
 
-    /// Ψ and its derivatives by m and z.
+    /// Ψ and its derivatives with respect to m and z.
     fn derivatives(&self, m: f64, powers: &Powers) -> Derivatives {
         let mut sum = Derivatives::default();
         for (term, [mu, alpha]) in self.terms.iter().enumerate() {
@@ -115,7 +115,7 @@ impl Ogden {
     }
 }
 
-/// T − 1, T, T′ and T″ of the terms of a law at one z; for laws with more terms than cards have they are found when asked for.
+/// T − 1, T, T′ and T″ of the terms of a law at one z; for laws with more terms than cards have, they are computed on demand.
 #[derive(Clone, Copy, Debug)]
 pub struct Powers {
     z: f64,
@@ -124,7 +124,7 @@ pub struct Powers {
 }
 
 impl Powers {
-    /// Of the terms' orders.
+    /// Computes them for the orders of the terms.
     pub fn new(orders: impl Iterator<Item = f64>, z: f64) -> Self {
         // Half the difference of the logarithmic stretches.
         let delta = (0.5 * z).sqrt().asinh();
@@ -135,7 +135,7 @@ impl Powers {
         Self { z, delta, terms }
     }
 
-    /// Of a term, whose order is given once more.
+    /// The values of a term, whose order is given once more.
     pub fn of(&self, term: usize, order: f64) -> [f64; 4] {
         match self.terms.get(term) {
             Some(found) => *found,

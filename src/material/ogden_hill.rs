@@ -81,8 +81,8 @@ impl OgdenHill {
     /// | f | `share` | – | 0 … 1 | share of the solid; 0 is the foam of polyurethane that Blatz and Ko measured, with ν = ¼ |
     /// | ν | `poisson_ratio` | – | −0.9 … 0.4999 | initial Poisson's ratio |
     ///
-    /// It has the terms α = 2 and α = −2 of the law of Ogden and Hill. The foam, f = 0, is unstable where a strip is stretched too
-    /// far: its stable range is told.
+    /// It has the terms α = 2 and α = −2 of the law of Ogden and Hill. The foam, f = 0, is unstable where a strip is
+    /// stretched too far: its stable range is reported.
     ///
     /// # References
     /// P. J. Blatz, W. L. Ko, Trans. Soc. Rheol. 6, 223 (1962), doi:10.1122/1.548937

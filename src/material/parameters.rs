@@ -6,10 +6,10 @@ use super::volume::POISSON_RATIO;
 use crate::document::{Bound, Section, name_of};
 use crate::units::Dimension;
 
-/// Strains up to here are what they say; a larger one may have been meant in percent.
+/// Largest strain that is taken as stated; a larger one may have been meant in percent.
 const LARGEST_STRAIN: f64 = 30.0;
 
-/// Which stress a curve or a card speaks of.
+/// The stress measure of a curve or a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressMeasure {
     /// Force per reference area (first Piola–Kirchhoff, engineering stress).
@@ -18,7 +18,7 @@ pub enum StressMeasure {
     Cauchy,
 }
 
-/// Which strain a curve or a card speaks of.
+/// The strain measure of a curve or a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrainMeasure {
     /// ε = λ − 1 (engineering strain).
@@ -27,7 +27,7 @@ pub enum StrainMeasure {
     Logarithmic,
 }
 
-/// What a card does with a curve whose stress at rest is not zero.
+/// Treatment of a curve whose stress at rest is not zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OffsetTreatment {
     /// The stress at rest is subtracted; the law starts at zero stress.
@@ -126,7 +126,7 @@ pub struct Parameter {
     pub dimension: Dimension,
     /// The values that it may take.
     pub bound: Bound,
-    /// Where the values of usual materials lie, for a parameter that is no stress.
+    /// Range of the values of usual materials, for a parameter that is not a stress.
     pub usual: [f64; 2],
 }
 
@@ -145,7 +145,7 @@ impl Parameter {
     }
 }
 
-/// What a law reads of a card.
+/// Entries that a law reads from a card.
 #[derive(Clone, Debug, Default)]
 pub struct CardEntries {
     /// Its parameters.
@@ -154,15 +154,15 @@ pub struct CardEntries {
     pub choices: Vec<(&'static str, String)>,
 }
 
-/// Where the values come from.
+/// The source of the values.
 #[derive(Debug)]
 enum Origin<'a> {
     Card(Section<'a>),
     Values(&'a [f64]),
 }
 
-/// What a law reads its parameters from: the `[parameters]` table of a card, or plain values in the order
-/// in which the law asks for them. In both cases it remembers what was asked for.
+/// The source of a law's parameters: the `[parameters]` table of a card, or plain values in the order in which the
+/// law asks for them. In both cases it records what was asked for.
 #[derive(Debug)]
 pub struct Parameters<'a> {
     origin: Origin<'a>,
@@ -184,8 +184,7 @@ impl<'a> Parameters<'a> {
         Self::new(Origin::Card(section), stress_measure, strain_measure)
     }
 
-    /// Parameters with the given values, in the order in which the law asks for them; missing ones are
-    /// not numbers.
+    /// Parameters with the given values, in the order in which the law asks for them; missing ones are NaN.
     pub fn of_values(
         values: &'a [f64],
         stress_measure: StressMeasure,
@@ -213,7 +212,7 @@ impl<'a> Parameters<'a> {
         self.ask(key, Dimension::Stress, bound, [f64::NAN; 2])
     }
 
-    /// A parameter without a dimension; the values of usual materials lie within `usual`.
+    /// A dimensionless parameter; the values of usual materials lie within `usual`.
     pub fn number(&self, key: &'static str, bound: Bound, usual: [f64; 2]) -> f64 {
         self.ask(key, Dimension::Ratio, bound, usual)
     }
@@ -256,8 +255,8 @@ impl<'a> Parameters<'a> {
         chosen.1
     }
 
-    /// A known condition of the material in its internal unit, which no fit looks for: what the card says, or `standard` where it
-    /// says nothing; a standard that is not a number must be said by a card.
+    /// A known condition of the material in its internal unit, which is never fitted: the card's value, or `standard`
+    /// where the card states none; where `standard` is NaN, the card must state a value.
     pub fn condition(&self, key: &'static str, dimension: Dimension, standard: f64) -> f64 {
         let value = match &self.origin {
             Origin::Card(section) if section.has(key) || standard.is_nan() => match dimension {
@@ -279,7 +278,7 @@ impl<'a> Parameters<'a> {
         matches!(&self.origin, Origin::Card(section) if section.has(key))
     }
 
-    /// A stress that a card may leave out and that does not act on the law.
+    /// An optional stress on a card that does not affect the law.
     pub fn remark(&self, key: &'static str) {
         if let Origin::Card(section) = &self.origin
             && section.has(key)
@@ -288,7 +287,7 @@ impl<'a> Parameters<'a> {
         }
     }
 
-    /// Two lists of a card, strains and stresses in MPa; none where there is no card.
+    /// Two lists of a card, strains and stresses in MPa; empty where there is no card.
     pub fn curve(&self) -> Vec<[f64; 2]> {
         let Origin::Card(section) = &self.origin else {
             return Vec::new();
@@ -320,12 +319,12 @@ impl<'a> Parameters<'a> {
         }
     }
 
-    /// Reports unknown keys and returns what was asked for.
+    /// Reports unknown keys and returns the entries that were read.
     pub fn finish(self) -> CardEntries {
         self.finish_with(|_| None)
     }
 
-    /// The same with what is known of an unknown key.
+    /// The same with a remedy for an unknown key.
     pub fn finish_with(self, remedy: impl Fn(&str) -> Option<String>) -> CardEntries {
         if let Origin::Card(section) = &self.origin {
             section.unknown_keys_with(remedy);

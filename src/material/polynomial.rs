@@ -20,7 +20,7 @@ use crate::document::Bound;
 /// | C₂₀, C₀₂ | `c20`, `c02` | MPa | any | with five parameters |
 ///
 /// **Limits.** Second-order terms → 0: Mooney–Rivlin. Small strain: μ₀ = 2 (C₁₀ + C₀₁).
-/// **Not covered.** Nothing forbids negative parameters, and fits often give them: look at the stable range.
+/// **Not covered.** Negative parameters are not excluded, and fits often give them: check the stable range.
 ///
 /// # References
 /// R. S. Rivlin, D. W. Saunders, Phil. Trans. R. Soc. A 243, 251 (1951), doi:10.1098/rsta.1951.0004

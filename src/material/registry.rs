@@ -41,12 +41,12 @@ pub struct Law {
 }
 
 impl Law {
-    /// The law of a name.
+    /// The law with a name.
     pub fn named(name: &str) -> Option<&'static Self> {
         LAWS.iter().find(|law| law.name == name)
     }
 
-    /// The law with parameter values in internal units, and what it read of a card.
+    /// The law with parameter values in internal units, and the entries that it read.
     pub fn with_values(
         &self,
         values: &[f64],
@@ -193,10 +193,10 @@ const OGDEN_HILL: &str =
 
 const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)";
 
-/// The law of a swollen network, of which tests alone tell too little.
+/// The law of a swollen network, of which tests alone determine too little.
 pub const SWELLING: &str = "flory-rehner";
 
-/// The law that takes a measured curve as it is: there is nothing to fit.
+/// The law that takes a measured curve as it is, without parameters to fit.
 pub const MARLOW_TABLE: &str = "marlow-table";
 
 /// The test data behind the shipped cards: path as the cards name it, and text.
@@ -215,7 +215,7 @@ pub const DATA: &[(&str, &str)] = &[
     data!("katashima_2012_unequal-biaxial_direction2"),
 ];
 
-/// Every card that gelbench brings along: its name and its text.
+/// Every shipped card: its name and its text.
 pub const CARDS: &[(&str, &str)] = &[
     card!("pva-10"),
     card!("pva-10-cauchy"),

@@ -20,7 +20,7 @@ use super::volume::lame_modulus;
 /// **Limits.** Small strain with large rotations: linear elasticity.
 /// **Not covered.** Compression: the stress of a strip falls again below λ = √⅓ = 0.577, a body pressed flat has no stress, and
 /// in plane stress a sheet whose Green strains add up to more than ½ (1 − ν)/ν has no thickness that keeps its surfaces free.
-/// The law is one for small strains; its stable range is told.
+/// The law is one for small strains; its stable range is reported.
 ///
 /// # References
 /// G. Kirchhoff, Sitzungsber. Akad. Wiss. Wien 9, 762 (1852);

@@ -54,7 +54,7 @@ const GAUSS: [[f64; 2]; 3] = [
     [0.887_298_334_620_741_7, 5.0 / 18.0],
 ];
 
-/// Why points are no table of a function.
+/// Why points do not define a function.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TableFault {
     /// Fewer than two points.
@@ -63,7 +63,7 @@ pub enum TableFault {
     /// A point that is not finite.
     #[error("has a point that is not finite")]
     NotFinite,
-    /// A place that is not beyond the one before it.
+    /// A place that is not greater than the one before it.
     #[error("must ascend: {next} follows {before}")]
     NotAscending {
         /// The place.
@@ -74,7 +74,7 @@ pub enum TableFault {
 }
 
 impl ScalarFunction {
-    /// Always the same.
+    /// A constant function.
     pub fn constant(value: f64) -> Self {
         Self::Polynomial(vec![value])
     }
@@ -133,7 +133,7 @@ impl ScalarFunction {
 }
 
 impl Table {
-    /// The end of the piece that holds x, from 1 on.
+    /// The index of the end point of the piece that contains x, from 1 on.
     fn piece(&self, x: f64) -> usize {
         let next = self.points.partition_point(|point| point[0] < x);
         next.clamp(1, self.points.len() - 1)

@@ -7,9 +7,9 @@
 //! ∂I₁/∂F = 2 (F − J⁻³ cof F),   ∂I₂/∂F = 2 (J⁻² F + (J − tr C/J³) cof F)
 //! ```
 //!
-//! The pressure is eliminated by the free surface, σ₃₃ = 0, so the sheet behaves in its plane as an
-//! ordinary compressible 2-D body: nothing locks. Ψ is even in J, so a state with J ≤ 0 may have a
-//! perfect residual and yet be turned inside out: it is refused here.
+//! The pressure is eliminated by the free surface, σ₃₃ = 0, so the sheet behaves in its plane as an ordinary
+//! compressible 2-D body, which does not lock. Ψ is even in J, so a state with J ≤ 0 may have a zero residual and yet
+//! be turned inside out: it is refused here.
 //!
 //! Everything is computed from the displacement gradient H, in a form in which no term cancels at
 //! first order, so that stress and tangent keep their digits at strains of 1e-8.
@@ -24,7 +24,7 @@ use crate::document::name_of;
 /// Components 11, 12, 21, 22 of a tensor in the plane: a displacement gradient Hᵢⱼ = ∂uᵢ/∂Xⱼ, F = 1 + H, or a stress P.
 pub type PlaneTensor = Vector4<f64>;
 
-/// What is known of the third direction.
+/// The state of the third direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PlaneState {
     /// A thin sheet with free surfaces: σ₃₃ = 0.
@@ -88,7 +88,7 @@ pub struct SheetResponse {
 pub const COMPONENTS: usize = 15;
 
 impl SheetResponse {
-    /// All of them.
+    /// All components.
     #[inline(always)]
     pub fn components(&self) -> [f64; COMPONENTS] {
         let (p, a) = (&self.first_piola_kirchhoff_stress, &self.tangent);
@@ -131,7 +131,7 @@ impl Kinematics {
         }
     }
 
-    /// Kinematics of a displacement gradient, without meaning where J is not positive.
+    /// Kinematics of a displacement gradient, meaningless where J is not positive.
     #[inline(always)]
     pub fn unchecked(h: &PlaneTensor) -> Self {
         let [h11, h12, h21, h22] = [h[0], h[1], h[2], h[3]];
@@ -187,7 +187,7 @@ impl Kinematics {
         [sum + difference, sum - difference]
     }
 
-    /// Kirchhoff stress τ = P Fᵀ in the plane, in MPa: components 11, 12, 22; the Cauchy stress where the volume stays as it is.
+    /// Kirchhoff stress τ = P Fᵀ in the plane, in MPa: components 11, 12, 22; equal to the Cauchy stress where the volume is constant.
     pub fn kirchhoff_stress(&self, first_piola_kirchhoff: &PlaneTensor) -> [f64; 3] {
         let (p, f) = (first_piola_kirchhoff, &self.deformation_gradient);
         [

@@ -8,7 +8,7 @@ use super::sheet::{Kinematics, PlaneState, PlaneTensor, SheetResponse};
 use super::softening::Softening;
 use crate::error::Error;
 
-/// A law whose points all had the same largest energy: that of a load step, while it stays the same.
+/// A softening law in which all points have had the same largest energy, as in a load step that does not exceed it.
 #[derive(Clone, Debug)]
 pub struct SoftenedLaw {
     /// The law of the material that was never loaded.
@@ -87,7 +87,7 @@ impl HyperelasticLaw for SoftenedLaw {
         self.virgin.bulk_modulus()
     }
 
-    /// That of the first loading: the softening is [`HyperelasticLaw::softening`]'s.
+    /// The law of the first loading: the softening is [`HyperelasticLaw::softening`]'s.
     fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
         self.virgin.in_code(code, bulk_modulus)
     }
@@ -115,7 +115,7 @@ impl HyperelasticLaw for SoftenedLaw {
 }
 
 impl Softening {
-    /// Energy, stress and slope of a strip with free edges: they are free where they were.
+    /// Energy, stress and slope of a strip with free edges; softening leaves them free.
     pub fn tension(&self, virgin: TensionResponse, most: f64) -> TensionResponse {
         let [factor, slope] = self.factor(virgin.energy, most);
         let stress = virgin.nominal_stress;
@@ -127,7 +127,7 @@ impl Softening {
     }
 }
 
-/// That a material does not soften, for what has no memory of its largest load.
+/// Checks that a material does not soften, for methods without memory of the largest load.
 ///
 /// # Errors
 /// [`Error::Input`] where it does.
@@ -142,7 +142,7 @@ pub fn check_memory(law: &dyn HyperelasticLaw, what: &str) -> Result<(), Error> 
     }
 }
 
-/// A law at a state, after its point was in some others.
+/// A law at a state that follows other states of its point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StressAfter {
     /// Ψ, the work that was done on the point, in mJ/mm³.
@@ -151,12 +151,12 @@ pub struct StressAfter {
     pub stress: PlaneTensor,
     /// η; 1 for a law without softening.
     pub factor: f64,
-    /// The part of Ψ that is dissipated, in mJ/mm³; none without softening.
+    /// The part of Ψ that is dissipated, in mJ/mm³; zero without softening.
     pub dissipated: f64,
 }
 
 impl StressAfter {
-    /// Of a material that softens by the largest of the energies before, else the law's own.
+    /// The response softened by the largest of the energies before; without softening the law's own.
     pub fn new(
         law: &dyn HyperelasticLaw,
         now: &Kinematics,
@@ -184,7 +184,7 @@ impl StressAfter {
     }
 }
 
-/// What to do where a material must not soften.
+/// Advice where a material must not soften.
 pub const WITHOUT: &str =
     "leave out the card's `[softening]`: its law then describes the first loading";
 

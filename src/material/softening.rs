@@ -6,25 +6,25 @@
 //! D = (c/r) G(Wₘ/c) = Ψ at rest
 //! ```
 //!
-//! P₀ and W₀ are those of the law of a material that was never loaded. Where W₀ exceeds Wₘ, η = 1 and Ψ = W₀. Ψ is the work that
-//! was done on a point: what is stored is Ψ − D, what is dissipated is D, which grows with Wₘ alone. As long as Wₘ stays the same Ψ is
-//! an energy with P = ∂Ψ/∂F, so that one load step is one of a hyperelastic body:
+//! P₀ and W₀ are stress and energy of the material that was never loaded. Where W₀ exceeds Wₘ, η = 1 and Ψ = W₀. Ψ is
+//! the work done on a point: Ψ − D is stored, and D, which grows with Wₘ alone, is dissipated. As long as Wₘ is
+//! constant, Ψ is an energy with P = ∂Ψ/∂F, so that one load step is one of a hyperelastic body:
 //!
 //! ```text
 //! ∂P/∂F = η ∂P₀/∂F + η′ P₀ ⊗ P₀,   η′ = ∂η/∂W₀ = 2/(√π r c) e^(−((Wₘ − W₀)/c)²)
 //! ```
 //!
-//! η acts on the whole energy. Where a law changes its volume that is the form for foams; the thickness stretch is that of the law
-//! without softening, since P₃₃ = η P₀₃₃ vanishes with P₀₃₃.
+//! η acts on the whole energy. For a law with a change of volume this is the form for foams; the thickness stretch
+//! equals that of the law without softening, because P₃₃ = η P₀₃₃ vanishes with P₀₃₃.
 //!
 //! | symbol | card key | unit | admissible | meaning |
 //! |---|---|---|---|---|
-//! | r | `r` | – | > 1 | 1 − 1/r is the least that η can fall to |
+//! | r | `r` | – | > 1 | 1 − 1/r is the least value of η |
 //! | m | `m` | MPa | ≥ 0 | width of the transition in energy |
 //! | β | `beta` | – | ≥ 0 | the same, relative to Wₘ; m and β are not both zero |
 //!
-//! **Not covered.** A permanent set, healing with time, softening that goes on from cycle to cycle at the same load, and softening
-//! that depends on the direction.
+//! **Not covered.** A permanent set, healing with time, softening that continues from cycle to cycle at the same
+//! load, and softening that depends on the direction.
 //!
 //! # References
 //! R. W. Ogden, D. G. Roxburgh, Proc. R. Soc. A 455, 2861 (1999), doi:10.1098/rspa.1999.0431 (with m and β = 0);
@@ -50,7 +50,7 @@ pub struct Softening {
 }
 
 impl Softening {
-    /// The values that r takes.
+    /// The admissible values of r.
     pub const R: Bound = Bound::Range(1.0 + 1e-6, 1e6, "greater than 1");
 
     /// Reads the section of a card.
@@ -80,7 +80,7 @@ impl Softening {
 
     /// η and ∂η/∂W₀ at the energy W₀ of a point whose largest one so far was `most`, both in mJ/mm³.
     pub fn factor(&self, energy: f64, most: f64) -> [f64; 2] {
-        // Rounding takes the energy of a turned point below zero, where a point that was never loaded has no width.
+        // Rounding makes the energy of a turned point negative, where a point that was never loaded has zero width.
         let energy = energy.max(0.0);
         if energy >= most {
             return [1.0, 0.0];

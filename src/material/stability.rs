@@ -7,9 +7,9 @@
 //! dτ = (𝔸 : (dε F)) Fᵀ + P (dε F)ᵀ = D : dε,   𝔸 = ∂P/∂F                              [MPa]
 //! ```
 //!
-//! D is the tangent of the sheet's Kirchhoff stress without spin, the thickness following from the law; where the axes of
-//! strain are fixed, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive definite, which says more than a rising curve in
-//! one test.
+//! D is the tangent of the sheet's Kirchhoff stress without spin, with the thickness from the law; where the axes of
+//! strain are fixed, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive definite, which is a stricter condition
+//! than a rising curve in one test.
 //!
 //! # References
 //! D. C. Drucker, J. Appl. Mech. 26, 101 (1959), doi:10.1115/1.4011929
@@ -20,16 +20,15 @@ use super::curve::Mode;
 use super::law::HyperelasticLaw;
 use super::sheet::{Kinematics, PlaneTensor};
 
-/// Stretches beyond which stability is not looked for.
+/// The stretches within which stability is checked.
 pub const SEARCHED: [f64; 2] = [0.1, 10.0];
 
-/// The stretches λ₁ around rest within which the law is stable in a test: the ends of [`SEARCHED`] where it
-/// is stable that far.
+/// The stretches λ₁ around rest within which the law is stable in a test; an end of [`SEARCHED`] where it is stable that far.
 pub fn stable_range(law: &dyn HyperelasticLaw, mode: Mode) -> [f64; 2] {
     SEARCHED.map(|end| stable_until(law, mode, end.ln()).exp())
 }
 
-/// What rounding leaves of a tangent with a diagonal of ones.
+/// Rounding of a tangent with a unit diagonal.
 const ROUNDING: f64 = 1e-13;
 
 /// A sheet's ν in its plane at small strain: that of the material in plane stress, ν/(1 − ν) in plane strain.
@@ -63,7 +62,7 @@ fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     inside
 }
 
-/// Whether D is positive definite in a state; by D with a diagonal of ones, as its own may span more than numbers have digits.
+/// Whether D is positive definite in a state, judged by D scaled to a unit diagonal because its entries may span more than the precision of numbers.
 pub fn is_stable(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> bool {
     let Some(tangent) = tangent(law, kinematics) else {
         return false;
@@ -74,13 +73,13 @@ pub fn is_stable(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> bool {
     }
     let scales = diagonal.map(f64::sqrt);
     let scaled = tangent.component_div(&(scales * scales.transpose()));
-    // Where a thickness is far stiffer than the plane, rounding takes away what is positive.
+    // Where the thickness is far stiffer than the plane, rounding may make a positive pivot negative.
     (scaled + Matrix3::from_diagonal_element(ROUNDING))
         .cholesky()
         .is_some()
 }
 
-/// D by the components ε₁₁, ε₂₂ and √2 ε₁₂; `None` where it is not finite.
+/// D in the components ε₁₁, ε₂₂ and √2 ε₁₂; `None` where it is not finite.
 fn tangent(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> Option<Matrix3<f64>> {
     let response = law.response(kinematics);
     let matrix = |v: &PlaneTensor| Matrix2::new(v[0], v[1], v[2], v[3]);

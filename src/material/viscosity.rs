@@ -5,9 +5,9 @@
 //! S = S∞ + Σ Qᵢ,   Q̇ᵢ + Qᵢ/τᵢ = βᵢ Ṡ∞,   βᵢ = gᵢ/(1 − Σ g)                              [MPa]
 //! ```
 //!
-//! The first is an incompressible Newtonian fluid in parallel with the law, as a thin sheet with free surfaces sees it:
-//! a strip has 3 η. The second is Fung's convolution of the in-plane second Piola–Kirchhoff stress; the law of the card
-//! is that of long times, gᵢ is the share of the stress right after a sudden stretch that relaxes with the time constant τᵢ.
+//! The first is an incompressible Newtonian fluid in parallel with the law, for a thin sheet with free surfaces: the viscosity of
+//! a strip is 3 η. The second is Fung's convolution of the in-plane second Piola–Kirchhoff stress; the law of the card is that of
+//! long times, and gᵢ is the share of the stress right after a sudden stretch that relaxes with the time constant τᵢ.
 //!
 //! # References
 //! Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, Springer (1993), § 7.6,
@@ -34,7 +34,7 @@ pub struct ViscousMaterial {
     pub shear_viscosity: f64,
     /// The Prony series.
     pub relaxation: Vec<Relaxation>,
-    /// What the data behind it cover.
+    /// Times and rates that the data behind it cover.
     pub covered: Covered,
 }
 
@@ -47,22 +47,22 @@ pub struct Covered {
     pub rates: Option<[f64; 2]>,
 }
 
-/// What a branch keeps and takes up in a step.
+/// Coefficients of a branch's recursion over a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recursion {
     /// e^(−h/τ).
     pub keeps: f64,
-    /// β (1 − e^(−h/τ))/(h/τ): exact where the stress of long times changes evenly in the step.
+    /// β (1 − e^(−h/τ))/(h/τ): exact where the long-time stress changes linearly in the step.
     pub takes: f64,
 }
 
 impl ViscousMaterial {
-    /// Whether there are no viscous forces at all.
+    /// Whether there are no viscous forces.
     pub fn is_none(&self) -> bool {
         self.shear_viscosity == 0.0 && self.relaxation.is_empty()
     }
 
-    /// What figures of equilibria leave out, as a sentence; `None` where there is nothing viscous.
+    /// A sentence on the viscous effects that equilibria leave out; `None` without viscosity.
     pub fn left_out(&self) -> Option<String> {
         let at_once = self.relaxation_function(0.0);
         let sudden = match self.relaxation.is_empty() {
@@ -83,8 +83,7 @@ impl ViscousMaterial {
         1.0 + rest.sum::<f64>()
     }
 
-    /// Storage and loss modulus of a strip at small strain in MPa, at an angular frequency ω in rad/s, with its modulus
-    /// E∞ of long times:
+    /// Storage and loss modulus of a strip at small strain in MPa, at an angular frequency ω in rad/s, with its long-time modulus E∞:
     ///
     /// ```text
     /// E′ = E∞ (1 + Σ βᵢ x²/(1 + x²)),   E″ = E∞ Σ βᵢ x/(1 + x²) + 3 η ω,   x = ω τᵢ
@@ -118,8 +117,8 @@ impl ViscousMaterial {
         })
     }
 
-    /// The stresses Qᵢ of all branches after a step of `elapsed` s that ends at S∞ = `now`, of a memory of S∞ and Qᵢ before it, three
-    /// components each.
+    /// The stresses Qᵢ of all branches after a step of `elapsed` s that ends at S∞ = `now`, from the memory of S∞ and
+    /// Qᵢ before the step, three components each.
     pub fn branches(&self, memory: &[f64], now: [f64; 3], elapsed: f64) -> Vec<[f64; 3]> {
         let before = &memory[..3];
         let branches = self.recursions(elapsed).zip(memory[3..].chunks_exact(3));
@@ -152,7 +151,7 @@ impl ViscousMaterial {
         )
     }
 
-    /// ∂P_v/∂Ḟ in MPa·s, symmetric and not negative.
+    /// ∂P_v/∂Ḟ in MPa·s, symmetric and positive semi-definite.
     pub fn newtonian_tangent(&self, kinematics: &Kinematics) -> Matrix4<f64> {
         let mut tangent = Matrix4::zeros();
         for column in 0..4 {
@@ -163,7 +162,7 @@ impl ViscousMaterial {
         tangent
     }
 
-    /// Nominal viscous stress 3 η λ̇/λ² of a strip with free edges in MPa, and its derivative by λ̇ in MPa·s.
+    /// Nominal viscous stress 3 η λ̇/λ² of a strip with free edges in MPa, and its derivative with respect to λ̇ in MPa·s.
     pub fn newtonian_tension(&self, stretch: f64, rate: f64) -> [f64; 2] {
         let slope = 3.0 * self.shear_viscosity / (stretch * stretch);
         [slope * rate, slope]

@@ -7,7 +7,7 @@
 //! simo-taylor   U = ¼ κ (J₃² − 1 − 2 ln J₃)
 //! ```
 //!
-//! Ψ is the law of a body that keeps its volume. At small strain all three are the same: E = 9 κ μ/(3 κ + μ) and
+//! Ψ is the law of a body that keeps its volume. At small strain all three energies are the same: E = 9 κ μ/(3 κ + μ) and
 //! ν = (3 κ − 2 μ)/(2 (3 κ + μ)); the law without volume change is the limit κ → ∞ of the sheet in plane stress. Above J₃ = e the
 //! pressure of the logarithmic energy falls again.
 //!
@@ -34,7 +34,7 @@ pub struct Volume {
     pub bulk_modulus: f64,
     /// U.
     pub energy: VolumeEnergy,
-    /// What is known of the third direction.
+    /// The state of the third direction.
     pub plane: PlaneState,
 }
 
@@ -63,8 +63,9 @@ impl VolumeEnergy {
         name_of(&Self::NAMES, self)
     }
 
-    /// U/κ and its first two derivatives by ln J₃, of J₃ − 1 and ln J₃: all of them, weighted, because a branch would keep loops over many points from
-    /// being vectorised. `LOGARITHM` is known in advance, because a logarithm is dear: whether the energy is that of it.
+    /// U/κ and its first two derivatives with respect to ln J₃, from J₃ − 1 and ln J₃. All energies are evaluated and weighted, because a branch
+    /// would keep loops over many points from being vectorised. `LOGARITHM` states in advance whether the energy is the logarithmic one, because a
+    /// logarithm is costly.
     #[inline(always)]
     pub(super) fn derivatives<const LOGARITHM: bool>(
         self,
@@ -91,7 +92,7 @@ impl VolumeEnergy {
 }
 
 impl Volume {
-    /// The same in plane strain.
+    /// The same resistance in plane strain.
     #[must_use]
     pub fn in_plane_strain(self) -> Self {
         Self {
@@ -101,7 +102,7 @@ impl Volume {
     }
 }
 
-/// κ in MPa of a shear modulus in MPa and Poisson's ratio ν < ½.
+/// κ in MPa from a shear modulus in MPa and Poisson's ratio ν < ½.
 ///
 /// ```text
 /// κ = 2 μ (1 + ν)/(3 (1 − 2 ν))
@@ -110,7 +111,7 @@ pub fn bulk_modulus(shear_modulus: f64, poisson_ratio: f64) -> f64 {
     2.0 * shear_modulus * (1.0 + poisson_ratio) / (3.0 * (1.0 - 2.0 * poisson_ratio))
 }
 
-/// Lamé's first modulus in MPa of a shear modulus in MPa and Poisson's ratio.
+/// Lamé's first modulus in MPa from a shear modulus in MPa and Poisson's ratio.
 ///
 /// ```text
 /// Λ = 2 μ ν/(1 − 2 ν)

@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 use super::cells::Mesh;
 
 impl Mesh {
-    /// The largest angle of the sheet between two edges of its boundary, in rad: π where it is straight, 2π at the tip of a crack. Nodes in
-    /// which several parts of the boundary meet do not count.
+    /// The largest angle of the sheet between two edges of its boundary, in rad: π where it is straight, 2π at the
+    /// tip of a crack. Nodes at which several parts of the boundary meet do not count.
     pub fn largest_angle(&self) -> f64 {
-        // The directions in which the boundary comes to a node, and leaves it.
+        // The directions in which the boundary enters and leaves a node.
         let mut at: BTreeMap<usize, [Vec<[f64; 2]>; 2]> = BTreeMap::new();
         let between = |from: usize, to: usize| {
             [0, 1].map(|axis| self.nodes[to][axis] - self.nodes[from][axis])
@@ -30,7 +30,7 @@ impl Mesh {
     }
 }
 
-/// The angle on the left of a line that comes along one vector and goes on along another.
+/// The angle on the left of a line that arrives along one vector and leaves along another.
 fn angle(before: [f64; 2], after: [f64; 2]) -> f64 {
     /// A turn to the left by nearly π would leave no sheet.
     const BACK: f64 = 0.9999 * PI;

@@ -1,8 +1,8 @@
 //! Local refinement of triangles by halving edges, the longest first.
 //!
-//! Every marked triangle is cut into four through the middles of its edges, the longest edge's middle being joined to the
-//! opposite corner and to the other two. A triangle one of whose edges is halved has its longest edge halved too; so
-//! all cells meet edge to edge, and the smallest angle stays at least half of the first mesh's.
+//! Every marked triangle is cut into four through the middles of its edges: the middle of the longest edge is joined
+//! to the opposite corner and to the other two middles. A triangle one of whose edges is halved has its longest edge
+//! halved too; all cells therefore meet edge to edge, and the smallest angle stays at least half of the first mesh's.
 //!
 //! # References
 //! M. C. Rivara, Int. J. Numer. Methods Eng. 20, 745 (1984), doi:10.1002/nme.1620200412
@@ -53,7 +53,7 @@ impl Mesh {
     /// edge. Groups are kept.
     ///
     /// # Panics
-    /// When a cell is no triangle.
+    /// When a cell is not a triangle.
     #[must_use]
     pub fn refined_where(&self, marked: &[bool]) -> Self {
         let halved = self.edges_to_halve(marked);

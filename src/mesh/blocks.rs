@@ -11,7 +11,7 @@ pub struct Block<'a> {
     pub map: Box<dyn Fn([f64; 2]) -> [f64; 2] + 'a>,
     /// Cells along s and t.
     pub cells: [usize; 2],
-    /// Names of the sides t = 0, s = 1, t = 1 and s = 0; an empty one is no part of a group.
+    /// Names of the sides t = 0, s = 1, t = 1 and s = 0; a side with an empty name belongs to no group.
     pub sides: [&'a str; 4],
 }
 
@@ -40,7 +40,7 @@ struct Builder {
     groups: BTreeMap<String, BTreeSet<usize>>,
     /// The nodes on the sides of blocks by the square of a fine grid that they lie in.
     squares: HashMap<[i64; 2], usize>,
-    /// Side of such a square in mm: nodes nearer than this are one.
+    /// Side of such a square in mm: nodes nearer to each other than this are one.
     fine: f64,
 }
 
@@ -83,7 +83,7 @@ impl Builder {
     fn add(&mut self, block: &Block, shape: CellShape) {
         let [nx, ny] = block.cells;
         assert!(nx > 0 && ny > 0, "a block of cells");
-        // A grid of half cells holds every node of every kind of cell.
+        // A grid of half cells contains every node of every kind of cell.
         let mut grid = vec![None; (2 * nx + 1) * (2 * ny + 1)];
         let mut at = |builder: &mut Self, i: usize, j: usize| {
             let known = &mut grid[i * (2 * ny + 1) + j];

@@ -55,7 +55,7 @@ pub const GAUSS_5: [(f64, f64); 5] = [
 ];
 
 impl CellShape {
-    /// All kinds by the names of the finite elements that they are.
+    /// All kinds by the names of their finite elements.
     pub const NAMES: [(&'static str, Self); 5] = [
         ("T1", Self::Triangle3),
         ("T2", Self::Triangle6),
@@ -64,7 +64,7 @@ impl CellShape {
         ("Q2 serendipity", Self::Quad8),
     ];
 
-    /// The numbers that VTK has for them.
+    /// VTK's numbers for the kinds.
     const VTK: [(u8, Self); 5] = [
         (5, Self::Triangle3),
         (9, Self::Quad4),
@@ -79,13 +79,13 @@ impl CellShape {
         found.expect("a kind of the table").0
     }
 
-    /// The kind of a number of VTK; `None` where gelbench has none.
+    /// The kind with a number of VTK; `None` where gelbench has no such kind.
     pub fn of_vtk_number(number: u8) -> Option<Self> {
         let found = Self::VTK.iter().find(|(own, _)| *own == number);
         found.map(|(_, kind)| *kind)
     }
 
-    /// Nodes of a cell.
+    /// Number of nodes of a cell.
     pub fn nodes(self) -> usize {
         match self {
             Self::Triangle3 => 3,
@@ -96,7 +96,7 @@ impl CellShape {
         }
     }
 
-    /// Corners of a cell.
+    /// Number of corners of a cell.
     pub fn corners(self) -> usize {
         if self.is_triangle() { 3 } else { 4 }
     }
@@ -114,7 +114,7 @@ impl CellShape {
         }
     }
 
-    /// The kind of the same corners with nodes in the corners alone.
+    /// The kind with the same corners and no other nodes.
     pub fn linear(self) -> Self {
         if self.is_triangle() {
             Self::Triangle3
@@ -170,8 +170,8 @@ impl CellShape {
         }
     }
 
-    /// The product of a rule on −1…1 with itself, for what the stiffness's own rule does not resolve, such as errors;
-    /// triangles are squares with one side shrunk to a point.
+    /// The product of a rule on −1…1 with itself, for integrands that the stiffness's own rule does not resolve, such
+    /// as errors; triangles are squares with one side shrunk to a point.
     pub fn product_quadrature(self, line: &[(f64, f64)]) -> Vec<QuadraturePoint> {
         let pairs = line.iter().flat_map(|x| line.iter().map(move |y| (x, y)));
         let point = |((x, wx), (y, wy)): (&(f64, f64), &(f64, f64))| {

@@ -16,14 +16,14 @@ pub struct Group {
     /// Its edges, if it is a part of the boundary: both ends, then the middle where there is one, with the
     /// specimen to the left.
     pub edges: Vec<Vec<usize>>,
-    /// Its lines on the sheet: sides of cells that are no part of the boundary, both ends, then the middle where there is one.
+    /// Its lines on the sheet: sides of cells that are not on the boundary, both ends, then the middle where there is one.
     pub lines: Vec<Vec<usize>>,
     /// Its cells, if it is a part of the sheet, ascending.
     pub cells: Vec<usize>,
 }
 
 impl Group {
-    /// Whether it is more than its nodes.
+    /// Whether it has edges, lines or cells besides its nodes.
     pub fn has_parts(&self) -> bool {
         !(self.edges.is_empty() && self.lines.is_empty() && self.cells.is_empty())
     }
@@ -36,7 +36,7 @@ pub struct CellEdge {
     pub ends: [usize; 2],
     /// The cell.
     pub cell: usize,
-    /// Which one of the cell's edges it is.
+    /// The number of the edge within the cell.
     pub number: usize,
 }
 
@@ -58,7 +58,7 @@ impl Mesh {
     /// A mesh of cells with their nodes in the order of [`CellShape::natural_nodes`].
     ///
     /// # Panics
-    /// When a cell has another number of nodes than its kind.
+    /// When the number of a cell's nodes is not that of its kind.
     pub fn new(
         nodes: Vec<[f64; 2]>,
         cells: impl IntoIterator<Item = (CellShape, Vec<usize>)>,
@@ -116,8 +116,8 @@ impl Mesh {
         &self.groups
     }
 
-    /// Names a group of nodes; the boundary edges that lie within it belong to it, and the cells and their sides too where not all of
-    /// its nodes are on the boundary.
+    /// Names a group of nodes. The boundary edges within it belong to it; where not all of its nodes are on the
+    /// boundary, so do the cells within it and their sides.
     pub fn name_nodes(&mut self, name: &str, nodes: &BTreeSet<usize>) {
         let within = |part: &[usize]| part.iter().all(|node| nodes.contains(node));
         let outer: BTreeSet<usize> = self.boundary().iter().flatten().copied().collect();
@@ -176,7 +176,7 @@ impl Mesh {
         self.sides_of(|cells| cells > 1)
     }
 
-    /// The sides of as many cells as are wanted, each with the first of them to its left.
+    /// The sides shared by a wanted number of cells, each with the first of them to its left.
     fn sides_of(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let edges = self.edges();
         let sides = edges.chunk_by(|one, other| one.ends == other.ends);
@@ -184,7 +184,7 @@ impl Mesh {
         wanted.map(|cells| self.edge_nodes(cells[0])).collect()
     }
 
-    /// The edges of all cells by their ends, those of cells side by side one after the other.
+    /// The edges of all cells by their ends, with those of neighbouring cells one after the other.
     pub fn edges(&self) -> Vec<CellEdge> {
         let mut edges = Vec::with_capacity(4 * self.cell_count());
         for cell in 0..self.cell_count() {
@@ -261,7 +261,7 @@ impl Mesh {
     }
 }
 
-/// The decimals that tell places apart on bodies, or cells, of a size in mm: one for those of a tenth and larger.
+/// The decimals that distinguish places on bodies, or cells, of a size in mm: one for sizes of a tenth and larger.
 pub fn decimals_for(size: f64) -> usize {
     (-size.log10().floor()).clamp(1.0, 9.0) as usize
 }

@@ -1,7 +1,6 @@
-//! What is wrong with a mesh: cells that are none, cells that overlap, and cells that touch without being
-//! joined.
+//! Faults of a mesh: degenerate cells, cells that overlap, and cells that touch without being joined.
 //!
-//! | fault | what the finite elements would make of it |
+//! | fault | effect on the finite elements |
 //! |---|---|
 //! | cell without area, or turned inside out in part | no deformation gradient |
 //! | cell given twice, cells that overlap | twice the stiffness there |
@@ -34,7 +33,7 @@ impl Mesh {
         cells::without_sense(self)
     }
 
-    /// All faults, each kind once with its number and first places in mm: errors first, then warnings.
+    /// All faults, each kind once with its number of places and the first of them in mm: errors first, then warnings.
     pub fn faults(&self, allowed: Exemptions) -> Vec<Diagnostic> {
         let mut found = self.cells_without_sense();
         let twice = cells::given_twice(self);
@@ -43,7 +42,7 @@ impl Mesh {
         let sides = Sides::new(self, &again);
         found.extend(sides.faults());
         found.extend(touching::faults(&sides, allowed));
-        // What these three find may be the same fault seen from another side.
+        // These three checks may find the same fault from another side.
         let beyond = match found.is_empty() {
             true => vec![
                 parts::hinges(&sides, allowed),

@@ -13,7 +13,7 @@ pub fn bounding_box(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2]
     })
 }
 
-/// How points measure where no specimen does: length and width of the box around them in mm, and the largest coordinate.
+/// Points whose size is not that of a specimen: length and width of the box around them in mm, and the largest coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "span {:.1e} × {:.1e} mm and reach to {reach:.1e} mm from the origin, but specimens must measure 1 nm to 1 km and lie within 1 km of the origin: check the unit",
@@ -27,10 +27,10 @@ pub struct OutOfSize {
     pub reach: f64,
 }
 
-/// Whether points measure as specimens do.
+/// Checks that points have the size of a specimen.
 ///
 /// # Errors
-/// [`OutOfSize`] where they do not.
+/// [`OutOfSize`] where they do not have it.
 pub fn check_size(points: impl IntoIterator<Item = [f64; 2]>) -> Result<(), OutOfSize> {
     let [low, high] = bounding_box(points);
     let span = [high[0] - low[0], high[1] - low[1]];
@@ -39,7 +39,7 @@ pub fn check_size(points: impl IntoIterator<Item = [f64; 2]>) -> Result<(), OutO
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     let [least, most] = SIZES;
-    // What is no number is out of size too.
+    // NaN is out of size too.
     let sized =
         on_the_end(span[0].max(span[1]), SIZES) >= least && on_the_end(reach, SIZES) <= most;
     sized.then_some(()).ok_or(OutOfSize { span, reach })
@@ -60,7 +60,7 @@ pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
-/// The determinant of a matrix of two rows.
+/// The determinant of a 2 × 2 matrix, by rows.
 pub fn determinant(map: &[[f64; 2]; 2]) -> f64 {
     map[0][0] * map[1][1] - map[0][1] * map[1][0]
 }

@@ -17,7 +17,7 @@ impl Side {
     /// All sides.
     pub const ALL: [Self; 4] = [Self::Left, Self::Right, Self::Bottom, Self::Top];
 
-    /// The name of the group of nodes on it.
+    /// The name of the group of nodes on the side.
     pub fn name(self) -> &'static str {
         match self {
             Self::Left => "left",
@@ -47,12 +47,12 @@ pub struct Grid {
     pub cells: [usize; 2],
     /// The exponent g.
     pub grading: f64,
-    /// Cells that are equal side by side along both axes, graded as one: 1, or 2 where they are taken two by two.
+    /// Number of cells along both axes that are equal and graded as one: 1, or 2 where cells are taken two by two.
     pub together: usize,
 }
 
 impl Grid {
-    /// A grid of cells each of which is graded for itself.
+    /// A grid in which each cell is graded by itself.
     pub fn new(size: [f64; 2], cells: [usize; 2], grading: f64) -> Self {
         Self {
             size,
@@ -100,7 +100,7 @@ impl Grid {
         })
     }
 
-    /// The place of a line of nodes, `degree` of them a cell.
+    /// The place of a line of nodes, with `degree` lines per cell.
     pub(super) fn node_line(self, axis: usize, node: usize, degree: usize) -> f64 {
         let cells = self.cells[axis];
         if self.grading == 1.0 {
@@ -115,7 +115,7 @@ impl Grid {
         from + (self.line(axis, block + 1, blocks) - from) * part as f64 / steps as f64
     }
 
-    /// The cell that holds a point, and the point's natural coordinates in it.
+    /// The cell that contains a point, and the point's natural coordinates in it.
     pub(super) fn locate(self, point: [f64; 2]) -> (usize, [f64; 2]) {
         let place = |axis: usize| {
             let cells = self.cells[axis];

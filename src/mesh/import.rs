@@ -1,6 +1,6 @@
 //! Meshes of other programs: Gmsh (ASCII, 2.2 and 4.1) and VTK (`.vtu`, `.vtk`).
 //!
-//! Lines with a physical group make up the named parts of the boundary. Whatever the file names, the edges on the
+//! Lines with a physical group make up the named parts of the boundary. Regardless of the names in the file, the edges on the
 //! four sides of the mesh's box are `left`, `right`, `bottom` and `top`, and all edges of the boundary `boundary`.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,14 +36,14 @@ pub use given::MeshData;
 pub struct MeshReading {
     /// The length of the file's unit in mm.
     pub unit: f64,
-    /// Nodes that are not farther from each other become one, in mm.
+    /// Distance in mm up to which nodes are merged into one.
     pub merge_nodes: Option<f64>,
-    /// What looks like a fault but is meant.
+    /// Apparent faults that are intended.
     pub allowed: Exemptions,
 }
 
 impl MeshReading {
-    /// The file as it is, every fault told.
+    /// Reads the file as it is and reports every fault.
     pub fn in_unit(unit: f64) -> Self {
         Self {
             unit,
@@ -53,11 +53,10 @@ impl MeshReading {
     }
 }
 
-/// Reads a mesh, with what deserves attention. Cells with nodes in the middle of their sides keep them; linear cells in a
-/// mesh with such ones become quadratic.
+/// Reads a mesh, with warnings. Cells with nodes in the middle of their sides keep them; linear cells in a mesh with such cells become quadratic.
 ///
 /// # Errors
-/// What the file holds that cannot be read, or every kind of fault of its mesh, see [`Mesh::faults`].
+/// Contents of the file that cannot be read, or every kind of fault of its mesh, see [`Mesh::faults`].
 pub fn import(
     path: &Path,
     reading: MeshReading,
@@ -72,7 +71,7 @@ fn unreadable(name: &str, reason: Unreadable) -> Vec<Diagnostic> {
     vec![Diagnostic::error("", format!("{name} {reason}")).hint(hint)]
 }
 
-/// A mesh without faults of what `name` holds, with what deserves attention.
+/// A mesh without faults from the contents of `name`, with warnings.
 fn sound(
     mut raw: Raw,
     name: &str,
@@ -118,7 +117,7 @@ fn read(path: &Path) -> Result<Raw, Unreadable> {
     }
 }
 
-/// Warnings of lines in groups that are no edges of the boundary.
+/// Warnings about lines in groups that are not edges of the boundary.
 fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Diagnostic> {
     let told = |(name, lines): (&String, &Vec<[u64; 2]>)| {
         let lines: BTreeSet<[u64; 2]> = lines.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();

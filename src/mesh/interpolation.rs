@@ -49,7 +49,7 @@ impl Mesh {
         parts.sum()
     }
 
-    /// What nodes of a cell have of its area in mm², ∫ Nᵢ dA, point by point of its quadrature.
+    /// The parts of a cell's area in mm² that belong to its nodes, ∫ Nᵢ dA, point by point of its quadrature.
     pub fn area_parts(&self, cell: usize) -> Vec<(usize, f64)> {
         let (shape, mut parts) = (self.shape(cell), Vec::new());
         for (point, weight) in shape.quadrature() {
@@ -60,17 +60,17 @@ impl Mesh {
         parts
     }
 
-    /// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
+    /// The area in mm² that belongs to each node: the area of a cell is divided equally among its corners.
     pub fn corner_areas(&self) -> Vec<f64> {
         self.areas_shared_by(CellShape::corners)
     }
 
-    /// The area in mm² that belongs to each node: that of a cell to all its nodes in equal parts.
+    /// The area in mm² that belongs to each node: the area of a cell is divided equally among all its nodes.
     pub fn areas_of_all_nodes(&self) -> Vec<f64> {
         self.areas_shared_by(CellShape::nodes)
     }
 
-    /// The areas of the cells in equal parts at their first nodes, so many of each.
+    /// Divides the area of each cell equally among its first nodes, so many for each kind.
     fn areas_shared_by(&self, first: impl Fn(CellShape) -> usize) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
         for cell in 0..self.cell_count() {
@@ -98,7 +98,7 @@ impl Mesh {
         })
     }
 
-    /// Displacement interpolated at a point; `displacement` holds ux, uy of node after node.
+    /// Displacement interpolated at a point; `displacement` is ux, uy of node after node.
     pub fn displacement_at(&self, displacement: &[f64], point: [f64; 2]) -> [f64; 2] {
         let (cell, local) = self.locate(point);
         let values = self.shape(cell).values(local);
@@ -119,7 +119,7 @@ impl Mesh {
             .collect()
     }
 
-    /// Where the nodes of another mesh of the specimen are in this one, to interpolate many fields.
+    /// The places of another mesh's nodes in this one, both of the same specimen, to interpolate many fields.
     pub fn interpolation_on(&self, other: &Self) -> Interpolation {
         let (mut starts, mut terms) = (vec![0], Vec::new());
         let mut cell = 0;
@@ -141,7 +141,7 @@ impl Mesh {
         (gradients.collect(), jacobian)
     }
 
-    /// Gradients and Jacobian as [`Self::gradients`] where the derivatives by natural coordinates are known.
+    /// Gradients and Jacobian as [`Self::gradients`] where the derivatives with respect to natural coordinates are known.
     pub fn transformed<'a>(
         &self,
         cell: usize,

@@ -1,15 +1,14 @@
-//! Which cell of a mesh holds a point, and where in the cell it lies.
+//! Finds the cell of a mesh that contains a point, and the place of the point in the cell.
 
 use super::buckets::Buckets;
 use super::cells::Mesh;
 use super::geometry::{bounding_box, determinant};
 
-/// The distance that counts as none compared with the size of a cell.
+/// Distance that counts as zero, relative to the size of a cell.
 const ROUNDING: f64 = 2e-15;
 
 impl Mesh {
-    /// The cell that holds a point, and the point's natural coordinates in it; for a point outside of the mesh
-    /// the nearest cell.
+    /// The cell that contains a point, and the point's natural coordinates in it; for a point outside of the mesh the nearest cell.
     pub fn locate(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
         match self.grid {
             Some(grid) => grid.locate(point),
@@ -17,7 +16,7 @@ impl Mesh {
         }
     }
 
-    /// The same of a point that is likely to be in some cell.
+    /// The same for a point that is likely to be in some cell.
     pub(super) fn locate_near(&self, likely: usize, point: [f64; 2]) -> (usize, [f64; 2]) {
         let there = self.grid.is_none().then(|| self.within(likely, point));
         match there.flatten() {
@@ -26,7 +25,7 @@ impl Mesh {
         }
     }
 
-    /// The natural coordinates of a point in a cell that holds it; `None` where the cell does not.
+    /// The natural coordinates of a point in a cell that contains it; `None` where the cell does not.
     fn within(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
         let in_box = self.buckets().is_in_box(cell, point);
         let local = in_box.then(|| self.natural_coordinates(cell, point))??;
@@ -81,7 +80,7 @@ impl Mesh {
         }
     }
 
-    /// The natural coordinates of a point in a cell, by Newton's method; `None` where it finds none.
+    /// The natural coordinates of a point in a cell, by Newton's method; `None` where it does not converge.
     fn natural_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
         let shape = self.shape(cell);
         // Relative to a node of the cell, so that a mesh far from the origin loses no digits.
@@ -123,8 +122,8 @@ impl Mesh {
         None
     }
 
-    /// Whether a point lies inside of a cell, farther from its sides than `margin` in natural coordinates; cells are
-    /// left out where `own` holds.
+    /// Whether a point lies inside of a cell, farther from its sides than `margin` in natural coordinates; cells for
+    /// which `own` is true are skipped.
     pub(super) fn holds_inside(
         &self,
         point: [f64; 2],

@@ -2,7 +2,7 @@
 
 use super::geometry::distance;
 
-/// A field of vectors at nodes, as the solvers hold it: x and y of node after node.
+/// A field of vectors at nodes, as the solvers store it: x and y of node after node.
 pub trait NodalField {
     /// The vector at a node.
     fn at(&self, node: usize) -> [f64; 2];

@@ -1,12 +1,12 @@
 //! Closed lines around a specimen, found from the positions of its markers, and meshes inside them.
 //!
 //! The outline of scattered points is the boundary of those Delaunay triangles whose circumscribed circle has a
-//! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). This closes gaps of up to
-//! two by two points of a grid; a wider one inside is a hole. The lines are then straightened where
-//! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge, and made round where they
-//! are curved. Where points
-//! are scattered, as where many of a grid are lost, gaps at the edge are wider: the outer line is that of circles 1.6 times as
-//! large. Scattered points, and steps of the outer line shorter than 2.5 spacings, are reported as doubts.
+//! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). This closes gaps
+//! of up to two by two points of a grid; a wider one inside is a hole. The lines are then straightened where this
+//! moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge, and
+//! rounded where they are curved. Where points are scattered, as where many points of a grid are lost, gaps at the
+//! edge are wider: the outer line is then that of circles 1.6 times as large. Scattered points, and steps of the
+//! outer line shorter than 2.5 spacings, are reported as doubts.
 //!
 //! Meshes have nodes in a triangular lattice inside and evenly along the lines; where an angle would be below 25°,
 //! nodes are added (Ruppert's refinement).
@@ -34,7 +34,7 @@ mod smoothing;
 pub use fault::OutlineFault;
 use polygon::Polygon;
 
-/// Lines are moved by less than so many spacings when they are straightened.
+/// Straightening moves lines by less than so many spacings.
 const STRAIGHT: f64 = 0.55;
 
 /// Closed lines around a specimen.
@@ -55,15 +55,15 @@ pub struct OutlineOfPoints {
     pub spacing: f64,
     /// Whether the points lie irregularly, as where many of a grid are lost.
     pub is_scattered: bool,
-    /// Why the lines may not be the specimen's, in words.
+    /// The reasons in words why the lines may not be those of the specimen.
     pub doubts: Vec<String>,
 }
 
-/// Points whose distance to the nearest other one, over the side of the square that each has, is less than this are scattered:
-/// 1 on a square grid, 1.07 on a triangular one, 0.87 where a quarter of a grid is lost, 0.5 where they lie at random.
+/// Points are scattered where the distance to the nearest other one, relative to the side of the square that each point has, is less than
+/// this: 1 on a square grid, 1.07 on a triangular one, 0.87 where a quarter of a grid is lost, 0.5 where they lie at random.
 const SCATTERED: f64 = 0.87;
 
-/// The outer line of scattered points is taken this much wider.
+/// Factor of the circles' radius for the outer line of scattered points.
 const WIDER: f64 = 1.6;
 
 /// A step of the outer line turns by more than this one way and then the other, within so many spacings.
@@ -93,7 +93,7 @@ impl Outline {
                 "the markers are irregularly spaced, as if many were lost (distance to the nearest marker relative to the spacing of an equally \
                  dense grid: {regular:.2}, on a grid 1)"
             ));
-            // Gaps at the edge are wider then; holes are judged as ever.
+            // Gaps at the edge are wider then; holes are found as usual.
             let (wide, _) = alpha_shape::lines(&points, WIDER)?;
             let (wide, steps_of_wide) = Self::behind(&wide, spacing)?;
             let wider = Self {
@@ -121,7 +121,7 @@ impl Outline {
         })
     }
 
-    /// The lines without the steps of a grid, and where the outer one has other steps.
+    /// The lines without the steps of a grid, and the places where the outer one has other steps.
     fn behind(
         lines: &[Vec<[f64; 2]>],
         spacing: f64,
@@ -134,7 +134,7 @@ impl Outline {
         let plain = lines.iter().map(|line| polygon::straightened(line, near));
         let plain = Self::of_each(plain)?;
         let steps = polygon::steps(&plain.outer, STEP_TURN, STEP_LENGTH * spacing);
-        // What is smooth may come nearer to itself than the points do.
+        // A smoothed line may come nearer to itself than the points do.
         let outline = if smooth.check().is_ok() {
             smooth
         } else {
@@ -143,7 +143,7 @@ impl Outline {
         Ok((outline, steps))
     }
 
-    /// Of lines around the specimen and its holes; those of which hardly anything is left are left out.
+    /// The outline from lines around the specimen and its holes; lines that nearly vanish are left out.
     fn of_each(lines: impl Iterator<Item = Vec<[f64; 2]>>) -> Result<Self, OutlineFault> {
         let (outer, holes): (Vec<_>, Vec<_>) = lines
             .filter(|line| line.len() > 2)
@@ -154,7 +154,7 @@ impl Outline {
         }
     }
 
-    /// The lines a distance farther out: the outer one wider, holes narrower.
+    /// The lines moved outward by a distance: the outer one becomes wider, holes become narrower.
     ///
     /// # Errors
     /// An [`OutlineFault`].
@@ -172,7 +172,7 @@ impl Outline {
         Ok(outline)
     }
 
-    /// Lines in any direction and order: the one around the largest area is the outer one.
+    /// The outline from lines in any direction and order: the one around the largest area is the outer one.
     ///
     /// # Errors
     /// An [`OutlineFault`].
@@ -308,7 +308,7 @@ impl Outline {
     }
 }
 
-/// A point whose coordinates far below any size are zero: triangulations cannot tell them from it.
+/// A point with coordinates far below any size set to zero: triangulations cannot distinguish them from it.
 fn rounded(point: [f64; 2]) -> [f64; 2] {
     point.map(|x| if x.abs() < 1e-6 * SIZES[0] { 0.0 } else { x })
 }
@@ -321,7 +321,7 @@ fn regularity(points: &[[f64; 2]], area: f64) -> f64 {
     for point in points {
         squares.entry(square(*point)).or_default().push(*point);
     }
-    // Farther away than two squares no point is nearer than 2 sides; that is enough to know.
+    // Beyond two squares no point is nearer than 2 sides, and that is all that matters.
     let nearest = |point: &[f64; 2]| {
         let [i, j] = square(*point);
         let around = (-2..=2).flat_map(|di| (-2..=2).map(move |dj| [i + di, j + dj]));

@@ -54,15 +54,15 @@ impl Mesh {
         mesh
     }
 
-    /// The rectangle that the mesh is.
+    /// The rectangle of the mesh.
     ///
     /// # Panics
-    /// When the mesh is no such rectangle.
+    /// When the mesh is not such a rectangle.
     pub fn grid(&self) -> Grid {
         self.grid.expect("the mesh of a plate")
     }
 
-    /// `120 × 40 cells`, or the number of cells of a mesh that is no rectangle.
+    /// `120 × 40 cells`, or the number of cells of a mesh that is not a rectangle.
     pub fn describe(&self) -> String {
         match self.grid {
             Some(Grid {

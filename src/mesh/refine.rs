@@ -9,7 +9,7 @@ use super::cell_shape::CellShape;
 use super::cells::{Group, Mesh};
 
 impl Mesh {
-    /// The mesh of the corners alone.
+    /// The mesh with nodes at the corners alone.
     #[must_use]
     pub fn linear(&self) -> Self {
         let cells = (0..self.cell_count()).map(|cell| {
@@ -106,19 +106,19 @@ pub(super) struct Point {
     local: [f64; 2],
 }
 
-/// The cells that those of a mesh are cut into, with the nodes that this takes, each made once.
+/// The cells into which those of a mesh are cut, with the new nodes, each created once.
 pub(super) struct Subdivision<'a> {
     mesh: &'a Mesh,
     pub nodes: Vec<[f64; 2]>,
     cells: Vec<(CellShape, Vec<usize>)>,
-    /// The cell that each one is a piece of.
+    /// The cell of which each one is a piece.
     parents: Vec<usize>,
     /// The nodes half way between two others along a line of a cell.
     made: HashMap<[usize; 2], usize>,
 }
 
 impl<'a> Subdivision<'a> {
-    /// No cells yet; the mesh's own nodes in the middle of edges are those that cuts go through.
+    /// No cells yet; cuts go through the mesh's own nodes in the middle of edges.
     pub fn new(mesh: &'a Mesh) -> Self {
         let mut made = HashMap::new();
         for cell in 0..mesh.cell_count() {
@@ -182,7 +182,7 @@ impl<'a> Subdivision<'a> {
         self.made.get(&key(a, b)).copied()
     }
 
-    /// Says which node is half way between two nodes.
+    /// Records which node is half way between two nodes.
     pub fn put_between(&mut self, [a, b]: [usize; 2], middle: usize) {
         self.made.insert(key(a, b), middle);
     }

@@ -1,17 +1,17 @@
-//! The smooth curve that the edges of a boundary stand for.
+//! The smooth curve that the edges of a boundary represent.
 //!
-//! An edge of two nodes is a chord, one of three nodes a parabola; where neighbouring edges go on in nearly the same
-//! direction a curve is meant, and the small turn δ from the end of one to the start of the next tells how far the edges
-//! are from it. Each of the two edges takes its share of the turn, ψ, and the curve lies beside the edge by c(s) along
-//! the left normal of its chord, −1 ≤ s ≤ 1, with c'(±1) = ½ ℓ ψ:
+//! An edge of two nodes is a chord, one of three nodes a parabola; where neighbouring edges continue in nearly the
+//! same direction a curve is meant, and the small turn δ from the end of one to the start of the next tells how far
+//! the edges are from it. Each of the two edges takes its share of the turn, ψ, and the curve lies beside the edge by
+//! c(s) along the left normal of its chord, −1 ≤ s ≤ 1, with c'(±1) = ½ ℓ ψ:
 //!
 //! ```text
 //! two nodes     c = (1 − s²) (A + B s)       shares of δ as the lengths ℓ                     [mm]
 //! three nodes   c = s (1 − s²) (A + B s)     shares of δ as the third powers of the turns along the edges
 //! ```
 //!
-//! Both are exact to leading order: a chord of a circle is ℓ²/(8 R) beside it, a parabola through three points of an arc
-//! of the angle 2α at most R α⁴/32. An edge whose turn at one end is a corner's takes the other end's, mirrored.
+//! Both are exact to leading order: a chord of a circle is ℓ²/(8 R) beside it, a parabola through three points of an arc of the angle 2α at
+//! most R α⁴/32. Where the turn at one end of an edge is that of a corner, the turn of the other end is taken, mirrored.
 
 use std::collections::BTreeMap;
 
@@ -21,14 +21,14 @@ use crate::error::Diagnostic;
 
 /// A turn between straight edges that may belong to a curve, in rad: up to an octagon's.
 const TURNS: std::ops::Range<f64> = 0.003..0.8;
-/// Straight edges are a curve's where so many nodes in a row turn alike.
+/// Straight edges represent a curve where so many nodes in a row turn alike.
 const ALIKE: usize = 3;
 /// Turns per length of neighbouring nodes on a curve do not differ more than by this factor.
 const STEADY: f64 = 3.0;
-/// A turn between parabolas over the turns along them, up to which they are one curve's.
+/// Ratio of the turn between parabolas to the turns along them, up to which they are one curve.
 const SMOOTH: f64 = 0.4;
 
-/// A distance to the curve over the edge's length that is rounding.
+/// A distance to the curve, relative to the edge's length, that is rounding.
 const NOTHING: f64 = 1e-10;
 
 /// A part of the boundary that is drawn with straight edges where a curve may be meant.
@@ -38,14 +38,14 @@ pub struct Polygon {
     pub group: String,
     /// Edges that may be chords.
     pub edges: usize,
-    /// How far the curve lies beside an edge at most, in mm.
+    /// The largest distance of the curve from an edge, in mm.
     pub beside: f64,
-    /// What the specimen's area would be larger with the curve, in mm².
+    /// The gain in the specimen's area with the curve, in mm².
     pub area: f64,
 }
 
 impl Polygon {
-    /// What it means if a curve is meant.
+    /// A warning of the consequences if a curve is meant.
     pub fn warning(&self, mesh: &Mesh) -> Diagnostic {
         let message = format!(
             "the boundary `{}` is a polygon: {} straight edges turn like chords of a curve. If a curve is meant, it lies up to {:.2e} mm away from \
@@ -60,7 +60,7 @@ impl Polygon {
     }
 }
 
-/// An edge with its neighbours, and what the curve's ends turn against its own, in rad.
+/// An edge with its neighbours, and the turns of the curve's ends relative to its own, in rad.
 struct Piece<'a> {
     edge: &'a [usize],
     /// From the first end to the last one.
@@ -80,7 +80,7 @@ impl Piece<'_> {
         angle(self.tangents[0], self.tangents[1])
     }
 
-    /// What each end would turn if the edge were that of a circle.
+    /// The turn at each end if the edge were that of a circle.
     fn circular(&self) -> f64 {
         let half = 0.5 * self.own_turn();
         2.0 * (0.5 * half.tan()).atan() - half
@@ -104,14 +104,14 @@ impl Piece<'_> {
         .filter(|[a, b]| a.abs() + b.abs() > NOTHING * self.length())
     }
 
-    /// The way from the edge to the curve at s in mm.
+    /// The vector from the edge to the curve at s in mm.
     fn way(&self, [a, b]: [f64; 2], s: f64) -> [f64; 2] {
         let odd = if self.edge.len() == 2 { 1.0 } else { s };
         let height = odd * (1.0 - s * s) * (a + b * s) / self.length();
         [-height * self.chord[1], height * self.chord[0]]
     }
 
-    /// What the specimen to the left gains with the curve, in mm².
+    /// The area that the specimen to the left gains with the curve, in mm².
     fn area(&self, [a, b]: [f64; 2]) -> f64 {
         let mean = match self.edge.len() {
             2 => 4.0 / 3.0 * a,
@@ -127,8 +127,8 @@ fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
 }
 
 impl Mesh {
-    /// The mesh with every cell cut into four, its new boundary nodes on the smooth curves that its edges stand for;
-    /// [`Self::refined`] leaves them on the edges. `None` where no edge stands for a curve.
+    /// The mesh with every cell cut into four, its new boundary nodes on the smooth curves that its edges represent;
+    /// [`Self::refined`] leaves them on the edges. `None` where no edge represents a curve.
     pub fn rounded(&self) -> Option<Self> {
         let pieces = self.pieces();
         let bumps: Vec<_> = pieces.iter().filter_map(|p| Some((p, p.bump()?))).collect();
@@ -154,8 +154,7 @@ impl Mesh {
         Some(finer.finish(super::refine::Subdivision::halves))
     }
 
-    /// The groups of straight edges where a curve may be meant; the group of the whole boundary only where no other holds
-    /// such edges.
+    /// The groups of straight edges where a curve may be meant; the group of the whole boundary only where no other contains such edges.
     pub fn polygons(&self) -> Vec<Polygon> {
         let pieces = self.pieces();
         let straight = pieces.iter().filter(|piece| piece.edge.len() == 2);
@@ -185,7 +184,7 @@ impl Mesh {
         }
     }
 
-    /// The edges of the boundary with what the curves that they stand for turn at their ends.
+    /// The edges of the boundary with the turns at their ends of the curves that they represent.
     fn pieces(&self) -> Vec<Piece<'_>> {
         let edges = self.boundary().iter();
         let mut pieces: Vec<Piece> = edges.map(|edge| self.piece(edge)).collect();
@@ -239,7 +238,7 @@ impl Mesh {
     }
 }
 
-/// The edge that goes on where each one ends; `None` where several do.
+/// The edge that continues at the end of each one; `None` where several do.
 fn neighbours(pieces: &[Piece]) -> Vec<Option<usize>> {
     let mut begins: BTreeMap<usize, Option<usize>> = BTreeMap::new();
     for (index, piece) in pieces.iter().enumerate() {
@@ -252,7 +251,7 @@ fn neighbours(pieces: &[Piece]) -> Vec<Option<usize>> {
     pieces.iter().map(next).collect()
 }
 
-/// What the end of one parabola and the begin of the next have of the turn between them, if they are one curve's.
+/// The shares of the end of one parabola and of the beginning of the next in the turn between them, if they are one curve.
 fn parabolas(kink: f64, pair: [&Piece; 2]) -> Option<[f64; 2]> {
     let turns = pair.map(|piece| piece.own_turn().abs());
     let most = turns[0].max(turns[1]);
@@ -264,7 +263,7 @@ fn parabolas(kink: f64, pair: [&Piece; 2]) -> Option<[f64; 2]> {
     Some(weights.map(|weight| share * weight))
 }
 
-/// What a chord and the next one have of the turn between them, if it is one of several alike in a row.
+/// The shares of a chord and the next one in the turn between them, if it is one of several alike in a row.
 fn chords(
     piece: usize,
     pieces: &[Piece],

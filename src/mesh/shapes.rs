@@ -1,4 +1,4 @@
-//! Flat specimens given by their measures, meshed with curved blocks.
+//! Flat specimens given by their dimensions, meshed with curved blocks.
 
 use super::blocks::{Block, mesh_of_blocks};
 use super::cell_shape::CellShape;
@@ -9,7 +9,7 @@ mod measures;
 
 pub use measures::Misfit;
 
-/// A specimen by its measures in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
+/// A specimen by its dimensions in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A rectangle; groups `left`, `right`, `bottom`, `top`.
@@ -51,18 +51,18 @@ pub enum Shape {
     },
 }
 
-/// The largest distance of a shape over its least: meshes tell nodes apart that are 1e-8 of the largest from each other.
+/// The largest ratio of a shape's largest distance to its least: meshes distinguish nodes that are 1e-8 of the largest from each other.
 const MOST_RATIO: f64 = 1e5;
 
 impl Shape {
-    /// A mesh with so many cells across the specimen, and along it as many as make cells about square.
+    /// A mesh with so many cells across the specimen, and as many along it as make cells about square.
     pub fn mesh(self, across: usize, kind: CellShape) -> Mesh {
-        // Two cells at least between a hole and a side.
+        // At least two cells between a hole and a side.
         self.mesh_of([across, 2], 0, kind)
     }
 
-    /// A mesh with so many cells across, one at least between a hole and a side, the sides of all of which are halved so many times, with new
-    /// nodes on the outline: all of one family, whose errors fall with the size of their cells.
+    /// A mesh with so many cells across, at least one between a hole and a side, whose cells' sides are then halved so many
+    /// times, with new nodes on the outline: such meshes are one family, whose errors fall with the size of their cells.
     pub fn mesh_halved(self, across: usize, halvings: usize, kind: CellShape) -> Mesh {
         self.mesh_of([across, 1], halvings, kind)
     }
@@ -75,7 +75,7 @@ impl Shape {
         mesh_of_blocks(&blocks, kind)
     }
 
-    /// The blocks that it is meshed with; so many cells lie beside a hole at least.
+    /// The blocks of its mesh, with at least so many cells beside a hole.
     fn blocks(self, across: usize, beside: usize) -> Vec<Block<'static>> {
         match self {
             Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
@@ -127,7 +127,7 @@ impl Shape {
         }
     }
 
-    /// The place on a curved side that a place beside it belongs to; `None` for a straight side.
+    /// The place on a curved side that corresponds to a place beside it; `None` for a straight side.
     fn on_outline(self, side: &str, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let on_circle = |[a, b]: [f64; 2], radius: f64| {
             let (dx, dy) = (x - a, y - b);
@@ -179,7 +179,7 @@ impl Shape {
         }
     }
 
-    /// All measures.
+    /// All dimensions.
     pub fn measures(self) -> Vec<f64> {
         match self {
             Self::Strip { size } => size.to_vec(),
@@ -198,7 +198,7 @@ impl Shape {
         }
     }
 
-    /// The least and the largest distance that a mesh must tell from nothing.
+    /// The least and the largest distance that a mesh must distinguish from zero.
     fn extremes(self) -> [f64; 2] {
         let distances = match self {
             Self::RingSector { radii, angle } => {

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use super::blocks::Block;
 
-/// A number of cells, one at least. Halves go up, whatever rounding has left of them in one unit or another.
+/// A number of cells, at least one. Halves are rounded up, whatever the rounding of a conversion of units.
 pub fn count(cells: f64) -> usize {
     const ROUNDING: f64 = 1e-9;
     ((cells * (1.0 + ROUNDING)).round() as usize).max(1)
@@ -33,7 +33,7 @@ pub fn strip<'a>(
     }]
 }
 
-/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows evenly between them.
+/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows by equal amounts between them.
 struct Lengths {
     /// x and l(x).
     table: Vec<[f64; 2]>,

@@ -7,7 +7,7 @@ use spade::{
     RefinementParameters, Triangulation,
 };
 
-/// No triangle has a smaller angle, except where the closed lines themselves have one.
+/// No triangle has a smaller angle, unless the closed lines themselves have one.
 const SMALLEST_ANGLE: f64 = 25.0;
 
 fn vertices(points: &[[f64; 2]]) -> Vec<Point2<f64>> {
@@ -27,7 +27,7 @@ pub fn delaunay(points: &[[f64; 2]]) -> Vec<[usize; 3]> {
 }
 
 /// Nodes and triangles between closed lines, through points inside. `edges` are pieces of the lines, pairs of points;
-/// points are added where triangles would be bad.
+/// points are added where triangles would be badly shaped.
 pub fn fill(points: &[[f64; 2]], edges: &[[usize; 2]]) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {
     let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(
         vertices(points),
@@ -49,7 +49,7 @@ pub fn fill(points: &[[f64; 2]], edges: &[[usize; 2]]) -> (Vec<[f64; 2]>, Vec<[u
         .vertices()
         .map(|vertex| [vertex.position().x, vertex.position().y])
         .collect();
-    // The nodes of triangles alone, from left to right.
+    // The nodes used by triangles only, from left to right.
     let mut used: Vec<usize> = triangles.iter().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();

@@ -10,12 +10,12 @@ pub struct Resultant {
     pub force: [f64; 2],
     /// Sum of their moments in N·mm, counter-clockwise.
     pub moment: f64,
-    /// Sum of the sizes of all single forces in N.
+    /// Sum of the magnitudes of all single forces in N.
     pub size: f64,
 }
 
 impl Resultant {
-    /// Of nodal forces in N, one for each unknown, at places in mm about a centre.
+    /// The resultant of nodal forces in N, one for each unknown, at places in mm about a centre.
     pub fn of_nodes(places: &[[f64; 2]], forces: &[f64], centre: [f64; 2]) -> Self {
         let mut sum = Self::default();
         for (place, force) in places.iter().zip(forces.chunks_exact(2)) {
@@ -39,30 +39,30 @@ impl Resultant {
     }
 }
 
-/// What is left of supports and loads together; nothing in equilibrium.
+/// The resultant of all supports and loads; zero in equilibrium.
 ///
 /// ```text
 /// F = Σ R + Σ f,   M = Σ (x − c) × (R + f)
 /// ```
 ///
-/// R are the forces of the supports, grips that are pulled among them, and f the loads, on the deformed places x; c is the
-/// centre of the body. As the forces within a body have no resultant whatever its field is, F measures the
-/// equilibrium of the free nodes, and M the objectivity of the energy too. Forces of a pressure are counted by their
-/// resultant on the deformed edges and not by their nodal forces: wrong ones are seen.
+/// R are the forces of the supports, including pulled grips, and f the loads, on the deformed places x; c is the
+/// centre of the body. Forces within a body have no resultant, whatever its field is; F therefore measures the
+/// equilibrium of the free nodes, and M also the objectivity of the energy. A pressure enters by its resultant on the
+/// deformed edges instead of its nodal forces, so that wrong nodal forces show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
     /// Sum of all forces in N.
     pub force: [f64; 2],
     /// Sum of their moments about the centre of the body in N·mm.
     pub moment: f64,
-    /// The sum of the sizes of all forces of the supports in N, or of all loads where that is larger.
+    /// The sum of the magnitudes of all forces of the supports in N, or of all loads where that is larger.
     pub largest_force: f64,
-    /// The same times half the diagonal of the body, in N·mm.
+    /// The same sum times half the diagonal of the body, in N·mm.
     pub largest_moment: f64,
 }
 
 impl Balance {
-    /// The largest unbalanced force or moment over the largest of all.
+    /// The largest unbalanced force or moment relative to the largest of all.
     pub fn relative(&self) -> f64 {
         let ratio = |rest: f64, largest: f64| if rest == 0.0 { 0.0 } else { rest / largest };
         let force = self.force[0].hypot(self.force[1]);

@@ -29,7 +29,7 @@ pub struct BoundaryProblem {
     pub loads: Vec<(String, Load)>,
 }
 
-/// Whether a group of a mesh is nodes without edges, lines or cells.
+/// Whether a group of a mesh consists of nodes without edges, lines or cells.
 fn is_of_points(mesh: &Mesh, name: &str) -> bool {
     let group = mesh.groups().get(name);
     group.is_some_and(|group| !group.has_parts())
@@ -41,7 +41,7 @@ impl BoundaryProblem {
         SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
     }
 
-    /// A state on a mesh, ready to be asked at any point of the sheet.
+    /// A state on a mesh, to be evaluated at any point of the sheet.
     pub fn deformed(&self, mesh: &Mesh, state: &State) -> DeformedSheet {
         DeformedSheet::new(
             mesh.clone(),
@@ -50,8 +50,8 @@ impl BoundaryProblem {
         )
     }
 
-    /// Everything that keeps the problem from being solved on a mesh: supports and loads on groups that it does not have or
-    /// that cannot carry them, supports that contradict each other, parts that can move without strain.
+    /// Checks that the problem can be solved on a mesh: groups must exist and suit their supports and loads, supports
+    /// must not contradict each other, and no part may move without strain.
     ///
     /// # Errors
     /// All faults, each with its place and a remedy.
@@ -74,7 +74,7 @@ impl BoundaryProblem {
         }
     }
 
-    /// The groups of single nodes on which forces act: on finer meshes displacements there have no limit.
+    /// The groups of single nodes on which forces act: displacements there do not converge on finer meshes.
     pub fn forces_on_points(&self, mesh: &Mesh) -> Vec<&str> {
         let forces = self.loads.iter();
         let forces = forces
@@ -82,15 +82,14 @@ impl BoundaryProblem {
         forces.map(|(name, _)| &**name).collect()
     }
 
-    /// The groups of single nodes that supports move: on finer meshes the forces that this takes fall to nothing, and the field with
-    /// them.
+    /// The groups of single nodes that supports move: on finer meshes the forces that this takes tend to zero, and so does the field.
     pub fn moved_points(&self, mesh: &Mesh) -> Vec<&str> {
         let moved = self.supports.iter();
         let moved = moved.filter(|(name, support)| !support.rests() && is_of_points(mesh, name));
         moved.map(|(name, _)| &**name).collect()
     }
 
-    /// The groups whose loads act along held unknowns alone: they change the supports' forces, and nothing else.
+    /// The groups whose loads act along held unknowns alone: such loads change only the supports' forces.
     ///
     /// # Errors
     /// A [`Diagnostic`] when a support or a load does not suit a group of the mesh.
@@ -113,8 +112,7 @@ impl BoundaryProblem {
         Ok(idle)
     }
 
-    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the first of
-    /// several, which agree.
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it; of several, which must agree, the first.
     ///
     /// # Errors
     /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
@@ -128,16 +126,15 @@ impl BoundaryProblem {
         Ok(by)
     }
 
-    /// The unknowns of a mesh that follow others, each with the one that it follows: those of grips with a given force.
+    /// The tied unknowns of a mesh, each with the unknown that it follows: those of grips with a given force.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when a support names no group of the mesh, when a group cannot be held so, or when supports contradict
-    /// each other.
+    /// A [`Diagnostic`] when a support names no group of the mesh, when a group does not suit its support, or when supports contradict each other.
     pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
         Ok(agreeing(&self.supports, mesh)?.ties)
     }
 
-    /// The dead forces on the unknowns of a mesh in N at load factor 1: all loads but pressures, and the forces of grips.
+    /// The dead forces on the unknowns of a mesh in N at load factor 1: all loads except pressures, and the forces on grips.
     ///
     /// # Errors
     /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
@@ -154,7 +151,7 @@ impl BoundaryProblem {
         Ok(sum)
     }
 
-    /// The problem on the nodes of a mesh with an energy of them.
+    /// The problem on a mesh with an energy of its nodal displacements.
     ///
     /// # Errors
     /// A [`Diagnostic`] when a support or a load names no group of the mesh, or when a group cannot carry it.

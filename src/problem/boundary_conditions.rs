@@ -2,24 +2,23 @@
 
 use crate::units::Linear;
 
-/// The longest turn in rad that is taken in one step: one beyond a half would lead to the state of the turn the other way round, and
-/// codes that lead nodes along straight lines would take its chord.
+/// The largest turn in rad that is taken in one step: a step of more than half a turn would lead to the state turned
+/// the other way round, and codes that move nodes along straight lines would take the chord of the turn.
 pub const LONGEST_TURN: f64 = std::f64::consts::PI / 6.0;
 
-/// What holds a group; everything grows with the load factor and is complete at 1.
+/// A support of a group; prescribed motions and forces grow with the load factor and are complete at 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Support {
-    /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
+    /// Displacements ux, uy in mm; a component that is not given is free. Both zero: a clamp; one zero: a roller or
     /// an axis of symmetry.
     Displacement([Option<f64>; 2]),
-    /// Displacements ux, uy in mm that are linear in the place at rest; one that is not given is free.
+    /// Displacements ux, uy in mm that are linear in the coordinates at rest; a component that is not given is free.
     LinearDisplacement([Option<Linear>; 2]),
-    /// A displacement in mm along the line from a point in mm through the place at rest, away from the point; none
-    /// across it.
+    /// A displacement in mm along the line from a point in mm through the place at rest, away from the point; zero across the line.
     Radial {
         /// The point.
         centre: [f64; 2],
-        /// The displacement away from it.
+        /// The displacement away from the point.
         displacement: f64,
     },
     /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
@@ -37,7 +36,7 @@ pub enum Support {
 }
 
 impl Support {
-    /// Whether it holds what it holds where it is, and pulls nothing.
+    /// Whether it prescribes no motion but zero, and applies no force.
     pub fn rests(&self) -> bool {
         let is_zero = |linear: &Linear| linear.at_origin == 0.0 && linear.slope == [0.0; 2];
         match self {
@@ -54,7 +53,7 @@ impl Support {
 }
 
 impl Load {
-    /// Whether it is none.
+    /// Whether the load is zero.
     pub fn is_none(&self) -> bool {
         match self {
             Self::Traction(value) | Self::Force(value) => *value == [0.0; 2],
@@ -63,7 +62,7 @@ impl Load {
     }
 }
 
-/// What moves a rigid grip along an axis.
+/// How a rigid grip is moved along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// A displacement in mm.
@@ -72,18 +71,17 @@ pub enum Drive {
     Force(f64),
 }
 
-/// What loads a group; everything grows with the load factor and is complete at 1.
+/// A load on a group; it grows with the load factor and is complete at 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load {
     /// A traction in MPa on the reference area of the group's edges, of constant direction (dead).
     Traction([f64; 2]),
-    /// A pressure in MPa on the group's edges that follows them: p t times the deformed length, t the thickness
-    /// at rest, against the outward normal. The forces are p t ∫ Nₐ n ds over the deformed edges at every node. Edges may
-    /// end anywhere.
+    /// A pressure in MPa on the group's edges that follows the deformed edges: p t times the deformed length, t the
+    /// thickness at rest, against the outward normal. The nodal forces are p t ∫ Nₐ n ds over the deformed edges.
+    /// Edges may end anywhere.
     ///
-    /// A fluid presses on the deformed thickness λ₃ t: its pressure q is p = λ₃ q here, less than q where
-    /// the edge is stretched.
+    /// A fluid presses on the deformed thickness λ₃ t: its pressure q corresponds to p = λ₃ q here, less than q where the edge is stretched.
     Pressure(f64),
-    /// A force in N, spread evenly over the length of the group's edges, whatever their cells are; over its nodes where it has no edges.
+    /// A force in N, spread evenly over the length of the group's edges, independent of their cells; over its nodes where it has no edges.
     Force([f64; 2]),
 }

@@ -1,4 +1,4 @@
-//! What supports do to the unknowns: how held ones move, which ones are tied, what pulls rigid grips.
+//! Effects of supports on the unknowns: the motions of held ones, ties, and the forces on rigid grips.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ use crate::statistics::extremes;
 pub enum Motion {
     /// In proportion to the load factor, in mm at 1.
     Straight(f64),
-    /// As a coordinate of a point at a place relative to the centre, in mm, turned by an angle at 1.
+    /// Like a coordinate of a point, at a place in mm relative to the centre, that is turned by an angle at 1.
     Turn {
         place: [f64; 2],
         axis: usize,
@@ -24,7 +24,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// How far it turns at load factor 1, in rad.
+    /// The angle of the turn at load factor 1, in rad.
     pub fn angle(self) -> f64 {
         match self {
             Self::Straight(_) => 0.0,
@@ -53,7 +53,7 @@ impl Support {
     }
 }
 
-/// Why a group cannot be held as a support says, in words that follow the group's name.
+/// Why a group does not suit its support, in words that follow the group's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum SupportMisfit {
     #[error(
@@ -92,22 +92,22 @@ pub struct Constraints {
     pub ties: BTreeMap<usize, usize>,
     /// Forces in N on the unknowns that others follow.
     pub forces: Vec<(usize, f64)>,
-    /// What each support holds.
+    /// The nodes that each support holds.
     holders: Vec<Holder>,
 }
 
-/// What a support holds.
+/// The nodes that a support holds.
 struct Holder {
     hold: Hold,
     /// All nodes of its group.
     nodes: BTreeSet<usize>,
-    /// Whether it holds edges, lines or cells, and not nodes alone.
+    /// Whether it holds edges, lines or cells, rather than nodes alone.
     has_parts: bool,
 }
 
 impl Holder {
-    /// Of the nodes of a group, those at which the support holds the group itself along an axis, and not another part that ends
-    /// there; `is_supported` says whether the group has a support of its own.
+    /// The nodes of a group at which the support holds the group itself along an axis, rather than another part that
+    /// ends there; `is_supported` states whether the group has a support of its own.
     fn on(
         &self,
         mesh: &Mesh,
@@ -116,7 +116,7 @@ impl Holder {
     ) -> BTreeSet<usize> {
         let own = &self.hold.nodes[axis];
         if is_supported && self.has_parts != group.has_parts() {
-            // A point that a support of its own holds is no part of the edge around it.
+            // A point with a support of its own is not part of the edge around it.
             return BTreeSet::new();
         }
         if !self.has_parts || !group.has_parts() {
@@ -131,10 +131,10 @@ impl Holder {
 }
 
 impl Constraints {
-    /// What supports by group do to the unknowns of a mesh; on nodes that they share they must agree.
+    /// The effects of supports, by group, on the unknowns of a mesh; supports must agree on nodes that they share.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group cannot be held so.
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group does not suit its support.
     pub fn of(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
         let mut all = Self::default();
         for (name, support) in supports {
@@ -146,7 +146,7 @@ impl Constraints {
         Ok(all)
     }
 
-    /// Adds a support of a group, or says why the group cannot be held so.
+    /// Adds a support of a group, or returns why the group does not suit it.
     fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), SupportMisfit> {
         if let Support::Radial { centre, .. } = support
             && group.nodes.iter().any(|node| mesh.nodes[*node] == *centre)
@@ -174,7 +174,7 @@ impl Constraints {
         Ok(())
     }
 
-    /// Notes that a support holds a group along some axes.
+    /// Records that a support holds a group along some axes.
     pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
         let nodes = |holds: bool| match holds {
             true => group.nodes.iter().copied().collect(),
@@ -182,7 +182,7 @@ impl Constraints {
         };
         self.holders.push(Holder {
             hold: Hold {
-                // Beside an edge a point holds nothing of what both do.
+                // Where an edge and a point both hold a node, the force belongs to the edge.
                 rank: usize::from(!group.has_parts()),
                 nodes: axes.map(nodes),
                 sides: group.edges.clone(),
@@ -192,9 +192,9 @@ impl Constraints {
         });
     }
 
-    /// The parts of the supports' forces along an axis that act on a group: at a corner, what supports of the other edge do there acts on
-    /// that edge alone, and what supports of both edges hold is each edge's as far as its tractions beside the corner tell, and the rest
-    /// shared. Forces of groups that meet in corners therefore add up to those of all supports.
+    /// The parts of the supports' forces along an axis that act on a group. At a corner, the forces of supports that hold the other edge
+    /// alone belong to that edge; where supports of both edges hold the node, the part of each edge follows from its tractions beside the
+    /// corner, and the rest is shared. The forces of groups that meet in corners therefore add up to those of all supports.
     pub fn parts_on(&self, mesh: &Mesh, group: &Group, axis: usize) -> Vec<Part> {
         let holds: Vec<&Hold> = self.holders.iter().map(|own| &own.hold).collect();
         let parts = reaction_parts(mesh, &holds, axis);

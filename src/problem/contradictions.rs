@@ -8,10 +8,10 @@ use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 use crate::units::Linear;
 
-/// Load factors at which motions are compared; two different ones, a turn and a line, agree at two of them at most.
+/// Load factors at which motions are compared; two different motions, a turn and a line, agree at two of them at most.
 const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
 
-/// What a support demands of an unknown.
+/// What a support prescribes for an unknown.
 #[derive(Clone, Copy)]
 enum Demand {
     Motion(Motion),
@@ -30,7 +30,7 @@ enum Conflict {
 /// Every pair of supports that contradict each other, with the place of the first node.
 ///
 /// # Errors
-/// The [`Diagnostic`] of a support that suits no group.
+/// The [`Diagnostic`] of a support that does not suit its group.
 pub fn contradictions(
     supports: &[(String, Support)],
     mesh: &Mesh,
@@ -69,10 +69,10 @@ pub fn contradictions(
     Ok(told.collect())
 }
 
-/// What all supports do to the unknowns of a mesh.
+/// The effects of all supports on the unknowns of a mesh.
 ///
 /// # Errors
-/// The first contradiction, or the [`Diagnostic`] of a support that suits no group.
+/// The first contradiction, or the [`Diagnostic`] of a support that does not suit its group.
 pub fn agreeing(supports: &[(String, Support)], mesh: &Mesh) -> Result<Constraints, Diagnostic> {
     match contradictions(supports, mesh)?.into_iter().next() {
         Some(fault) => Err(fault),
@@ -130,7 +130,7 @@ fn tell(
     Diagnostic::error("support", message).hint(hint)
 }
 
-/// What a support does, in a few words.
+/// Describes a support in a few words.
 fn describe(support: &Support) -> String {
     let axes = |values: [Option<String>; 2]| {
         let named = ["x", "y"].iter().zip(values);

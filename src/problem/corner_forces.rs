@@ -1,27 +1,27 @@
-//! Which part of a reaction belongs to which body, a support or what stands behind an edge, where bodies meet.
+//! The division of a reaction among the bodies that meet at a node; a body is a support, or whatever lies behind an edge.
 //!
-//! At a corner the reaction R of the node comes from both edges. What an edge e gives, q, is told by its tractions beside the corner:
+//! At a corner the reaction R of the node comes from both edges. The part q of an edge e follows from its tractions beside the corner:
 //!
 //! ```text
 //! q = Rₘ ∫ₑ N ds / ∫ₑ Nₘ ds            N of the corner, m the next node of the edge            [N]
 //! F = q + s (R − Σ q)                                                                       [N]
 //! ```
 //!
-//! which is exact where the tractions are constant. The rest, as at singular corners, belongs in equal parts s to the bodies of the
-//! lowest rank. All parts of one reaction add up to it, so that forces balance as reactions do.
+//! which is exact where the tractions are constant. The rest, as at singular corners, is divided in equal parts s
+//! among the bodies of the lowest rank. All parts of a reaction add up to it, so that forces balance as reactions do.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::groups::edge_lengths;
 use crate::mesh::Mesh;
 
-/// What a body holds.
+/// The nodes and edges that a body holds.
 pub struct Hold {
-    /// Which bodies have the rest where they meet: the lowest.
+    /// Where bodies meet, those of the lowest rank get the rest.
     pub rank: usize,
     /// The nodes held along x and along y.
     pub nodes: [BTreeSet<usize>; 2],
-    /// The edges of the boundary that it holds, by their nodes; none of a pad on the sheet.
+    /// The edges of the boundary that it holds, by their nodes; empty for a pad on the sheet.
     pub sides: Vec<Vec<usize>>,
 }
 
@@ -33,13 +33,13 @@ impl Hold {
         own.cloned().collect()
     }
 
-    /// The next node of the edges beside one, and q over its reaction; `None` where there are no such edges, or one on both sides.
+    /// The next node of the edges beside a node, and q over its reaction; `None` where there are no such edges, or one on both sides.
     fn beside(&self, mesh: &Mesh, corner: usize) -> Option<(usize, f64)> {
         let mut beside = self.sides.iter().filter(|side| side.contains(&corner));
         let (side, None) = (beside.next()?, beside.next()) else {
             return None;
         };
-        // The ends stand first, then the middle.
+        // The two end nodes come first, then the middle one.
         let next = match side[..] {
             [_, _, middle] => middle,
             [from, to] if from == corner => to,
@@ -83,7 +83,7 @@ pub fn reaction_shares(mesh: &Mesh, holds: &[&Hold]) -> Vec<[Vec<Share>; 2]> {
     along(0).zip(along(1)).map(|(x, y)| [x, y]).collect()
 }
 
-/// What is left of the reaction at nodes where bodies of one rank meet, and is shared between them though it may belong to any.
+/// The rest of the reaction at nodes where bodies of one rank meet: it is shared between them, though it may belong to any.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharedRest {
     /// The bodies, by their numbers.
@@ -92,7 +92,7 @@ pub struct SharedRest {
     pub factors: Vec<Share>,
 }
 
-/// What bodies share along an axis.
+/// The rests that bodies share along an axis.
 pub fn shared_rests(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<SharedRest> {
     let mut rests = Vec::new();
     for (at, meeting) in meetings(mesh, holds, axis) {
@@ -129,13 +129,13 @@ pub fn reaction_parts(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<Vec<Part
 
 /// The bodies that hold a node.
 struct Meeting {
-    /// Those of the lowest rank, which have what is left.
+    /// The bodies of the lowest rank, which get the rest.
     lowest: Vec<usize>,
-    /// Where there are several, those whose tractions beside the node are known: the body, the next node, and q over its reaction.
+    /// Where there are several: the bodies whose tractions beside the node are known, each with the next node and q over its reaction.
     beside: Vec<(usize, usize, f64)>,
 }
 
-/// Every node that is held along an axis, with what holds it.
+/// Every node that is held along an axis, with the bodies that hold it.
 fn meetings(mesh: &Mesh, holds: &[&Hold], axis: usize) -> BTreeMap<usize, Meeting> {
     let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (body, hold) in holds.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A deformed sheet, asked at a point: displacement, stretches, stress.
+//! A deformed sheet and its values at points: displacement, stretches, stress.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
 
-/// A sheet with the displacements of its nodes, whichever model they come from.
+/// A sheet with the displacements of its nodes, from any model.
 #[derive(Clone, Debug)]
 pub struct DeformedSheet {
     mesh: Mesh,
@@ -54,11 +54,11 @@ pub enum PointFault {
     },
 }
 
-/// How far outside its nearest cell a point may lie, in sizes of that cell, and still count as on the edge: rounding.
+/// How far outside its nearest cell a point may lie, relative to the size of that cell, and still count as on the edge: rounding.
 const ON_THE_EDGE: f64 = 1e-9;
 
 impl DeformedSheet {
-    /// A sheet of a law with ux, uy of node after node of its mesh in mm.
+    /// A sheet of a law with displacements in mm: ux, uy of node after node of its mesh.
     ///
     /// # Panics
     /// When there are not two displacements for every node.
@@ -76,7 +76,7 @@ impl DeformedSheet {
         }
     }
 
-    /// The same after some displacement fields: a material that softens remembers them. Without them it was never loaded before.
+    /// The same sheet after some displacement fields, which a softening material remembers. Without them it is loaded for the first time.
     #[must_use]
     pub fn after(self, past: Vec<Vec<f64>>) -> Self {
         Self { past, ..self }
@@ -111,7 +111,7 @@ impl DeformedSheet {
         Ok([larger, smaller, self.law.thickness_stretch(&kinematics)])
     }
 
-    /// The stress at a point; on the side of a cell that of one of the cells that share it.
+    /// The stress at a point; on a side between cells, that of one of them.
     ///
     /// # Errors
     /// [`PointFault`].

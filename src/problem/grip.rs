@@ -1,4 +1,4 @@
-//! What the hand does to a group: rigid motions, displacements and forces.
+//! Grips of groups that are moved by hand: rigid motions, displacements and forces.
 
 use std::fmt;
 
@@ -14,8 +14,8 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The motion that brings points nearest to others, in the sense of weighted least squares, and the middle of the points, about
-    /// which it turns; each pair is a weight, from where and to where.
+    /// The motion that brings points nearest to others in weighted least squares, and the middle of the points, about
+    /// which it turns; each pair has a weight, an initial and a final place.
     pub fn nearest(pairs: &[(f64, [f64; 2], [f64; 2])]) -> ([f64; 2], Self) {
         let whole: f64 = pairs.iter().map(|(weight, ..)| weight).sum();
         let (mut rest, mut end) = ([0.0; 2], [0.0; 2]);
@@ -69,12 +69,12 @@ impl fmt::Display for RigidMotion {
     }
 }
 
-/// What the hand does to a group that a support holds.
+/// What the hand does to a supported group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
     /// A rigid motion. Along an axis along which the support lets the group slide it has no displacement, and then no turn either.
     Motion(RigidMotion),
-    /// A displacement in mm or a force in N along each axis, of a rigid grip that does not turn: each of the kind that its support has.
+    /// A displacement in mm or a force in N along each axis of a rigid grip that does not turn, each of the same kind as in its support.
     Drives([Drive; 2]),
 }
 

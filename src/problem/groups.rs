@@ -16,19 +16,19 @@ pub fn named<'a>(what: &str, mesh: &'a Mesh, name: &str) -> Result<&'a Group, Di
     })
 }
 
-/// A support or a load, `what`, that does not suit a group.
+/// The diagnostic of a support or a load, `what`, that does not suit a group.
 pub fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
     Diagnostic::error(what, format!("the group `{group}` {reason}"))
 }
 
-/// The share of each node in the mean of a group: over the length of its edges, else over its cells, else over its lines, and over
-/// its nodes where it has none of these.
+/// The share of each node in the mean over a group: the mean over the length of its edges; without edges over its
+/// cells; without cells over its lines; otherwise over its nodes.
 ///
 /// ```text
 /// ⟨u⟩ = Σ sᵢ uᵢ,   sᵢ = ∫ Nᵢ ds / ∫ ds   or   ∫ Nᵢ dA / ∫ dA
 /// ```
 ///
-/// A mean over nodes would depend on where they lie.
+/// An unweighted mean over nodes would depend on where they lie.
 pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
     let Group {
         nodes,

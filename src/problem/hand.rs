@@ -1,11 +1,11 @@
-//! Groups in the hand: from where an equilibrium has them they are moved, or pulled by other forces.
+//! Groups that are moved by hand: from their state in an equilibrium they are moved, or pulled by other forces.
 //!
 //! ```text
 //! uᵢ = d + (R(θ) − 1) aᵢ + wᵢ,   aᵢ = Xᵢ − X̄ + wᵢ                                            [mm]
 //! ```
 //!
-//! d is the mean displacement of the group and θ its turn since it was taken into the hand, X̄ the mean place of the group at rest,
-//! and wᵢ what its support gave the node i beyond the mean then: nothing where the group is clamped.
+//! d is the mean displacement of the group and θ its turn since the hand took it, X̄ the mean place of the group at rest, and wᵢ
+//! the displacement that its support gave the node i at that time beyond the mean: zero where the group is clamped.
 
 use std::collections::BTreeMap;
 
@@ -44,16 +44,16 @@ struct HeldNode {
 struct HeldGroup {
     holds: [Hold; 2],
     nodes: Vec<HeldNode>,
-    /// Where it is when it is taken.
+    /// Its grip at the time when it is taken.
     grip: Grip,
 }
 
 /// All groups of a problem that supports hold, taken into the hand at an equilibrium.
 pub struct Hand {
     groups: BTreeMap<String, HeldGroup>,
-    /// The load factor of the equilibrium, at which the loads stay.
+    /// The load factor of the equilibrium; the loads stay at it.
     factor: f64,
-    /// Displacements in mm that are the same but for rounding.
+    /// Displacements in mm that differ by less are equal but for rounding.
     rounding: f64,
 }
 
@@ -61,7 +61,7 @@ impl Hand {
     /// Takes the groups of a problem at an equilibrium on a mesh.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group cannot be held so.
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group does not suit its support.
     pub fn take(problem: &BoundaryProblem, mesh: &Mesh, state: &State) -> Result<Self, Diagnostic> {
         let mut supports: BTreeMap<&str, Vec<(String, Support)>> = BTreeMap::new();
         for own in &problem.supports {
@@ -80,7 +80,7 @@ impl Hand {
         })
     }
 
-    /// Where the groups are when they are taken.
+    /// The grips of the groups at the time when they are taken.
     pub fn grips(&self) -> BTreeMap<String, Grip> {
         let groups = self.groups.iter();
         groups
@@ -88,10 +88,10 @@ impl Hand {
             .collect()
     }
 
-    /// Whether the hand can do this to a group.
+    /// Checks that the hand can apply a grip to a group.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when no support holds such a group, or holds it otherwise.
+    /// A [`Diagnostic`] when no support holds such a group, or when its support is of another kind.
     pub fn check(&self, name: &str, grip: &Grip) -> Result<(), Diagnostic> {
         let Some(group) = self.groups.get(name) else {
             let known: Vec<_> = self.groups.keys().map(String::as_str).collect();
@@ -103,7 +103,7 @@ impl Hand {
         })
     }
 
-    /// Whether grips agree at the nodes that groups share.
+    /// Checks that grips agree at the nodes that groups share.
     ///
     /// # Errors
     /// A [`Diagnostic`] with the first node at which they do not.
@@ -181,7 +181,7 @@ impl HeldGroup {
         }
     }
 
-    /// Why the hand cannot do this to the group, and what it can.
+    /// Why the hand cannot apply a grip to the group, and what it can do instead.
     fn refusal(&self, grip: &Grip) -> Option<(&'static str, &'static str)> {
         let free = |axis: usize| self.holds[axis] == Hold::Free;
         match (grip, &self.grip) {
@@ -219,7 +219,7 @@ impl HeldGroup {
         }
     }
 
-    /// The displacements in mm of the unknowns that a grip holds.
+    /// The displacements in mm of the unknowns that a grip prescribes.
     fn displacements(&self, grip: &Grip) -> impl Iterator<Item = (usize, f64)> {
         let motion = match grip {
             Grip::Motion(motion) => *motion,

@@ -1,5 +1,4 @@
-//! What the tangent at a state tells: the fields that small motions and forces of a group bring about, stability, and the equilibrium
-//! next to it.
+//! Results from the tangent at a state: the fields caused by small motions and forces of a group, stability, and the equilibrium nearby.
 
 use rayon::prelude::*;
 
@@ -11,14 +10,14 @@ use crate::solve::{
     Loading, Newton, NewtonSettings, Stage, State, Tangent, compliance, equilibrium, influence,
 };
 
-/// Unknowns of all tangents that are factorised at once.
+/// Most unknowns of all tangents that are factorised at once.
 const SIDE_BY_SIDE: usize = 400_000;
 
 impl Model<'_> {
-    /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
-    /// state, while everything else that is held rests: the dual of the group's force, so that nodes at and beside corners which
-    /// another group holds too move by their parts of it; the field in mm/N that a force on the group brings about where it
-    /// is a grip with a given force, or where nothing holds it.
+    /// The influence field of a group along an axis, by the tangent at a state. It is the field in mm/mm caused by a
+    /// motion of the group's held unknowns while all other held unknowns rest: the dual of the group's force, so that
+    /// nodes at and beside corners that another group holds too move by their shares. For a grip with a given force,
+    /// or a group that is not held, it is the field in mm/N caused by a force on the group.
     ///
     /// # Errors
     /// A [`SolveFault`] when the tangent cannot be factorised.
@@ -35,7 +34,7 @@ impl Model<'_> {
         one.swap_remove(0)
     }
 
-    /// The same at each of some states, whose tangents have one pattern; side by side on the threads there are, where factors are small.
+    /// The same at each of some states, whose tangents have one pattern; in parallel on the available threads, where factors are small.
     ///
     /// # Panics
     /// As [`Self::influence`].
@@ -51,7 +50,7 @@ impl Model<'_> {
             .collect()
     }
 
-    /// How many of some tangents each thread takes after each other.
+    /// The number of tangents that each thread takes one after the other.
     fn in_turn(&self, count: usize) -> usize {
         let unknowns = 2 * self.mesh.nodes.len();
         let at_once = match self.linear_solver().is_multigrid(unknowns) {
@@ -61,10 +60,10 @@ impl Model<'_> {
         count.div_ceil(at_once).max(1)
     }
 
-    /// The stable equilibria of a body without memory next to fields in mm at load factors, each by itself; side by side as above.
+    /// The stable equilibria of a body without memory near fields in mm at load factors, each found independently, in parallel as above.
     ///
     /// # Errors
-    /// As [`Newton::solve`] of one that is not found.
+    /// As [`Newton::solve`] for an equilibrium that is not found.
     pub fn equilibria_near(
         &self,
         fields: &[(f64, Vec<f64>)],
@@ -86,7 +85,7 @@ impl Model<'_> {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// Looks whether an equilibrium at a stage is stable.
+    /// Checks that an equilibrium at a stage is stable.
     ///
     /// # Errors
     /// [`SolveFault::NotPositiveDefinite`] where it is not.
@@ -144,7 +143,7 @@ impl Model<'_> {
             force = Some(unit);
         }
         if force.is_none() && motion.iter().all(|motion| *motion == 0.0) {
-            // Nothing holds or pulls the group: a unit of force on it, shared as its mean displacement is.
+            // The group is neither held nor pulled: a unit force acts on it, distributed as in its mean displacement.
             let mut unit = vec![0.0; motion.len()];
             for (node, share) in shares(self.mesh, group) {
                 unit[2 * node + axis] += share;

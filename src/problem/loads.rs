@@ -18,11 +18,11 @@ use crate::solve::{DeadForces, Potential, Sum};
 /// All loads of a problem at load factor 1.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
-    /// Dead force in N on each unknown, without those of grips.
+    /// Dead force in N on each unknown, without the forces on grips.
     forces: Vec<f64>,
     /// Forces of grips: unknown, force in N.
     pulls: Vec<(usize, f64)>,
-    /// The unknowns that have dead forces, or pulls, which may be zero.
+    /// The unknowns with dead forces or pulls, which may be zero.
     pushed: Vec<usize>,
     pressures: Pressures,
 }
@@ -48,7 +48,7 @@ impl Loads {
         Ok(sum)
     }
 
-    /// Whether there are none.
+    /// Whether there are no loads.
     pub fn is_empty(&self) -> bool {
         self.pressures.edges.is_empty() && self.pushed.is_empty()
     }
@@ -76,7 +76,7 @@ impl Loads {
         self.forces[unknown] + own.map(|(_, force)| force).sum::<f64>()
     }
 
-    /// Adds the forces on rigid grips, and finds where pressures end; all loads must be known.
+    /// Adds the forces on rigid grips, and finds where pressures end; all loads must have been added before.
     pub fn close(&mut self, constraints: &Constraints) {
         self.pulls.clone_from(&constraints.forces);
         self.find_pushed();
@@ -107,7 +107,7 @@ impl Loads {
         self.pushing(energy, factor, |unknown| factor * self.force(unknown))
     }
 
-    /// The same with other forces in N on the grips, whatever the load factor is.
+    /// The same with other forces in N on the grips, independent of the load factor.
     pub fn with_pulls<'a>(
         &'a self,
         energy: impl Potential + 'a,

@@ -38,7 +38,7 @@ pub struct Model<'a> {
     /// Fields near the equilibria at some load factors.
     near: Vec<(f64, Vec<f64>)>,
     linear_solver: LinearSolver,
-    /// What the load factor is called in messages.
+    /// Describes the load factor in messages.
     describe_end: fn(&PathEnd) -> String,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With a name.
+    /// Sets the name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {
@@ -75,7 +75,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With names for the elements of an energy whose elements are not the cells.
+    /// Sets the names of the elements of an energy whose elements are not the cells.
     #[must_use]
     pub fn describing(self, describe: impl Fn(usize) -> String + Sync + 'a) -> Self {
         Self {
@@ -84,8 +84,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With first guesses that are the state before, scaled with the load factor, or at first a multiple of a field, which
-    /// is that at load factor 1.
+    /// Takes as first guess the state before, scaled with the load factor; at first, a multiple of a field that is given at load factor 1.
     #[must_use]
     pub fn guessing(self, field: Vec<f64>) -> Self {
         Self {
@@ -94,14 +93,14 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With first guesses, where they are known, from equilibria u of another mesh of the same problem, such as a coarser one:
+    /// Takes first guesses, where they are known, from equilibria u of the same problem on another mesh, such as a coarser one:
     ///
     /// ```text
     /// I uₖ + (sₖ / sₖ₋₁) (vₖ₋₁ − I uₖ₋₁)
     /// ```
     ///
-    /// I interpolates on this mesh, v is its own equilibrium at the load factor s before. Where no equilibrium is found from one
-    /// of them, as where cells that keep their volume take an interpolated field ill, the path goes on in shorter steps without them.
+    /// I interpolates onto this mesh, v is its own equilibrium at the load factor s before. Where such a guess leads to no
+    /// equilibrium, as may happen with cells that keep their volume, the path goes on in shorter steps without these guesses.
     #[must_use]
     pub fn near(self, mesh: &Mesh, states: &[State]) -> Self {
         let interpolation = mesh.interpolation_on(self.mesh);
@@ -115,7 +114,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With systems solved as wanted.
+    /// Sets the linear solver.
     #[must_use]
     pub fn solved_by(self, linear_solver: LinearSolver) -> Self {
         Self {
@@ -124,7 +123,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With another name for the load factor in messages.
+    /// Sets another name for the load factor in messages.
     #[must_use]
     pub(super) fn telling_ends(self, describe_end: fn(&PathEnd) -> String) -> Self {
         Self {
@@ -158,7 +157,7 @@ impl<'a> Model<'a> {
         &self.constraints.ties
     }
 
-    /// A potential whose tied unknowns follow.
+    /// A potential whose tied unknowns follow their masters.
     pub(super) fn tied<'b>(
         &'b self,
         potential: Box<dyn Potential + 'b>,
@@ -174,7 +173,7 @@ impl<'a> Model<'a> {
         After::new(self.energy, history)
     }
 
-    /// What was done on the material up to a state; `None` where it has no memory.
+    /// The work done on the material up to a state; `None` where it has no memory.
     pub fn work(&self, state: &State) -> Option<Work> {
         let history = self.remembered(state);
         if history.is_empty() {
@@ -199,8 +198,8 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Solves load factors, one after the other. One that cannot be reached from the one before in one go is approached by
-    /// shorter steps.
+    /// Solves for load factors, one after the other. One that cannot be reached from the one before in a single step
+    /// is approached by shorter steps.
     ///
     /// # Errors
     /// [`PathEnd`] with the load factor that could not be reached and the states before it.
@@ -213,7 +212,7 @@ impl<'a> Model<'a> {
         self.attended(factors, settings, Attendance::told(progress))
     }
 
-    /// The same, where equilibria may be kept, and taken from where they were.
+    /// The same with attendance: equilibria may be kept, and resumed from where they were kept.
     ///
     /// # Errors
     /// As [`Model::solve`].
@@ -290,7 +289,7 @@ impl Loading for Model<'_> {
     }
 
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
-        // Rest cannot be scaled.
+        // The state at rest cannot be scaled.
         let previous = previous.filter(|own| own.factor != 0.0);
         let near = |factor: f64| {
             let mut known = self.near.iter();

@@ -12,8 +12,8 @@ use crate::solve::{PathEnd, Remembering, State};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
 ///
-/// The left grip rests, the right one moves along X; the long sides are free. Free of any
-/// discretisation: every model meshes it for itself. Its load factor is the stretch.
+/// The left grip rests, the right one moves along X; the long sides are free. The plate has no discretisation of its
+/// own: every model meshes it. Its load factor is the stretch.
 #[derive(Clone, Debug)]
 pub struct ClampedPlate {
     /// Length between the grips and width in mm.
@@ -22,13 +22,13 @@ pub struct ClampedPlate {
     pub thickness: f64,
     /// The material.
     pub law: Arc<dyn HyperelasticLaw>,
-    /// λ − 1 of the plate, the displacement of the right grip over the length, in the order in which they are reached: 0.5 is a stretch to
-    /// 150 %, −0.1 a compression to 90 %. Where the material has no memory, of one sign and from small to large.
+    /// λ − 1 of the plate, the displacement of the right grip over the length, in loading order: 0.5 is a stretch to 150 %, −0.1
+    /// a compression to 90 %. For a material without memory they have one sign and go from small to large.
     pub stretches: Vec<f64>,
 }
 
 impl ClampedPlate {
-    /// The supports that the grips are.
+    /// The plate as a boundary value problem with the grips as supports.
     pub fn boundary_problem(&self) -> BoundaryProblem {
         let grip = |side: Side, along: f64| {
             let support = Support::Displacement([Some(along), Some(0.0)]);
@@ -42,11 +42,11 @@ impl ClampedPlate {
         }
     }
 
-    /// The plate on a mesh of it with an energy of its nodes; every first guess is a multiple of the state before, or the
-    /// affine stretch.
+    /// The plate on a mesh of it with an energy of its nodal displacements; every first guess is a multiple of the
+    /// state before, or the affine stretch.
     ///
     /// # Panics
-    /// When the mesh is none of the plate.
+    /// When the mesh is not one of the plate.
     pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Remembering) -> Model<'a> {
         let model = self.boundary_problem().on(mesh, energy);
         let model = model.expect("the sides of a plate are groups of its mesh");
@@ -80,7 +80,7 @@ impl ClampedPlate {
             .collect()
     }
 
-    /// A state on a mesh, ready to be asked at any point of the plate.
+    /// A state on a mesh, to be evaluated at any point of the plate.
     pub fn deformed(&self, mesh: &Mesh, state: &State) -> DeformedSheet {
         self.boundary_problem().deformed(mesh, state)
     }
@@ -97,7 +97,7 @@ impl ClampedPlate {
     }
 }
 
-/// What is measured of a plate in a state.
+/// Measured quantities of a plate in a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
     /// Force on the moving grip in N.
@@ -109,7 +109,7 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Of a state on a mesh of the plate.
+    /// The measures of a state on a mesh of the plate.
     pub fn of(mesh: &Mesh, state: &State) -> Self {
         let on_right = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Right, *node));
         Self {

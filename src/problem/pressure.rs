@@ -12,9 +12,9 @@
 //! δΠ + Σ fₐ δuₐ = ½ s p t [x δy − y δx] at the ends of the edges
 //! ```
 //!
-//! A is the specimen's area as far as the edges bound it. The term at an end vanishes where it is held; where
-//! it slides along an axis it has a potential of its own; where it is free it has none, and the tangent is not symmetric
-//! there: its skew part couples the end's two displacements by ½ s p t.
+//! A is the specimen's area as far as the edges bound it. The term at an end vanishes where the end is held; where
+//! the end slides along an axis the term has a potential of its own; where the end is free there is no potential, and
+//! the tangent is not symmetric: its skew part couples the end's two displacements by ½ s p t.
 //!
 //! # References
 //! P. Wriggers, Nonlinear Finite Element Methods, Springer (2008), § 4.2.5, doi:10.1007/978-3-540-71001-1
@@ -25,7 +25,7 @@ use super::balance::Resultant;
 use crate::mesh::{Group, Mesh};
 use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling};
 
-/// A share of the line load at an end below which it is rounding of a sum of nothing.
+/// Share of the line load at an end below which it counts as rounding of a zero sum.
 const NOTHING: f64 = 1e-12;
 
 /// All pressures of a problem at load factor 1.
@@ -57,7 +57,7 @@ pub struct End {
     rest: [f64; 2],
     /// The line load in N/mm that ends there, less the one that begins there.
     line_load: f64,
-    /// The axis along which it is held, where it is held along one of them alone.
+    /// The axis along which it is held, where it is held along exactly one.
     held: Option<usize>,
 }
 
@@ -107,7 +107,7 @@ impl Pressures {
             .collect();
     }
 
-    /// Their potential at a load factor: edges, then ends.
+    /// The potential of the pressures at a load factor; its elements are the edges, then the ends.
     pub fn at(&self, factor: f64, unknowns: usize) -> PressurePotential<'_> {
         let mut connectivity = Connectivity::new(unknowns);
         for edge in &self.edges {
@@ -123,7 +123,7 @@ impl Pressures {
         }
     }
 
-    /// Their resultant about a point on the edges displaced by `u`, by its exact integral and not by the nodal forces:
+    /// The resultant of the pressures about a point, on the edges displaced by `u`, by its exact integral and not by the nodal forces:
     ///
     /// ```text
     /// F = −p t ∫ (dy, −dx) = −p t (Δy, −Δx),   M = p t ∫ (x dx + y dy) = ½ p t Δ(x² + y²)
@@ -185,12 +185,12 @@ impl Potential for PressurePotential<'_> {
 }
 
 impl Edge {
-    /// Its part of s p t A, less that at rest; the true nodal forces, and the stiffness of A alone.
+    /// The edge's part of s p t A, less that at rest; the true nodal forces, and the stiffness of A alone.
     fn evaluate(&self, factor: f64, u: &[f64], local: Local<'_>) -> f64 {
         let by = factor * self.line_load;
         let place: Vec<f64> = self.rest.iter().zip(u).map(|(rest, u)| rest + u).collect();
         let count = place.len() / 2;
-        // Forces depend on differences of places only, which have all digits from the edge's first node.
+        // Forces depend only on differences of places, which keep all digits relative to the edge's first node.
         let relative: Vec<f64> = (0..place.len()).map(|i| place[i] - place[i % 2]).collect();
         for (i, j, share) in pairs(count) {
             let (a, b) = (&relative[2 * i..2 * i + 2], &relative[2 * j..2 * j + 2]);
@@ -218,7 +218,7 @@ impl Edge {
 }
 
 impl End {
-    /// The potential of the term at an end that slides along an axis, less that at rest; its forces are those of the edges.
+    /// The potential of the term at an end that slides along an axis, less that at rest; its forces are those on the edges.
     fn energy(&self, factor: f64, u: &[f64]) -> f64 {
         let sign = match self.held {
             Some(0) => -0.5,

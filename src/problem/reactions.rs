@@ -1,4 +1,4 @@
-//! What follows from a state of a model: the forces of its supports, what happens at groups, the balance of all forces.
+//! Results from a state of a model: the forces of its supports, the state of groups, and the balance of all forces.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use super::groups::shares;
 use super::model::Model;
 use crate::solve::{Assembly, State};
 
-/// What happens at a group in one state.
+/// Force, place and displacement of a group in one state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroupState {
-    /// Force of the supports of the group on the sheet in N, with the signs of the axes; that of a pulled grip included. At a corner that
-    /// it shares with another group, supports of the other group have no part in it, and what both groups' supports hold is each one's as far
-    /// as its tractions beside the corner tell, and the rest shared.
+    /// Force of the group's supports on the sheet in N, with the signs of the axes, including that of a pulled grip. At a corner
+    /// that the group shares with another one, forces of supports of the other group are excluded; where supports of both groups
+    /// hold the node, the part of each group follows from its tractions beside the corner, and the rest is shared.
     pub force: [f64; 2],
     /// Moment of that force about `place` in N·mm, counter-clockwise; in a linear theory about the same point of the body at rest.
     pub moment: f64,
@@ -21,26 +21,26 @@ pub struct GroupState {
     pub place: [f64; 2],
     /// Mean displacement over the length of its edges in mm.
     pub displacement: [f64; 2],
-    /// The sum of the sizes of the forces on its nodes in N, of which `force` is what they have in common.
+    /// The sum of the magnitudes of the forces on its nodes in N, of which `force` is the resultant.
     pub size: f64,
-    /// What rounding may leave of forces in N, of E t times the largest displacement.
+    /// Rounding of forces in N, in proportion to E t times the largest displacement.
     pub rounding: f64,
 }
 
-/// Rounding of forces relative to E t times the largest displacement: a body that moves without strain has no others.
+/// Rounding of forces relative to E t times the largest displacement: a body that moves without strain has no other forces.
 const ROUNDING: f64 = 1e-11;
 
 /// The forces of the supports of a model in one state, and what follows from them.
 pub struct Reactions<'a> {
     model: &'a Model<'a>,
     state: &'a State,
-    /// N at each unknown, those of grips that are pulled too.
+    /// Force in N at each unknown, including grips that are pulled.
     forces: Vec<f64>,
 }
 
 impl Model<'_> {
-    /// The forces of the supports in a state: the internal forces of its nodes less the loads on them, along the axes along
-    /// which supports hold or pull them. Not a number where the state is inverted.
+    /// The forces of the supports in a state: the internal forces of its nodes less the loads on them, along the axes
+    /// along which supports hold or pull them. NaN where the state is inverted.
     pub fn reactions<'a>(&'a self, state: &'a State) -> Reactions<'a> {
         let Constraints {
             held, ties, forces, ..
@@ -73,7 +73,7 @@ impl Model<'_> {
 }
 
 impl Reactions<'_> {
-    /// What happens at a group.
+    /// Force, place and displacement of a group.
     ///
     /// # Panics
     /// When the mesh has no such group.
@@ -119,7 +119,7 @@ impl Reactions<'_> {
         }
     }
 
-    /// What happens at some groups.
+    /// Force, place and displacement of some groups.
     ///
     /// # Panics
     /// When the mesh has no such group.
@@ -130,8 +130,7 @@ impl Reactions<'_> {
     /// The balance of all forces of supports and loads, and of their moments, on the deformed body; in a linear theory on the
     /// body at rest.
     pub fn balance(&self) -> Balance {
-        /// Of smaller forces rounding may leave more than this share, which would say nothing of their balance: they count as large
-        /// as that.
+        /// Forces of which rounding may be more than this share would be judged by rounding alone: they count as large as this limit.
         const JUDGED: f64 = 1e-7;
         let (model, u) = (self.model, &self.state.displacement);
         let at_rest = vec![0.0; u.len()];
@@ -142,7 +141,7 @@ impl Reactions<'_> {
         let supports = body.resultant(&self.forces);
         let loads = model.loads.resultant(self.state.factor, u, &body);
         let rounding = self.rounding();
-        // NaN of an inverted state is not small.
+        // NaN in an inverted state does not count as small.
         let is_small = |size: f64| size <= 10.0 * rounding;
         if is_small(supports.size) && is_small(loads.size) {
             let none = Resultant::default();
@@ -151,7 +150,7 @@ impl Reactions<'_> {
         body.balance(supports, loads, rounding / JUDGED)
     }
 
-    /// What rounding may leave of forces in N.
+    /// Rounding of forces in N.
     fn rounding(&self) -> f64 {
         let u = self.state.displacement.iter();
         let largest = u.fold(0.0, |most: f64, u| most.max(u.abs()));

@@ -1,10 +1,10 @@
 //! Motions without strain that no support prevents.
 //!
-//! Cells that share an edge are one rigid body; bodies that share a single node are hinged together. With a body's
-//! motion q = (a, b, ω L) about the centre of the mesh, L its size, the displacement of a node at (x, y) is
-//! (a − ω y, b + ω x). Every held unknown, every tie and every hinge is a linear condition on the motions; those that satisfy all
-//! of them strain nothing. Forces, and what they stiffen, do not count: a body that only its tension would hold in place has such
-//! a motion at rest.
+//! Cells that share an edge form one rigid body; bodies that share a single node are hinged together. With a body's
+//! motion q = (a, b, ω L) about the centre of the mesh, L its size, the displacement of a node at (x, y) is (a − ω y,
+//! b + ω x). Every held unknown, every tie and every hinge is a linear condition on the motions; motions that satisfy
+//! all of them cause no strain. Forces and the stiffness due to them do not count: a body that only its tension would
+//! keep in place has such a motion at rest.
 
 use std::collections::BTreeMap;
 
@@ -18,13 +18,13 @@ use crate::mesh::{Mesh, decimals_for};
 /// apart two held nodes must be, relative to the mesh.
 const FREE: f64 = 1e-14;
 
-/// Bodies up to which their hinges and common grips count; more are faults of the mesh, each of which stands alone.
+/// Most bodies that are analysed together with their hinges and common grips; more are faults of the mesh, and each is analysed alone.
 const TOGETHER: usize = 100;
 
-/// Free motions that are told one by one.
+/// Most free motions that are reported one by one.
 const MOST: usize = 8;
 
-/// The parts of a mesh that can move without strain, each told with its motion.
+/// The parts of a mesh that can move without strain, each reported with its motion.
 pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
     let bodies = Bodies::of(mesh);
     let mut found = Vec::new();
@@ -56,7 +56,7 @@ struct Bodies<'a> {
     mesh: &'a Mesh,
     /// The first cell of each body.
     cells: Vec<usize>,
-    /// The bodies of each node: none, one, or those that hang together there.
+    /// The bodies of each node: none, one, or those that are hinged there.
     of_node: Vec<Vec<usize>>,
     centre: [f64; 2],
     size: f64,
@@ -96,7 +96,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Bodies that hinges or ties couple, together; each alone where there are too many.
+    /// Groups of bodies that hinges or ties couple; each body alone where there are too many.
     fn groups(&self, constraints: &Constraints) -> Vec<Vec<usize>> {
         let mut parents: Vec<usize> = (0..self.cells.len()).collect();
         if parents.len() > TOGETHER {
@@ -125,7 +125,7 @@ impl<'a> Bodies<'a> {
         groups.into_values().collect()
     }
 
-    /// The motions of some bodies that satisfy all conditions: 3 rows a body, a column a motion.
+    /// The motions of some bodies that satisfy all conditions: 3 rows for each body, a column for each motion.
     fn free(&self, group: &[usize], constraints: &Constraints) -> DMatrix<f64> {
         let count = 3 * group.len();
         let place = |body: &usize| group.binary_search(body).ok();
@@ -169,7 +169,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// The displacement of an unknown by the three motions of its body.
+    /// The displacement of an unknown due to each of the three motions of its body.
     fn displacement(&self, unknown: usize) -> [f64; 3] {
         let [x, y] =
             [0, 1].map(|axis| (self.mesh.nodes[unknown / 2][axis] - self.centre[axis]) / self.size);
@@ -180,7 +180,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// What motions, given as columns a, b, ω L of one body, are in words; `None` where there are none.
+    /// Describes motions, given as columns a, b, ω L of one body, in words; `None` where there are none.
     fn describe(&self, motions: &DMatrix<f64>) -> Option<String> {
         const SMALL: f64 = 1e-6;
         if motions.ncols() == 0 {
@@ -202,7 +202,7 @@ impl<'a> Bodies<'a> {
         match &kept[..] {
             [turn] => Some(format!("rotate about {}", self.pole(turn))),
             [one, other] => {
-                // The part of both that does not turn.
+                // The combination of both that does not turn.
                 let along = [0, 1].map(|axis| one[axis] * other[2] - other[axis] * one[2]);
                 Some(format!("move {} and rotate", direction(along)))
             }
@@ -215,7 +215,7 @@ impl<'a> Bodies<'a> {
         let by = self.size / turn[2];
         let [x, y] = [self.centre[0] - by * turn[1], self.centre[1] + by * turn[0]];
         let decimals = decimals_for(0.1 * self.size);
-        // No minus before a zero.
+        // No minus sign before a zero.
         let tidy = |x: f64| match x.abs() < 0.5 * 10_f64.powi(-(decimals as i32)) {
             true => 0.0,
             false => x,
@@ -259,7 +259,7 @@ fn direction(along: [f64; 2]) -> String {
     }
 }
 
-/// The least member that stands for a set.
+/// The smallest member, which represents a set.
 fn root(parents: &mut [usize], mut member: usize) -> usize {
     while parents[member] != member {
         parents[member] = parents[parents[member]];

@@ -1,5 +1,5 @@
-//! The strain energy of a sheet as a sum over sampling points: the common ground of the finite elements
-//! and of the corrector's difference scheme, which differ in the points and in the gradients alone.
+//! The strain energy of a sheet as a sum over sampling points, common to the finite elements and the corrector's
+//! difference scheme, which differ in the points and in the gradients alone.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::solve::{
     Connectivity, Inadmissible, Local, Potential, Remembering, Take, evaluate_by_elements,
 };
 
-/// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
+/// A point at which the energy is sampled: the displacement gradient there as a combination of nodal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplingPoint<'a> {
     /// ∂u/∂X = Σ uₐ ⊗ gₐ with one gₐ in 1/mm for each node of the cell.
@@ -35,12 +35,12 @@ pub struct SheetEnergy {
     volumes: Vec<f64>,
     /// Where the points of each cell begin.
     point_starts: Vec<usize>,
-    /// The largest energy of every point so far in mJ/mm³; nothing where it was never loaded, or remembers nothing.
+    /// The largest energy of every point so far in mJ/mm³; empty where the body was never loaded, or has no memory.
     history: Vec<f64>,
 }
 
 impl SheetEnergy {
-    /// No cells yet, of so many nodes.
+    /// An energy without cells for so many nodes.
     pub fn new(law: Arc<dyn HyperelasticLaw>, nodes: usize) -> Self {
         Self {
             law,
@@ -60,7 +60,7 @@ impl SheetEnergy {
         self.point_starts.push(self.volumes.len());
     }
 
-    /// Makes room for so many cells like the first one.
+    /// Reserves memory for so many cells like the first one.
     fn reserve(&mut self, cells: usize) {
         self.gradients.reserve(cells * self.gradients.len());
         self.gradient_starts.reserve(cells);
@@ -98,7 +98,7 @@ impl SheetEnergy {
         }
     }
 
-    /// The energy of the same cells of another law.
+    /// The energy of the same cells with another law.
     #[must_use]
     pub fn with_law(&self, law: Arc<dyn HyperelasticLaw>) -> Self {
         Self {
@@ -113,7 +113,7 @@ impl SheetEnergy {
         Self { history, ..self }
     }
 
-    /// The history that it has.
+    /// The history of the body.
     pub fn history(&self) -> &[f64] {
         &self.history
     }
@@ -193,7 +193,7 @@ impl Potential for SheetEnergy {
         }
     }
 
-    /// The first sampling point at which the law is not stable after Drucker.
+    /// The first sampling point at which the law is not stable in the sense of Drucker.
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         self.cell_points(element).find_map(|point| {
             let kinematics = point.kinematics(u).ok()?;

@@ -1,4 +1,4 @@
-//! A sheet's forces and tangents at many points at once: laws are quickest so.
+//! A sheet's forces and tangents at many points at once, where laws are fastest.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use crate::material::HyperelasticLaw;
 use crate::material::sheet::COMPONENTS;
 use crate::solve::{Inadmissible, Potential, Take};
 
-/// Points that are evaluated together, at least.
+/// Least number of points that are evaluated together.
 const BLOCK: usize = 256;
 
-/// Points of some cells side by side, with N numbers that a law makes at each.
+/// Points of some cells side by side, with N numbers that a law returns for each.
 struct Points<const N: usize> {
     /// Components 11, 12, 21, 22 of the displacement gradient.
     gradients: [Vec<f64>; 4],
@@ -19,7 +19,7 @@ struct Points<const N: usize> {
     cell: Vec<f64>,
 }
 
-/// What a law makes at many points at once; whether all of them are admissible.
+/// Evaluates a law at many points at once; returns whether all of them are admissible.
 type Make<const N: usize> = fn(&dyn HyperelasticLaw, [&[f64]; 4], [&mut [f64]; N]) -> bool;
 
 impl SheetEnergy {
@@ -130,7 +130,7 @@ impl<const N: usize> Points<N> {
         }
     }
 
-    /// Evaluates a law at all points; whether all of them are admissible.
+    /// Evaluates a law at all points; returns whether all of them are admissible.
     fn evaluate(&mut self, law: &dyn HyperelasticLaw, make: Make<N>) -> bool {
         let count = self.gradients[0].len();
         let sizes = self.made.iter_mut();
@@ -141,7 +141,7 @@ impl<const N: usize> Points<N> {
         positive && self.made.iter().flatten().all(|own| own.is_finite())
     }
 
-    /// Adds the forces of a cell whose points begin at a place, with P from a component on.
+    /// Adds the forces of a cell whose points begin at a place; P begins at a given component.
     fn add_forces(
         &mut self,
         energy: &SheetEnergy,

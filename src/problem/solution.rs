@@ -1,4 +1,4 @@
-//! The equilibria of a model along a path, and what happens at the groups of its mesh.
+//! The equilibria of a model along a path, and the states of groups of its mesh.
 
 use super::model::Model;
 use super::reactions::GroupState;
@@ -14,16 +14,16 @@ pub struct Solution {
     pub mesh: Mesh,
     /// One for each load factor.
     pub states: Vec<State>,
-    /// What happens at some groups in each state.
+    /// The states of some groups at each load factor.
     groups: Vec<Vec<GroupState>>,
-    /// What is left of all forces and moments together over the largest of them, in each state.
+    /// The resultant of all forces and moments together, relative to the largest of them, in each state.
     pub balances: Vec<f64>,
-    /// What was done on the material up to each state; `None` where it has no memory.
+    /// The work done on the material up to each state; `None` where it has no memory.
     pub works: Vec<Option<Work>>,
 }
 
 impl Solution {
-    /// States of a model, with what happens at groups of its mesh.
+    /// The states of a model, evaluated at groups of its mesh.
     pub fn new(model: &Model, groups: &[&str], states: Vec<State>) -> Self {
         let follow = |state| {
             let reactions = model.reactions(state);
@@ -40,35 +40,34 @@ impl Solution {
         }
     }
 
-    /// The displacement fields before the load factor of a number, which a body with a memory remembers; none where the material
-    /// has no memory.
+    /// The displacement fields before load factor number `step`, which a body with a memory remembers; empty where the material has no memory.
     pub fn past(&self, step: usize) -> Vec<&[f64]> {
         let remembers = self.works.iter().any(Option::is_some);
         let before = self.states.iter().take(step).filter(|_| remembers);
         before.map(|state| &state.displacement[..]).collect()
     }
 
-    /// How many load factors were reached.
+    /// The number of load factors that were reached.
     pub fn reached(&self) -> usize {
         self.states.len()
     }
 
-    /// ux, uy of node after node in mm at the load factor of a number; `None` where it was not reached.
+    /// ux, uy of node after node in mm at load factor number `step`; `None` where it was not reached.
     pub fn displacement(&self, step: usize) -> Option<&[f64]> {
         Some(&self.states.get(step)?.displacement)
     }
 
-    /// What happens at the groups at the load factor of a number; `None` where it was not reached.
+    /// The states of the groups at load factor number `step`; `None` where it was not reached.
     pub fn groups(&self, step: usize) -> Option<&[GroupState]> {
         self.groups.get(step).map(Vec::as_slice)
     }
 
-    /// What happens at the groups at the last load factor that was reached.
+    /// The states of the groups at the last load factor that was reached.
     pub fn last_groups(&self) -> Option<&[GroupState]> {
         self.groups.last().map(Vec::as_slice)
     }
 
-    /// The worst balance of all states, one that is no number being worse than any; `None` where there are no states.
+    /// The worst balance of all states, NaN being the worst; `None` where there are no states.
     pub fn worst_balance(&self) -> Option<f64> {
         self.balances.iter().copied().reduce(larger)
     }

@@ -1,11 +1,11 @@
-//! A potential some of whose unknowns are tied to others.
+//! A potential in which some unknowns are tied to others.
 
 use std::collections::BTreeMap;
 
 use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling, Take};
 
-/// Π(u) with uᵢ = uₖ for every tie (i, k): elements depend on the k alone, and no equation is left for an i.
+/// Π(u) with uᵢ = uₖ for every tie (i, k): elements depend on the k alone, and there is no equation for an i.
 ///
 /// ```text
 /// u = T v,   r_v = Tᵀ r,   K_v = Tᵀ K T,   T of zeros and ones
@@ -13,7 +13,7 @@ use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling, T
 pub struct TiedPotential<'a> {
     potential: Box<dyn Potential + 'a>,
     connectivity: Connectivity,
-    /// Of each element with tied unknowns, the place of each unknown of the untied element among its own.
+    /// For each element with tied unknowns: the position of each unknown of the untied element among its own.
     places: BTreeMap<usize, Vec<usize>>,
     ties: &'a BTreeMap<usize, usize>,
 }
@@ -73,7 +73,7 @@ impl TiedPotential<'_> {
     }
 }
 
-/// Adds Tᵀ K T of an element, whose unknowns have these places among those that are left; elements may fill the lower triangle alone.
+/// Adds Tᵀ K T of an element, whose unknowns have these positions among its remaining ones; elements may fill the lower triangle alone.
 fn fold(places: &[usize], stiffness: &[f64], folded: &mut [f64]) {
     let (own, size) = (places.len(), folded.len().isqrt());
     for (row, to_row) in places.iter().enumerate() {

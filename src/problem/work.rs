@@ -1,10 +1,10 @@
 //! The work on a material with a memory.
 
-/// The work on a body, and what it has become.
+/// The work done on a body, stored and dissipated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// What can be had back by unloading, in mJ.
+    /// The energy that unloading recovers, in mJ.
     pub stored: f64,
-    /// What softening has dissipated, in mJ.
+    /// The energy that softening has dissipated, in mJ.
     pub dissipated: f64,
 }

@@ -2,7 +2,7 @@
 
 use crate::finite_element::error_estimate::EnergyError;
 
-/// What belongs to one point or cell.
+/// The components at one point or cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Components {
     /// One number.
@@ -18,7 +18,7 @@ pub enum Components {
 }
 
 impl Components {
-    /// How many numbers there are.
+    /// The number of values.
     pub fn count(self) -> usize {
         match self {
             Self::Scalar => 1,
@@ -37,17 +37,17 @@ pub struct Array {
     pub name: &'static str,
     /// Its values.
     pub values: Vec<f64>,
-    /// What belongs to one point or cell.
+    /// The components at one point or cell.
     pub components: Components,
 }
 
 impl Array {
-    /// One number each.
+    /// An array with one number each.
     pub fn scalars(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         Self::new(name, Components::Scalar, values)
     }
 
-    /// Vectors in the plane.
+    /// An array of vectors in the plane.
     pub fn vectors(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         Self::new(name, Components::Vector, values)
     }

@@ -35,7 +35,7 @@ impl Block {
     }
 }
 
-/// What a file beside a report holds.
+/// The content of a file beside a report.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// A table or another text.
@@ -49,7 +49,7 @@ pub enum Content {
 pub struct Figure {
     /// File name.
     pub name: String,
-    /// What it shows, in one sentence.
+    /// Its content in one sentence.
     pub caption: String,
     /// The picture.
     pub drawing: Drawing,

@@ -1,10 +1,10 @@
-//! Line charts as data: what is drawn, not how.
+//! Line charts as data, without the way of drawing them.
 
 use serde::{Deserialize, Serialize};
 
 use crate::material::scalar_function::ScalarFunction;
 
-/// Colours that most people tell apart (Okabe and Ito).
+/// Colours that most people can distinguish (Okabe and Ito).
 pub const PALETTE: [[u8; 3]; 6] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -14,23 +14,23 @@ pub const PALETTE: [[u8; 3]; 6] = [
     [86, 180, 233],
 ];
 
-/// How numbers lie on an axis or a colour bar.
+/// The scale of an axis or a colour bar.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Scale {
-    /// Evenly.
+    /// A linear scale.
     Linear,
-    /// Evenly, with zero only where the values reach it: an axis of stretches.
+    /// A linear scale, with zero only where the values reach it: an axis of stretches.
     Interval,
-    /// By their decimal logarithm.
+    /// A logarithmic scale.
     Logarithmic,
 }
 
 /// One axis.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Axis {
-    /// What is shown, with its unit.
+    /// The quantity, with its unit.
     pub label: String,
-    /// How numbers lie on it.
+    /// The scale.
     pub scale: Scale,
 }
 
@@ -43,7 +43,7 @@ impl Axis {
         }
     }
 
-    /// An even axis.
+    /// A linear axis.
     pub fn linear(label: &str) -> Self {
         Self::new(label, Scale::Linear)
     }
@@ -59,20 +59,20 @@ impl Axis {
     }
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Stroke {
     /// A line with a marker at each point.
     Marked,
     /// A line.
     Solid,
-    /// A line that lies on itself again and again.
+    /// A thin line, for curves that overlap themselves.
     Thin,
-    /// A broken line.
+    /// A dashed line.
     Dashed,
     /// Markers alone.
     Points,
-    /// A pale area, its points the outline.
+    /// A pale area; its points are the outline.
     Filled,
 }
 
@@ -95,13 +95,13 @@ fn curve_through(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 /// One line of a chart.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Line {
-    /// Its name in the legend; an empty one is left out there.
+    /// Its name in the legend; a line with an empty name is not in the legend.
     pub label: String,
     /// Its points.
     pub points: Vec<[f64; 2]>,
     /// Its colour as red, green, blue.
     pub colour: [u8; 3],
-    /// How it is drawn.
+    /// The style of the line.
     pub stroke: Stroke,
 }
 

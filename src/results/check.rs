@@ -1,35 +1,35 @@
-//! What is required of figures, and what comes of it.
+//! Requirements on computed values, and their results.
 
 use serde_json::{Value, json};
 
 use super::{Block, limit, number};
 use crate::compare::judgement::Judgement;
 
-/// What a computed value has to be.
+/// The requirement on a computed value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wanted {
     /// A value, within a tolerance in percent of it.
     Equal(f64, f64),
-    /// At most so much.
+    /// At most this value.
     AtMost(f64),
-    /// At least so much.
+    /// At least this value.
     AtLeast(f64),
 }
 
-/// One checked figure.
+/// A checked value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What is checked.
+    /// The quantity.
     pub quantity: String,
     /// Its unit.
     pub unit: &'static str,
-    /// What it has to be.
+    /// The requirement.
     pub wanted: Wanted,
-    /// Where that comes from.
+    /// The source of the requirement.
     pub source: &'static str,
-    /// What gelbench computed.
+    /// The computed value.
     pub computed: f64,
-    /// The own error of what it was compared with, in the check's unit, where that is known.
+    /// The error of the reference itself, in the check's unit, where it is known.
     pub own_error: Option<f64>,
     judgement: Option<Judgement>,
     is_end: bool,
@@ -58,7 +58,7 @@ impl Check {
         }
     }
 
-    /// A fault that leaves nothing to be checked.
+    /// A fault that prevents a check.
     pub fn fault(quantity: impl Into<String>, source: &'static str) -> Self {
         Self {
             is_fault: true,
@@ -66,7 +66,7 @@ impl Check {
         }
     }
 
-    /// The end of a model before its last load factor, of a study that requires all of them.
+    /// The end of a model before its last load factor, in a study that requires all of them.
     pub fn end(quantity: impl Into<String>) -> Self {
         Self {
             is_end: true,
@@ -84,7 +84,7 @@ impl Check {
         self.is_fault
     }
 
-    /// With what the comparison with something that has an error of its own comes to.
+    /// Adds the judgement of a comparison with a reference that has an error of its own.
     #[must_use]
     pub fn judged(self, judgement: Judgement, own_error: f64) -> Self {
         Self {
@@ -102,7 +102,7 @@ impl Check {
         }
     }
 
-    /// What the check comes to.
+    /// The judgement of the check.
     pub fn judgement(&self) -> Judgement {
         match &self.judgement {
             Some(judgement) => judgement.clone(),
@@ -125,7 +125,7 @@ impl Check {
         }
     }
 
-    /// Whether the value is what it has to be; one that is not a number is not.
+    /// Whether the value meets the requirement; NaN does not.
     fn is_met(&self) -> bool {
         match self.wanted {
             Wanted::Equal(_, tolerance) => {
@@ -138,7 +138,7 @@ impl Check {
 }
 
 impl Check {
-    /// What it has to be, in words.
+    /// The requirement in words.
     pub fn wanted(&self) -> String {
         match self.wanted {
             _ if self.is_fault => "–".to_owned(),
@@ -172,7 +172,7 @@ impl Check {
     }
 }
 
-/// What all requirements together come to: failed where one fails, passed where all do.
+/// The verdict on all requirements: failed where one fails, passed where all pass.
 pub fn verdict(checks: &[Check]) -> &'static str {
     let mut judged = checks.iter().map(Check::judgement);
     if checks.iter().all(Check::passed) {

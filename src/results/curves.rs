@@ -26,7 +26,7 @@ pub fn material_chart(card: &Card) -> LineChart {
     let shear = samples(&|stretch| simple_shear(law, stretch - 1.0));
     let shear = ("simple shear", shear, SEARCHED);
     let curves: Vec<_> = Mode::ALL.map(in_mode).into_iter().chain([shear]).collect();
-    // Equibiaxial tension is much stiffer: its curve ends where it would press the others flat.
+    // Equibiaxial tension is much stiffer: its curve ends where it would flatten the others.
     let uniaxial = curves[0].1.iter();
     let highest = uniaxial.fold(0.0, |most: f64, point| most.max(1.6 * point[1].abs()));
     let shown = |mut points: Vec<[f64; 2]>| {
@@ -65,7 +65,7 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
         let stretches = (0..=100).map(|i| low + (high - low) * f64::from(i) / 100.0);
         let stress = |stretch: f64| Mode::Uniaxial.nominal_stress(&*card.law, stretch - 1.0);
         let points = stretches.map(|stretch| [stretch, stress(stretch)]);
-        // A colour that comes again is dashed.
+        // A colour that is used again is dashed.
         let stroke = match index < PALETTE.len() {
             true => Stroke::Solid,
             false => Stroke::Dashed,

@@ -6,7 +6,7 @@ use super::surface::edge_lines;
 use super::{Animation, FieldFigure, LineChart};
 use crate::mesh::{Group, Mesh};
 
-/// What a picture shows.
+/// The content of a picture.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Drawing {
     /// Charts one below the other, with their heights in points.
@@ -20,7 +20,7 @@ pub enum Drawing {
 }
 
 impl Drawing {
-    /// Whether it is of charts without a point.
+    /// Whether it has only charts without a point.
     pub fn is_empty(&self) -> bool {
         match self {
             Self::Charts(charts) => {
@@ -43,7 +43,7 @@ pub struct MeshFigure {
     pub groups: Vec<NamedLines>,
 }
 
-/// A group of a mesh: lines along its edges, or points, which are lines of one place twice.
+/// A group of a mesh: lines along its edges, or points, each drawn as a line between equal places.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct NamedLines {
     /// Its name.
@@ -76,7 +76,7 @@ pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
         },
     });
     let mut groups: Vec<NamedLines> = named.collect();
-    // The later ones are drawn over the earlier ones: a side is to be seen on the whole boundary.
+    // Later groups are drawn over earlier ones: a side must be visible on the whole boundary.
     groups.sort_by_key(|group| std::cmp::Reverse(group.lines.len()));
     Drawing::Mesh(MeshFigure {
         title: title.to_owned(),

@@ -22,7 +22,7 @@ pub struct Panel {
     pub label: String,
     /// Its deformed surface.
     pub surface: Surface,
-    /// The field on it; no number is shown in grey.
+    /// The field on it; NaN is shown in grey.
     pub values: Values,
 }
 
@@ -87,16 +87,16 @@ impl Panel {
 pub struct FieldFigure {
     /// Heading.
     pub title: String,
-    /// What the colours show, with its unit.
+    /// The quantity that the colours show, with its unit.
     pub quantity: String,
-    /// How the values lie on the colour bar.
+    /// The scale of the colour bar.
     pub scale: Scale,
     /// The plates.
     pub panels: Vec<Panel>,
 }
 
 impl FieldFigure {
-    /// On an even scale.
+    /// A figure on a linear scale.
     pub fn new(
         title: impl Into<String>,
         quantity: impl Into<String>,
@@ -127,7 +127,7 @@ impl FieldFigure {
         .logarithmic()
     }
 
-    /// On a logarithmic scale.
+    /// The same on a logarithmic scale.
     #[must_use]
     pub fn logarithmic(self) -> Self {
         let scale = Scale::Logarithmic;
@@ -140,7 +140,7 @@ impl FieldFigure {
 pub struct Frame {
     /// Time in s, shown in the title.
     pub time: f64,
-    /// The plates; as many in every frame.
+    /// The plates; their number is the same in every frame.
     pub panels: Vec<Panel>,
 }
 
@@ -149,10 +149,10 @@ pub struct Frame {
 pub struct Animation {
     /// Heading.
     pub title: String,
-    /// What the colours show, with its unit.
+    /// The quantity that the colours show, with its unit.
     pub quantity: String,
     /// The pictures in order.
     pub frames: Vec<Frame>,
-    /// How long each is shown, in ms.
+    /// The time for which each is shown, in ms.
     pub milliseconds: u16,
 }

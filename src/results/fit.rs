@@ -1,4 +1,4 @@
-//! Picture and figures of a fitted law.
+//! The picture and the numbers of a fitted law.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::calibration::{Fit, Observation, Test, TestData};
 use crate::material::curve::{Mode, samples};
 
 const INK: [u8; 3] = [60, 60, 60];
-/// What a record holds and is not fitted.
+/// The colour of the part of a record that is not fitted.
 const LEFT_OUT: [u8; 3] = [190, 190, 190];
 
 /// The observations of one file along one axis.
@@ -160,7 +160,7 @@ impl Drawn {
             .push(Line::new("", left, group.colour, Stroke::Points));
     }
 
-    /// Bands, data and curves, and what they are for the legend.
+    /// Bands, data and curves, with their names for the legend.
     fn lines(&mut self) -> Vec<Line> {
         let legend = [
             (true, "fitted curve", Stroke::Solid),
@@ -182,7 +182,7 @@ impl Drawn {
     }
 }
 
-/// At most a thousand observations: more markers than that are a blot.
+/// At most a thousand observations: more markers are not distinguishable.
 fn thinned(observations: Vec<Observation>) -> Vec<Observation> {
     let stride = observations.len().div_ceil(1000).max(1);
     observations.into_iter().step_by(stride).collect()
@@ -197,7 +197,7 @@ fn names(tests: &[TestData]) -> String {
     }
 }
 
-/// All figures of a fit. Numbers that do not exist are `null`.
+/// All numbers of a fit. Numbers that do not exist are `null`.
 pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
     let quality = &fit.quality;
     let parameters = fit

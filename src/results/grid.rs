@@ -1,7 +1,7 @@
-//! Grids with named arrays as data: what a VTK file holds.
+//! Grids with named arrays as data: the content of a VTK file.
 //!
-//! Units are part of the arrays' names. Stresses and what belongs to them are those of the material at
-//! the field's gradient in the centre of each cell, and at each node at the mean of the gradients there.
+//! Units are part of the arrays' names. Stresses and related quantities are those of the material at the field's
+//! gradient in the centre of each cell, and at each node at the mean of the gradients there.
 
 use super::Array;
 use super::sheet_arrays::{Sheet, in_cells, nodal};
@@ -20,7 +20,7 @@ pub enum GridCell {
 }
 
 impl GridCell {
-    /// How many points it has.
+    /// The number of its points.
     pub fn points(self) -> usize {
         match self {
             Self::Vertex => 1,
@@ -63,8 +63,7 @@ impl Grid {
         grid.with([Array::displacement(displacement)])
     }
 
-    /// A displacement field on the mesh of a sheet, with the stresses and strains that follow; there are none where a cell
-    /// is inverted.
+    /// A displacement field on the mesh of a sheet, with the stresses and strains that follow; without these where a cell is inverted.
     pub fn sheet(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Self {
         let cells = 0..mesh.cell_count();
         let kinds = cells.clone().map(|cell| GridCell::Mesh(mesh.shape(cell)));
@@ -90,14 +89,14 @@ impl Grid {
             ])
     }
 
-    /// With more arrays at its points.
+    /// The grid with more arrays at its points.
     #[must_use]
     pub fn with(mut self, arrays: impl IntoIterator<Item = Array>) -> Self {
         self.at_points.extend(arrays);
         self
     }
 
-    /// With more arrays in its cells.
+    /// The grid with more arrays in its cells.
     #[must_use]
     pub fn with_in_cells(mut self, arrays: impl IntoIterator<Item = Array>) -> Self {
         self.in_cells.extend(arrays);
@@ -105,7 +104,7 @@ impl Grid {
     }
 }
 
-/// Grids that belong together: those of one model at load factors, stretches, instants or frames.
+/// Grids of one series: those of one model at load factors, stretches, instants or frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSeries {
     /// The model's name for files.
@@ -119,14 +118,14 @@ pub struct GridSeries {
 pub struct NamedGrid {
     /// The name of its file, without extension.
     pub name: String,
-    /// Where it stands in its series: a load factor, a stretch, or a time in s.
+    /// Its position in the series: a load factor, a stretch, or a time in s.
     pub time: Option<f64>,
     /// The grid.
     pub grid: Grid,
 }
 
 impl GridSeries {
-    /// Grids with their numbers and times; the numbers in the names of the files have so many digits.
+    /// Grids with their numbers and times; the numbers in the names of the files have the given number of digits.
     pub fn numbered(
         name: &str,
         digits: usize,
@@ -163,7 +162,7 @@ impl GridSeries {
         )
     }
 
-    /// A grid that stands for itself.
+    /// A single grid.
     pub fn single(name: &str, grid: Grid) -> Self {
         let grid = NamedGrid {
             name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! Picture and figures of an identified spring.
+//! The picture and the numbers of an identified spring.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ const GREY: [u8; 3] = [190, 190, 190];
 /// Points of a drawn curve.
 const POINTS: usize = 201;
 
-/// K(·) and D(·) with their bands over what every instant asks for, and what is left of force and motion.
+/// K(·) and D(·) with their bands and the secants at all instants, and the residuals of force and motion.
 pub fn identification_picture(found: &Identification, recording: &Recording) -> Drawing {
     let motion = &found.motion;
     let (over, label) = match found.settings.argument {
@@ -40,8 +40,7 @@ pub fn identification_picture(found: &Identification, recording: &Recording) -> 
     ])
 }
 
-/// The share of the force in N over what it is proportional to, at every instant where that is large; near zero a
-/// secant is noise alone.
+/// The share of the force in N divided by its argument, at every instant where the argument is large; near zero a secant is only noise.
 fn secants(own: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> Vec<[f64; 2]> {
     const LEAST: f64 = 0.25;
     let most = own
@@ -105,7 +104,7 @@ fn residuals(found: &Identification, recording: &Recording) -> LineChart {
     )
 }
 
-/// All figures of an identification. Numbers that do not exist are `null`.
+/// All numbers of an identification. Numbers that do not exist are `null`.
 pub fn identification_json(found: &Identification, recording: &Recording, file: &str) -> Value {
     let function = |(symbol, unit, function): (&str, &str, &Function)| {
         let curve = function.places(41).into_iter().map(|x| {

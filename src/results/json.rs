@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::{Check, Results, Step, verdict};
 
 impl Results {
-    /// The results as `report.schema.json` says. Numbers and models that do not exist are `null`.
+    /// The results in the format of `report.schema.json`. Numbers and models that do not exist are `null`.
     pub fn json(&self) -> Value {
         let outcome = &self.outcome;
         let step = |step: &Step| {

@@ -12,8 +12,8 @@ use crate::mesh::{CellShape, Mesh};
 /// ν = 0.4999, 110 %.
 const NEARLY_CONSTANT: f64 = 0.8;
 
-/// Whether a mesh has cells of the first degree that lock: four triangles around a node where two straight lines cross do not, as one
-/// of their four conditions of constant area follows from the others.
+/// Whether a mesh has cells of the first degree that lock: four triangles around a node where two straight lines
+/// cross do not, because one of their four conditions of constant area follows from the others.
 pub fn locks(mesh: &Mesh) -> bool {
     let mut around = vec![0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
@@ -39,10 +39,10 @@ pub fn locks(mesh: &Mesh) -> bool {
     2 * crossed < triangles
 }
 
-/// What helps finite elements that lock.
+/// The remedy for finite elements that lock.
 pub const SECOND_DEGREE: &str = "Take finite elements of the second degree (`element = \"Q2\"`)";
 
-/// What is to be said of a sheet that can hardly change its area; nothing of others.
+/// The reason of locking for a sheet that can hardly change its area; `None` for others.
 pub fn reason(law: &dyn HyperelasticLaw) -> Option<String> {
     law.bulk_modulus()?;
     let nu = in_plane_poisson_ratio(law);
@@ -53,8 +53,7 @@ pub fn reason(law: &dyn HyperelasticLaw) -> Option<String> {
     })
 }
 
-/// The warning about models whose cells lock, each with what helps it; nothing where there are none, or the sheet's area can
-/// change.
+/// The warning about models whose cells lock, each with its remedy; `None` where there are none, or where the sheet's area can change.
 pub fn warning(law: &dyn HyperelasticLaw, locking: &[(&str, &str)]) -> Option<String> {
     let (names, remedies): (Vec<&str>, Vec<&str>) = locking.iter().copied().unzip();
     let models = match &names[..] {

@@ -1,4 +1,4 @@
-//! The material of a study, in the report's words and for machines.
+//! The material of a study, in words for the report and as data for programs.
 
 use serde_json::{Map, Value, json};
 
@@ -8,12 +8,12 @@ use crate::material::curve::Mode;
 use crate::material::law::HyperelasticLaw;
 use crate::material::stability::{SEARCHED, stable_range};
 
-/// What is told of a material.
+/// The description of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// For people.
+    /// The description for readers.
     pub blocks: Vec<Block>,
-    /// For machines.
+    /// The description for programs.
     pub json: Value,
 }
 

@@ -1,4 +1,4 @@
-//! The models as reports, files and pictures know them.
+//! Names and colours of the models in reports, files and pictures.
 
 use super::PALETTE;
 
@@ -13,26 +13,26 @@ pub struct ModelStyle {
     pub colour: [u8; 3],
 }
 
-/// The springs.
+/// The mass-spring model.
 pub const MASS_SPRING: ModelStyle = ModelStyle {
     name: "mass-spring",
     key: "mass_spring",
     colour: PALETTE[1],
 };
 
-/// The springs' field after the correction.
+/// The corrected field of the springs.
 pub const CORRECTED: ModelStyle = ModelStyle {
     name: "corrected",
     key: "corrected",
     colour: PALETTE[0],
 };
 
-/// What both are compared with.
+/// The reference for both.
 pub const FINITE_ELEMENTS: ModelStyle = ModelStyle {
     name: "finite elements",
     key: "finite_element",
     colour: [30, 30, 30],
 };
 
-/// All of them, in the order of reports.
+/// All models, in the order of reports.
 pub const MODELS: [ModelStyle; 3] = [MASS_SPRING, CORRECTED, FINITE_ELEMENTS];

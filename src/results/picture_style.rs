@@ -1,11 +1,11 @@
-//! How pictures are drawn, whatever they show.
+//! The style of all pictures.
 
 /// Formats, width and colours of pictures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureStyle {
     /// The formats that are written.
     pub formats: Vec<PictureFormat>,
-    /// How wide they are.
+    /// Their width.
     pub width: PictureWidth,
     /// Their colours.
     pub palette: Palette,
@@ -21,24 +21,24 @@ impl Default for PictureStyle {
     }
 }
 
-/// The format of a picture. Pictures that move are always PNG.
+/// The format of a picture. Animations are always PNG.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// Pixels.
+    /// A bitmap.
     Png,
     /// Lines and letters as curves, shaded fields as pixels among them.
     Svg,
-    /// The same.
+    /// The same as a document.
     Pdf,
 }
 
 impl PictureFormat {
-    /// All of them by their names, which are the endings of files too.
+    /// All formats by their names, which are also the extensions of files.
     pub const NAMES: [(&'static str, Self); 3] =
         [("png", Self::Png), ("svg", Self::Svg), ("pdf", Self::Pdf)];
 }
 
-/// How wide pictures are.
+/// The width of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureWidth {
     /// For a screen: about 200 mm.
@@ -50,7 +50,7 @@ pub enum PictureWidth {
 }
 
 impl PictureWidth {
-    /// All of them by their names.
+    /// All widths by their names.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("screen", Self::Screen),
         ("one-column", Self::OneColumn),
@@ -58,19 +58,19 @@ impl PictureWidth {
     ];
 }
 
-/// The colours of pictures; all can be told apart with every colour vision.
+/// The colours of pictures, which can be distinguished with every colour vision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Palette {
     /// On white.
     Default,
     /// On black, for slides.
     Dark,
-    /// Lightness alone tells the colours apart, as where a printer has but one.
+    /// Colours that differ in lightness alone, as for a printer with one ink.
     Print,
 }
 
 impl Palette {
-    /// All of them by their names.
+    /// All palettes by their names.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("default", Self::Default),
         ("dark", Self::Dark),

@@ -10,9 +10,9 @@ use crate::material::Card;
 use crate::statistics::extremes;
 
 const INK: [u8; 3] = [60, 60, 60];
-/// More markers than this are a blot.
+/// Most markers: more are not distinguishable.
 const MOST_MARKERS: usize = 800;
-/// Times over more than this factor are drawn by their logarithm.
+/// Times that span more than this factor are drawn on a logarithmic scale.
 const WIDE: f64 = 300.0;
 /// Points of a master curve.
 const POINTS: usize = 241;
@@ -65,7 +65,7 @@ impl Course {
     }
 }
 
-/// Markers that are not too many: evenly along the axis.
+/// A limited number of markers, evenly distributed along the axis.
 fn markers(points: Vec<[f64; 2]>, logarithmic: bool) -> Vec<[f64; 2]> {
     let place = |point: &[f64; 2]| if logarithmic { point[0].ln() } else { point[0] };
     let [low, high] = extremes(points.iter().map(place).filter(|x| x.is_finite()));
@@ -84,7 +84,7 @@ fn markers(points: Vec<[f64; 2]>, logarithmic: bool) -> Vec<[f64; 2]> {
     shown
 }
 
-/// How courses are drawn: in which unit, and over the logarithm of time or not.
+/// The style of courses: their unit, and whether time is on a logarithmic scale.
 struct Style {
     unit: Unit,
     logarithmic: bool,
@@ -123,7 +123,7 @@ impl Drawn {
     }
 }
 
-/// Stress over time, over the stretch where it turns back, and what is left.
+/// Stress over time, and over the stretch where it turns back, with the residuals.
 pub(super) fn relaxation_picture(fit: &Fit, relaxed: &Relaxed, tests: &[TestData]) -> Drawing {
     let courses = Course::all(relaxed, tests);
     let largest = tests.iter().map(|test| test.largest_stress);

@@ -1,4 +1,4 @@
-//! The report of a study: what is said, in which order, for every kind the same.
+//! The report of a study: its parts and their order, the same for every kind.
 
 use super::{Block, Claim, End, Outcome, Results, requirements, verdict};
 
@@ -32,7 +32,7 @@ impl Results {
         blocks
     }
 
-    /// The text of the study, what it left out, and what deserved attention when it was read.
+    /// The text of the study, its defaults, and the warnings from reading it.
     pub fn study(&self) -> Vec<Block> {
         let mut blocks = Vec::new();
         if !self.text.is_empty() {
@@ -85,7 +85,7 @@ pub fn pictures(heading: &str, outcome: &Outcome) -> Vec<Block> {
     heading.into_iter().chain(figures).collect()
 }
 
-/// Of frames, the pictures show the last one.
+/// For frames, the pictures show the last one.
 fn heading(along: &str) -> &'static str {
     match along {
         "frame" => "Pictures of the last frame",
@@ -102,7 +102,7 @@ fn judged(outcome: &Outcome) -> Vec<Block> {
     vec![Block::Paragraph(verdict), requirements(checks)]
 }
 
-/// Which model ended where, and why; ends that are told as requirements are not told again.
+/// The models that ended early, where and why; ends that are already listed as requirements are not repeated.
 fn ends(outcome: &Outcome) -> Vec<Block> {
     if outcome.checks.iter().any(super::Check::is_end) {
         return Vec::new();
@@ -115,7 +115,7 @@ fn ends(outcome: &Outcome) -> Vec<Block> {
     paragraphs("Models that ended early", &told)
 }
 
-/// The publication's claims; nothing without one.
+/// The publication's claims; empty without one.
 pub fn claims<'a>(claims: impl Iterator<Item = &'a Claim>) -> Vec<Block> {
     let rows = claims.map(|claim| vec![claim.claim.to_owned(), claim.reproduced.clone()]);
     let rows: Vec<_> = rows.collect();

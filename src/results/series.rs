@@ -9,7 +9,7 @@ pub struct Series {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// One number an instant.
+    /// One number per instant.
     pub values: Vec<f64>,
 }
 

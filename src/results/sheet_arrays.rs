@@ -1,4 +1,4 @@
-//! Stress, strain and what belongs to them as arrays of a grid.
+//! Stress, strain and related quantities as arrays of a grid.
 
 use super::Array;
 use super::state::{LocalState, cell_states, nodal_states};
@@ -7,16 +7,16 @@ use super::wrinkling::Wrinkling;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
 
-/// What the stresses of a sheet follow from.
+/// The data that determine the stresses of a sheet.
 #[derive(Clone, Copy)]
 pub struct Sheet<'a> {
     /// The material.
     pub law: &'a dyn HyperelasticLaw,
     /// Thickness in mm.
     pub thickness: f64,
-    /// The displacement fields before, which a law with a memory remembers.
+    /// The earlier displacement fields, which a law with a memory remembers.
     pub past: &'a [&'a [f64]],
-    /// The viscous part of the stresses; nothing where the material has none.
+    /// The viscous part of the stresses; `None` where the material has none.
     pub viscous: Option<&'a ViscousStress>,
 }
 
@@ -27,14 +27,14 @@ impl<'a> Sheet<'a> {
         Self { past, ..self }
     }
 
-    /// The fields before and the present one.
+    /// The earlier fields and the present one.
     fn fields(self, displacement: &'a [f64]) -> Vec<&'a [f64]> {
         let past = self.past.iter().copied();
         past.chain([displacement]).collect()
     }
 }
 
-/// What follows from the mean of the displacement gradients that the cells around each node have there.
+/// Arrays at the nodes, from the mean of the displacement gradients that the cells around each node have there.
 pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.at_nodes);
     let states = nodal_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
@@ -58,8 +58,8 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
     ]
 }
 
-/// What follows from the displacement gradients in the centres of the cells. The nominal stress is Pᵀ: its first index is the
-/// reference direction. Of a material that softens, what it has dissipated and what it has left of the stress are two more.
+/// Arrays in the cells, from the displacement gradients in their centres. The nominal stress is Pᵀ: its first index is the
+/// reference direction. For a softening material there are two more: the dissipated energy and the remaining share of the stress.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
     let states = cell_states(sheet.law, mesh, &sheet.fields(displacement), viscous);

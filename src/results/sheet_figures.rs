@@ -27,7 +27,7 @@ impl SheetField {
         ("thickness-stretch", Self::ThicknessStretch),
     ];
 
-    /// What a picture calls it, and its unit.
+    /// Its title in a picture, and its unit.
     fn title(self) -> (&'static str, &'static str) {
         match self {
             Self::VonMises => ("Von Mises stress", "von Mises stress [MPa]"),
@@ -52,20 +52,20 @@ impl SheetField {
     }
 }
 
-/// A model with what its stresses follow from.
+/// A model with the data that determine its stresses.
 pub struct Deformed<'a> {
     /// Its name.
     pub label: String,
     /// Its mesh.
     pub mesh: &'a Mesh,
-    /// Its displacement fields: the present one last, and before it those that a law with a memory remembers.
+    /// Its displacement fields: the present one last, preceded by those that a law with a memory remembers.
     pub fields: Vec<&'a [f64]>,
-    /// The viscous part of the first Piola–Kirchhoff stress at the nodes in MPa; nothing where there is none.
+    /// The viscous part of the first Piola–Kirchhoff stress at the nodes in MPa; empty where there is none.
     pub viscous: &'a [[f64; 4]],
 }
 
 impl<'a> Deformed<'a> {
-    /// Of an elastic material.
+    /// The model of an elastic material.
     pub fn elastic(label: impl Into<String>, mesh: &'a Mesh, fields: Vec<&'a [f64]>) -> Self {
         Self {
             label: label.into(),
@@ -76,8 +76,8 @@ impl<'a> Deformed<'a> {
     }
 }
 
-/// One picture for each field: the models side by side. `file` makes the name of
-/// a file from that of a field, and `at` says where on the path they are.
+/// One picture for each field: the models side by side. `file` makes the name of a file from that of a field, and
+/// `at` describes the position on the path.
 pub fn sheet_figures(
     fields: &[SheetField],
     law: &dyn HyperelasticLaw,

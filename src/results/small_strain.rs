@@ -1,4 +1,4 @@
-//! Fields that a law of small strains cannot have.
+//! Fields outside of the range of a law for small strains.
 
 use nalgebra::Matrix2;
 
@@ -6,8 +6,8 @@ use super::BESIDE_CORNERS;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
 
-/// Strains and rotations in rad up to which linear elasticity is taken at its word: its stresses are wrong by some times the strain, and
-/// by the square of the rotation.
+/// Strains and rotations in rad up to which linear elasticity is accepted: its stresses are wrong by some times the
+/// strain, and by the square of the rotation.
 const SMALL: [f64; 2] = [0.05, 0.1];
 
 /// The strain |λ − 1| and the rotation in rad that a small share of the sheet exceeds, by the centres of the cells.
@@ -34,7 +34,7 @@ fn exceeded_by_some(mut values: Vec<(f64, f64)>) -> f64 {
     reached.map_or(0.0, |(_, value)| *value)
 }
 
-/// What is to be said of a field of a law that holds for small strains and rotations alone; nothing of others.
+/// The reason why a field is outside of the range of a law for small strains and rotations; `None` for other laws.
 pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Option<String> {
     if !law.is_for_small_strains() {
         return None;
@@ -49,10 +49,10 @@ pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> O
     })
 }
 
-/// What helps.
+/// The remedy.
 pub const LARGE_STRAINS: &str = "Take a law for large strains, such as `neo-hooke` with `[volume]`";
 
-/// The warning about the states of a model, each at a load that is named: about the first that is too large.
+/// The warning about the states of a model, each at a named load: about the first one that is out of range.
 pub fn warning<'a>(
     law: &dyn HyperelasticLaw,
     mesh: &Mesh,

@@ -12,12 +12,12 @@ use crate::material::Card;
 use crate::material::curve::far_end;
 
 const INK: [u8; 3] = [60, 60, 60];
-/// More markers than this are a blot.
+/// Most markers: more are not distinguishable.
 const MOST_MARKERS: usize = 800;
 /// Points of a branch of a loop.
 const POINTS: usize = 101;
 
-/// Measured and fitted stresses over the stretch in the order of the rows, and what is left.
+/// Measured and fitted stresses over the stretch in the order of the rows, and the residuals.
 pub(super) fn softening_picture(fit: &Fit, softened: &Softened, tests: &[TestData]) -> Drawing {
     let (mut upper, mut lower) = (Vec::new(), Vec::new());
     for (data, predicted) in tests.iter().zip(&softened.predicted) {
@@ -70,7 +70,7 @@ pub(super) fn softening_picture(fit: &Fit, softened: &Softened, tests: &[TestDat
     Drawing::Charts(vec![(chart, 460), (residuals, 250)])
 }
 
-/// The figures of softening.
+/// The numbers of softening.
 pub(super) fn softening_json(softened: &Softened) -> Value {
     json!({
         "r": softened.softening.r,

@@ -7,7 +7,7 @@ use crate::material::sheet::Kinematics;
 use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
 
-/// What the material says of a displacement gradient.
+/// The state of the material at a displacement gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalState {
     /// First Piola–Kirchhoff stress in MPa: components 11, 12, 21, 22.
@@ -26,18 +26,18 @@ pub struct LocalState {
     pub energy: f64,
     /// Energy per reference volume that softening has dissipated, in mJ/mm³.
     pub dissipated: f64,
-    /// What softening has left of the stress; 1 without it.
+    /// The share of the stress that softening leaves; 1 without softening.
     pub softening_factor: f64,
 }
 
 impl LocalState {
-    /// Of displacement gradients H₁₁, H₁₂, H₂₁, H₂₂, the present one last and those that a law with a memory remembers before it, with a
-    /// viscous part of the first Piola–Kirchhoff stress in MPa; no numbers where it turns the sheet inside out.
+    /// The state at the last of some displacement gradients H₁₁, H₁₂, H₂₁, H₂₂, preceded by those that a law with a memory
+    /// remembers, with a viscous part of the first Piola–Kirchhoff stress in MPa; NaN where the sheet is turned inside out.
     pub fn of(law: &dyn HyperelasticLaw, gradients: &[[f64; 4]], viscous: [f64; 4]) -> Self {
         let Some((gradient, past)) = gradients.split_last() else {
             return Self::unknown();
         };
-        // A cell may fold between the points where a solution is held to be sound.
+        // A cell may fold between the points at which a solution is checked.
         let Ok(kinematics) = Kinematics::new(&Vector4::from(*gradient)) else {
             return Self::unknown();
         };

@@ -2,8 +2,8 @@
 //!
 //! Nodes that are strongly coupled are grouped; each group moves as a rigid body, smoothed by one step of damped Jacobi, and is
 //! one node of the next coarser level, with three unknowns. A cycle costs about as much as two products with the stiffness, and
-//! the iterations around it hardly depend on the number of nodes. Nothing is asked of the mesh but the places of its
-//! nodes: quadrilaterals and triangles, linear and quadratic, graded, locally refined, with holes and any supports.
+//! the iterations around it hardly depend on the number of nodes. Only the places of its nodes are required of the
+//! mesh: quadrilaterals and triangles, linear and quadratic, graded, locally refined, with holes and any supports.
 //!
 //! | step | how |
 //! |---|---|
@@ -30,10 +30,10 @@ use blocks::Blocks;
 use level::{Coarser, Level};
 pub use prolongation::Motions;
 
-/// Nodes up to which a level is factorised.
+/// Most nodes of a level that is factorised.
 const COARSEST: usize = 200;
 
-/// Share of a level's nodes that the next coarser one may have at most; where groups stay small that level is the last.
+/// Largest share of a level's nodes that the next coarser one may have; where groups stay small, that level is the last.
 const SLOW: f64 = 0.7;
 
 /// Levels from fine to coarse.
@@ -124,8 +124,8 @@ impl Hierarchy {
     }
 }
 
-/// Writes a vector in single precision, which has few exponents: over its largest number, which is returned; nothing where that
-/// is zero or not finite.
+/// Rounds a vector to single precision, whose range of exponents is small, after division by its largest entry, which
+/// is returned; `None` where that entry is zero or not finite.
 pub fn single_precision<const N: usize>(r: &[[f64; N]], rounded: &mut [[f32; N]]) -> f64 {
     let sizes = r.iter().flatten().map(|r| r.abs());
     let most = sizes.fold(0.0, f64::max);

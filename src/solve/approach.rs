@@ -1,4 +1,4 @@
-//! Newton's method as far as a coarse answer needs it: by multigrid, with one tangent for several steps.
+//! Newton's method for a coarse answer: by multigrid, with one tangent for several steps.
 
 use super::assembly::Assembly;
 use super::iterative::{Iterative, LinearSolver, Solved};
@@ -10,29 +10,29 @@ use super::tangent::Tangent;
 use super::vector::{gather, scale, spread};
 use crate::error::SolveFault;
 
-/// How near an approach has come, and what it took.
+/// How near an approach has come, and its cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Approach {
-    /// Tangents.
+    /// The number of tangents.
     pub linearisations: usize,
     /// Iterations, each with one cycle of multigrid.
     pub iterations: usize,
-    /// Systems that were solved.
+    /// The number of systems that were solved.
     pub steps: usize,
-    /// The first imbalance b as √(b · M b), with the cycle M, in √mJ: about the energy that it stands for.
+    /// The first imbalance b as √(b · M b), with the cycle M, in √mJ: about the energy that it represents.
     pub first: f64,
-    /// The imbalance that is left, likewise.
+    /// The remaining imbalance in the same measure.
     pub last: f64,
 }
 
 impl Approach {
-    /// The share of the first imbalance that is left.
+    /// The remaining share of the first imbalance.
     pub fn left(&self) -> f64 {
         self.last / self.first.max(f64::MIN_POSITIVE)
     }
 }
 
-/// How near an approach is to come.
+/// How near an approach has to come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nearness {
     /// To a share of its first imbalance.
@@ -41,34 +41,34 @@ pub enum Nearness {
     Imbalance(f64),
 }
 
-/// Which tangent an approach begins with.
+/// The tangent with which an approach begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstTangent {
-    /// The one that was taken last, elsewhere.
+    /// The tangent that was taken last, at another state.
     Known,
-    /// That of its own place.
+    /// The tangent at the first state.
     Own,
 }
 
-/// Steps and tangents at most.
+/// Most steps, and most tangents.
 const MOST: usize = 24;
 const LINEARISATIONS: usize = 8;
 
-/// The share of the first imbalance beyond which steps lead away.
+/// The share of the first imbalance above which steps diverge.
 const FARTHER: f64 = 2.0;
 
-/// The share of the imbalance before a step that may be left after it with the tangent of an earlier place.
+/// The share of the imbalance before a step that may remain after it with the tangent of an earlier state.
 const SERVES: f64 = 0.25;
 
-/// What a system's residual has to fall by at least and at most: less is not worth a new imbalance, more is lost to what is not linear.
+/// The least and the largest reduction of a system's residual: a smaller one is not worth a new imbalance, a larger one is lost to nonlinearity.
 const FALLS: [f64; 2] = [0.1, 0.05];
 
-/// What the imbalances tell.
+/// The imbalances so far.
 struct Pace {
     nearness: Nearness,
-    /// Not a number before one is known.
+    /// NaN before one is known.
     first: f64,
-    /// The one before the last step by the tangent taken last.
+    /// The imbalance before the last step with the tangent taken last.
     last: Option<f64>,
 }
 
@@ -81,7 +81,7 @@ impl Pace {
         }
     }
 
-    /// The imbalance that may be left; `weight` is the present one.
+    /// The imbalance that may remain; `weight` is the present one.
     fn enough(&self, weight: f64) -> f64 {
         match self.nearness {
             Nearness::Share(share) if self.first.is_nan() => share * weight,
@@ -94,12 +94,12 @@ impl Pace {
         weight <= self.enough(weight) || weight == 0.0
     }
 
-    /// Whether the tangent serves for another step.
+    /// Whether the tangent is good enough for another step.
     fn serves(&self, weight: f64) -> bool {
         self.last.is_none_or(|last| weight <= SERVES * last)
     }
 
-    /// What is wanted of a system with an imbalance of some weight.
+    /// The accuracy wanted of a system with an imbalance of some weight.
     fn wanted(&self, weight: f64) -> Wanted {
         if self.is_near(weight) || !self.serves(weight) {
             return Wanted::Size;
@@ -110,7 +110,7 @@ impl Pace {
 }
 
 impl Newton {
-    /// Newton's method with systems solved by multigrid on those of coarser meshes.
+    /// Newton's method with systems solved by multigrid on top of those of coarser meshes.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -125,7 +125,7 @@ impl Newton {
         Ok(newton)
     }
 
-    /// The systems of which this one is the finest; `None` where they were not solved by multigrid on coarser ones.
+    /// The systems with this one as the finest; `None` where they were not solved by multigrid on coarser ones.
     pub fn into_ladder(self) -> Option<Ladder> {
         let Tangent {
             assembly,
@@ -135,7 +135,7 @@ impl Newton {
         iterative?.into_ladder(&assembly)
     }
 
-    /// Puts the system on others, coarser ones, in place of those that it was put on.
+    /// Puts the system on other, coarser ones, in place of those below it.
     pub fn put_on(&mut self, ladder: Ladder, carry: Carry) {
         let Tangent {
             assembly,
@@ -153,7 +153,7 @@ impl Newton {
         iterative.is_some_and(Iterative::is_nested)
     }
 
-    /// Takes the tangent at `u` for multigrid; `None` where there is none, or `u` is not admissible.
+    /// Takes the tangent at `u` for multigrid; `None` without multigrid, or where `u` is not admissible.
     pub fn take_tangent(&mut self, potential: &dyn Potential, u: &[f64]) -> Option<()> {
         let iterative = self.tangent.iterative.as_mut()?;
         let mut residual = vec![0.0; u.len()];
@@ -161,8 +161,8 @@ impl Newton {
         iterative.prepare().ok()
     }
 
-    /// About what the free unknowns do when held ones move a little from an equilibrium `u`, by multigrid on the tangent taken
-    /// last; zero at held unknowns. `None` where there is no multigrid.
+    /// The approximate response of the free unknowns to a small motion of held ones from an equilibrium `u`, by
+    /// multigrid on the tangent taken last; zero at held unknowns. `None` without multigrid.
     pub fn carried_along(
         &mut self,
         potential: &dyn Potential,
@@ -178,9 +178,9 @@ impl Newton {
         Some(spread(self.free(), &step, u.len()))
     }
 
-    /// Moves the free entries of `u` towards a minimum of the potential by multigrid until it is near, as the iteration weighs the
-    /// imbalance. The tangent is taken anew only where it no longer serves; where it was taken on the way it is looked at whether
-    /// the equilibrium is stable. `None` where there is no multigrid, or anything is not as it should be.
+    /// Moves the free entries of `u` towards a minimum of the potential by multigrid until the imbalance, as the iteration
+    /// measures it, is small enough. The tangent is taken anew only where it is no longer good enough; where it was taken on the
+    /// way, the equilibrium is checked for stability. `None` without multigrid, or where anything fails.
     pub fn approach(
         &mut self,
         potential: &dyn Potential,
@@ -231,7 +231,7 @@ impl Newton {
         None
     }
 
-    /// Takes a step, half of it and so on where cells turn over; `None` where even a short one does.
+    /// Takes a step, or half of it and so on where cells turn over; `None` where even a short one fails.
     fn step(
         &self,
         potential: &dyn Potential,

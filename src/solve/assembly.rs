@@ -19,9 +19,9 @@ pub struct Assembly {
     free: Vec<usize>,
     /// The free unknowns of each element.
     elements: Connectivity,
-    /// Found when it is first needed.
+    /// Computed when it is first needed.
     sparse: OnceLock<(SymmetricPattern, Scatter)>,
-    /// Where each free unknown is, if that is known of all.
+    /// The place of each free unknown, if all are known.
     places: Option<Vec<[f64; 2]>>,
 }
 
@@ -68,7 +68,7 @@ impl Assembly {
         self.free_index[unknown]
     }
 
-    /// Where each free unknown is, if that is known of all.
+    /// The place of each free unknown, if all are known.
     pub fn places(&self) -> Option<&[[f64; 2]]> {
         self.places.as_deref()
     }
@@ -88,10 +88,10 @@ impl Assembly {
         diagonal.fold(0.0, |most: f64, place| most.max(stiffness[*place].abs()))
     }
 
-    /// Analyses the pattern of the stiffness, in an order by places where the system is large and they are known.
+    /// Analyses the pattern of the stiffness, in an order by places where the system is large and the places are known.
     ///
     /// # Errors
-    /// [`FactorFault`] when the pattern cannot be analysed, which means out of memory.
+    /// [`FactorFault`] when the pattern cannot be analysed because memory runs out.
     pub fn analyse(&self) -> Result<Cholesky, FactorFault> {
         match &self.places {
             Some(places) if places.len() >= WORTH_DISSECTION => {
@@ -102,7 +102,7 @@ impl Assembly {
         }
     }
 
-    /// Energy and full residual (fixed unknowns too: there it is the reaction).
+    /// Energy and full residual, including fixed unknowns, at which it is the reaction.
     ///
     /// # Errors
     /// [`Inadmissible`] with the first inverted element.

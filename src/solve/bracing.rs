@@ -6,10 +6,10 @@ use super::sparse::FactorFault;
 use super::tangent::Tangent;
 use crate::error::SolveFault;
 
-/// What a tangent is braced with where loads have no potential, over the mean of its diagonal.
+/// Stiffness with which a tangent is braced where loads have no potential, relative to the mean of its diagonal.
 const BRACE: f64 = 100.0;
 
-/// How far around the coupled unknowns it is braced, in cells.
+/// Width of the braced region around the coupled unknowns, in cells.
 const RINGS: usize = 4;
 
 impl Tangent {
@@ -67,7 +67,7 @@ impl Tangent {
         }
     }
 
-    /// Finds K'⁻¹ U, once for a factor.
+    /// Computes K'⁻¹ U, once for a factor.
     pub(super) fn find_columns(&mut self) -> Result<(), SolveFault> {
         if !self.skew.columns.is_empty() {
             return Ok(());

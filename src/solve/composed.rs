@@ -1,4 +1,4 @@
-//! Potentials made of others: of a body with a history, sums, and dead forces.
+//! Potentials composed of others: of a body with a history, sums, and dead forces.
 
 use super::connectivity::Connectivity;
 use super::potential::{
@@ -12,7 +12,7 @@ pub struct After<'a> {
 }
 
 impl<'a> After<'a> {
-    /// Π of a body that remembers what [`Remembering::remember`] has taken into its history.
+    /// Π of a body with the history that [`Remembering::remember`] has recorded.
     pub fn new(energy: &'a dyn Remembering, history: &'a [f64]) -> Self {
         Self { energy, history }
     }
@@ -69,7 +69,7 @@ pub struct Sum<'a> {
 }
 
 impl<'a> Sum<'a> {
-    /// Π₁ + Π₂; the places of the unknowns are those that the first potential knows.
+    /// Π₁ + Π₂; the places of the unknowns are taken from the first potential.
     pub fn new(first: impl Potential + 'a, second: impl Potential + 'a) -> Self {
         let mut connectivity = first.connectivity().clone();
         for element in 0..second.elements() {
@@ -95,7 +95,7 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// The part that an element belongs to, and its number there.
+    /// The part to which an element belongs, and its number there.
     fn part(&self, element: usize) -> (&dyn Potential, usize) {
         match element.checked_sub(self.first.elements()) {
             Some(own) => (&*self.second, own),

@@ -9,12 +9,12 @@ pub struct Connectivity {
     element_unknowns: Vec<usize>,
     /// Where the unknowns of each element begin.
     starts: Vec<usize>,
-    /// Where the nodes are, two unknowns each, if that is known.
+    /// The places of the nodes, with two unknowns each, if known.
     nodes: Vec<[f64; 2]>,
 }
 
 impl Connectivity {
-    /// No elements yet, over so many unknowns.
+    /// An empty list of elements over so many unknowns.
     pub fn new(unknowns: usize) -> Self {
         Self {
             unknowns,
@@ -34,13 +34,13 @@ impl Connectivity {
         &SINGLE
     }
 
-    /// With the places of the nodes: large systems are eliminated in an order by places.
+    /// Adds the places of the nodes: large systems are eliminated in an order by places.
     #[must_use]
     pub fn with_places(self, nodes: Vec<[f64; 2]>) -> Self {
         Self { nodes, ..self }
     }
 
-    /// With the places of the nodes as far as others know them.
+    /// Adds the places of the nodes as far as `other` has them.
     #[must_use]
     pub fn with_places_of(self, other: &Self) -> Self {
         self.with_places(other.nodes.clone())
@@ -72,7 +72,7 @@ impl Connectivity {
         &self.element_unknowns[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// Where an unknown is in the body, if that is known.
+    /// The place of an unknown in the body, if known.
     pub fn place(&self, unknown: usize) -> Option<[f64; 2]> {
         self.nodes.get(unknown / 2).copied()
     }

@@ -3,7 +3,7 @@
 use super::pattern::SymmetricPattern;
 use crate::statistics::extremes;
 
-/// Vertices of a part that is not divided any more.
+/// Most vertices of a part that is not divided any more.
 const LEAF: usize = 9;
 
 /// An order of elimination of the unknowns of a pattern from the place of each one: the body is divided at the middle
@@ -32,7 +32,7 @@ enum Half {
     Upper,
 }
 
-/// Runs of unknowns of one place, and which are coupled.
+/// Runs of unknowns of one place, and their couplings.
 struct Graph {
     /// Where the unknowns of each vertex begin.
     starts: Vec<usize>,
@@ -93,8 +93,8 @@ impl Graph {
         order.extend(cut);
     }
 
-    /// Brings the vertices below the middle of the longer side to the front and tells how many they are; nothing
-    /// where the part is small or has no two sides.
+    /// Moves the vertices below the middle of the longer side to the front and returns their number; `None` where the
+    /// part is small or has no two sides.
     fn halve(&self, vertices: &mut [usize]) -> Option<usize> {
         if vertices.len() <= LEAF {
             return None;

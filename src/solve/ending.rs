@@ -14,19 +14,19 @@ use super::potential::Potential;
 use super::vector::{difference, dot, gather, largest, norm};
 use crate::error::SolveFault;
 
-/// How far from the last equilibrium a tangent tells about it, relative to the largest displacement.
+/// How far from the last equilibrium a tangent describes it, relative to the largest displacement.
 const NEAR: f64 = 0.1;
 
-/// Share of the least stiffness at rest that counts as none: it vanishes like the root of the distance to a limit
-/// point, and a path comes near by a thousandth.
+/// Share of the least stiffness at rest below which a stiffness counts as zero: it vanishes like the root of the
+/// distance to a limit point, and a path comes within a thousandth of that point.
 const SOFT: f64 = 0.1;
 
-/// Cosine of the angle between mode and load above which the load drives the mode. A mode that a symmetry
-/// keeps from the load has rounding alone, about 1e-10; the stretching of a bar some 0.1.
+/// Cosine of the angle between mode and load above which the load drives the mode. For a mode that symmetry decouples
+/// from the load it is rounding, about 1e-10; for the stretching of a bar some 0.1.
 const DRIVEN: f64 = 1e-3;
 
-/// The reason behind a fault at a stage after the equilibrium `previous`: a material that lost its
-/// stability, a load that has its maximum, a mode of buckling; the fault itself where it is none of these.
+/// The reason behind a fault at a stage after the equilibrium `previous`: a material that lost its stability, a load
+/// that has its maximum, a mode of buckling; otherwise the fault itself.
 pub fn diagnose(
     newton: &mut Newton,
     loading: &dyn Loading,
@@ -55,7 +55,7 @@ pub fn diagnose(
         return found;
     }
     if newton.tangent.has_skew_part() {
-        // The modes of its symmetric part alone are no modes of the body.
+        // Modes of its symmetric part alone are not modes of the body.
         return fault;
     }
     let place_of = |mode: &[f64]| {
@@ -82,7 +82,7 @@ pub fn diagnose(
     SolveFault::LoadMaximum { factor, place }
 }
 
-/// A place at or near the last equilibrium at which a direction has no stiffness any more.
+/// A state at or near the last equilibrium in which a direction has lost its stiffness.
 fn critical(
     newton: &mut Newton,
     potential: &dyn Potential,
@@ -107,7 +107,7 @@ fn critical(
     soft.then(|| last.clone())
 }
 
-/// The first element that is unstable by itself, and in which state.
+/// The first element that is unstable by itself, and its state.
 fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, String)> {
     (0..potential.elements()).find_map(|element| {
         let own = gather(potential.element_unknowns(element), u);

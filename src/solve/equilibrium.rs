@@ -5,7 +5,7 @@ use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
 use crate::error::SolveFault;
 
-/// The equilibrium at a stage, with the potential there, from a guess: held unknowns are imposed on it.
+/// The equilibrium at a stage with the potential there, from a guess on which held unknowns are imposed.
 ///
 /// # Errors
 /// As [`Newton::solve`].

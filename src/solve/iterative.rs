@@ -1,4 +1,4 @@
-//! A tangent without a factor: conjugate gradients with one cycle of multigrid each.
+//! A tangent without a factor: conjugate gradients with one multigrid cycle per iteration.
 
 use super::aggregation::Hierarchy;
 use super::assembly::Assembly;
@@ -15,19 +15,19 @@ pub enum LinearSolver {
     Automatic,
     /// By a sparse Cholesky factor.
     Direct,
-    /// By conjugate gradients with multigrid, where the places of the nodes are known and the tangent is symmetric; by a factor
-    /// where the iteration does not lead to the end.
+    /// By conjugate gradients with multigrid, where the places of the nodes are known and the tangent is symmetric;
+    /// by a factor where the iteration does not converge.
     Multigrid,
 }
 
-/// Unknowns from which on multigrid is taken: about where it is as fast as a factor with linear elements; with quadratic ones it costs up to
-/// half as much again there, and less memory.
+/// Number of unknowns from which multigrid is taken: about where it is as fast as a factor with linear elements; with
+/// quadratic ones it takes up to half as long again there, and less memory.
 pub const WORTH_MULTIGRID: usize = 500_000;
 
-/// Iterations that a system may take.
+/// Most iterations of a system.
 const MOST: usize = 80;
 
-/// Iterations, over those of a cycle made for this very tangent, from which on a new cycle is made.
+/// Iterations, relative to those of a cycle made for the same tangent, from which on a new cycle is made.
 const STALE: f64 = 1.6;
 
 /// The tangent of a potential by nodes, with a cycle that was made for it or for one before it.
@@ -37,21 +37,21 @@ pub struct Iterative {
     cycle: Cycle,
     /// Whether the cycle was made for the values taken last, or for others, or is to be made.
     made: Made,
-    /// Iterations a digit with a cycle of its own.
+    /// Iterations per digit with a cycle made for the tangent itself.
     pace: f64,
     /// Iterations of all systems so far.
     pub iterations: usize,
 }
 
-/// What stands for the inverse of the matrix.
+/// An approximate inverse of the matrix.
 enum Cycle {
     /// Made from the matrix alone.
     Aggregation(Option<Box<Hierarchy>>),
-    /// On systems that were solved before.
+    /// Over systems that were solved before.
     Nested(Box<Nested>),
 }
 
-/// For which values a cycle was made.
+/// The values for which a cycle was made.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Made {
     ForThese,
@@ -59,11 +59,11 @@ enum Made {
     Not,
 }
 
-/// What a system came to.
+/// The result of solving a system.
 pub struct Solved {
     /// The free unknowns.
     pub x: Vec<f64>,
-    /// √(b · M b), which is about √(b · K⁻¹ b): the imbalance b as the energy that it stands for.
+    /// √(b · M b), which is about √(b · K⁻¹ b): the imbalance b in terms of the energy that it represents.
     pub weight: f64,
 }
 
@@ -115,14 +115,14 @@ impl Iterative {
         })
     }
 
-    /// Puts it on systems that were solved before, with what carries their fields to this one.
+    /// Puts it on systems that were solved before; `carry` transfers their fields to this one.
     pub fn put_on(&mut self, ladder: Ladder, assembly: &Assembly, carry: Carry) {
         let cycle = ladder.above(assembly.free(), &self.nodes, carry);
         self.cycle = Cycle::Nested(Box::new(cycle));
         self.made = Made::Not;
     }
 
-    /// The systems with this one on top; `None` where it was not put on others.
+    /// The systems with this one as the finest; `None` where it was not put on others.
     pub fn into_ladder(self, assembly: &Assembly) -> Option<Ladder> {
         match self.cycle {
             Cycle::Nested(cycle) => Some(Ladder::new(*cycle, self.nodes, assembly)),
@@ -135,8 +135,8 @@ impl Iterative {
         matches!(self.cycle, Cycle::Nested(_))
     }
 
-    /// Takes the tangent of a potential at another state; its energy, and ∂Π/∂u at all unknowns. There is no tangent where there is none
-    /// at that state.
+    /// Takes the tangent of a potential at another state; returns the energy there, and ∂Π/∂u at all unknowns. There
+    /// is no tangent at a state that is not admissible.
     ///
     /// # Errors
     /// [`Inadmissible`] with the first inverted element.
@@ -147,7 +147,7 @@ impl Iterative {
         residual: &mut [f64],
     ) -> Result<f64, Inadmissible> {
         let energy = self.matrix.linearise(potential, u, residual);
-        // Aggregates are dear, and good for tangents beside their own.
+        // Aggregation is costly, and also serves for tangents near its own.
         self.made = match (&self.cycle, self.made) {
             (Cycle::Aggregation(_), Made::ForThese | Made::ForOthers) => Made::ForOthers,
             _ => Made::Not,
@@ -173,7 +173,7 @@ impl Iterative {
         Ok(self.solve_as_far_as(b, |_| Wanted::Reduction(reduction))?.x)
     }
 
-    /// The same as far as is wanted at the weight of b.
+    /// The same, as exactly as is wanted at the weight of b.
     ///
     /// # Errors
     /// As [`Self::solve`].
@@ -202,7 +202,7 @@ impl Iterative {
                 }
             }
             match (&self.cycle, self.made) {
-                // These cells do not suit the smoother.
+                // The smoother does not work on these cells.
                 (Cycle::Nested(_), _) => self.cycle = Cycle::Aggregation(None),
                 (_, Made::ForThese) => {
                     return Err(found.err().unwrap_or(FactorFault::NotPositiveDefinite));
@@ -213,7 +213,7 @@ impl Iterative {
         }
     }
 
-    /// Gives a cycle up that was made for other values and takes many more iterations than one made for its own.
+    /// Discards a cycle that was made for other values and takes many more iterations than one made for its own.
     fn judge(&mut self, iterations: usize, reduction: f64) {
         if reduction == 1.0 {
             return;
@@ -227,7 +227,7 @@ impl Iterative {
         }
     }
 
-    /// Makes the cycle where it is not made.
+    /// Makes the cycle if it has not been made.
     ///
     /// # Errors
     /// [`FactorFault`] where the tangent taken last has none.
@@ -247,8 +247,8 @@ impl Iterative {
         Ok(())
     }
 
-    /// Whether the tangent is positive definite, as far as some iterations from a start that has a part of every mode show: with a
-    /// good preconditioner a negative stiffness stands alone, and is found first.
+    /// Whether the tangent is positive definite, judged by some iterations from a start that has a part of every
+    /// mode: with a good preconditioner a negative stiffness is isolated, and is found first.
     pub fn is_definite(&mut self) -> bool {
         let iterations = match self.cycle {
             Cycle::Aggregation(_) => 12,

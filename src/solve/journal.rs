@@ -1,4 +1,4 @@
-//! What of a path is kept, so that a computation that was broken off goes on where it was.
+//! Equilibria of a path that are kept, so that an interrupted computation resumes where it was.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,28 +13,28 @@ pub struct Milestone {
     pub step: f64,
 }
 
-/// Keeps the equilibria of a computation, so that one that was broken off goes on where it was.
+/// Keeps the equilibria of a computation, so that an interrupted one resumes where it was.
 pub trait Journal {
-    /// Begins the next path of the computation; returns what was kept of it, from its first load factor on.
+    /// Begins the next path of the computation; returns the equilibria kept of it, from its first load factor on.
     fn begin(&self) -> Vec<Milestone>;
 
     /// Keeps the next equilibrium of the path that was begun last.
     fn keep(&self, milestone: Milestone);
 }
 
-/// Who attends a path.
+/// An observer of a path.
 #[derive(Clone, Copy)]
 pub struct Attendance<'a> {
-    /// Is told each load factor that is reached.
+    /// Called with each load factor that is reached.
     pub reached: &'a dyn Fn(f64),
-    /// Is told each load factor on the way to one, where it takes several steps.
+    /// Called with each intermediate load factor, where one takes several steps.
     pub on_the_way: &'a dyn Fn(f64),
     /// Where equilibria are kept, if anywhere.
     pub journal: Option<&'a dyn Journal>,
 }
 
 impl<'a> Attendance<'a> {
-    /// One that is told, and keeps nothing.
+    /// An observer that is called with load factors and keeps nothing.
     pub fn told(reached: &'a dyn Fn(f64)) -> Self {
         Self {
             reached,

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::pattern::SymmetricPattern;
 use super::vector::{add_scaled, dot, norm};
 
-/// A vector without any symmetry, another one for each seed: a start that has a part of every mode.
+/// A vector without any symmetry, different for each seed: a start that has a part of every mode.
 pub fn irregular(size: usize, seed: usize) -> Vec<f64> {
     let entry = |i: usize| ((i + 1) as f64 * (2.0 + seed as f64).sqrt()).sin();
     (0..size)
@@ -13,8 +13,8 @@ pub fn irregular(size: usize, seed: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The largest size of an eigenvalue of a symmetric operator by Lanczos' method: that of the largest Ritz value with its error
-/// bound, not below the eigenvalue's; not a number where the operator is not finite, and zero where it has no rows.
+/// The largest magnitude of an eigenvalue of a symmetric operator by Lanczos' method: the largest Ritz value plus its error
+/// bound, which is not below that of the eigenvalue; NaN where the operator is not finite, and zero where it has no rows.
 ///
 /// # References
 /// B. N. Parlett, The Symmetric Eigenvalue Problem, SIAM (1998), § 13.2, doi:10.1137/1.9781611971163

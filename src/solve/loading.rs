@@ -6,7 +6,7 @@ use super::iterative::LinearSolver;
 use super::newton::Convergence;
 use super::potential::Potential;
 
-/// Where on its path a body is.
+/// The position of a body on its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage<'a> {
     /// The load factor.
@@ -16,7 +16,7 @@ pub struct Stage<'a> {
 }
 
 impl Stage<'static> {
-    /// Of a body that was never loaded before, or has no memory.
+    /// The stage of a body that was never loaded before, or has no memory.
     pub fn first(factor: f64) -> Self {
         Self {
             factor,
@@ -51,12 +51,12 @@ pub trait Loading {
     /// prediction from the state before is the best guess.
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>>;
 
-    /// How far the load factor may go in one step to another one: a turn that is taken at once is one of many.
+    /// The longest step of the load factor towards another one: a turn taken in a single step is one of many possible ones.
     fn longest_step(&self, _factor: f64) -> f64 {
         f64::INFINITY
     }
 
-    /// Whether an equilibrium must lie on the branch of those before it; where what lies between is not known, any will do.
+    /// Whether an equilibrium must lie on the branch of those before it; where the states between are not known, any branch will do.
     fn follows_its_branch(&self) -> bool {
         true
     }
@@ -79,14 +79,14 @@ pub struct State {
     pub residual: Vec<f64>,
     /// What the body remembers of the load factors before; empty where it was never loaded, or has no memory.
     pub history: Vec<f64>,
-    /// Equilibria on the way from the state before, this one included; 1 when it was reached in one go.
+    /// Number of equilibria from the state before to this one, this one included; 1 when it was reached in a single step.
     pub load_steps: usize,
-    /// How the last of them was reached.
+    /// Convergence of the last of them.
     pub convergence: Convergence,
 }
 
 impl State {
-    /// Where on its path it is.
+    /// The position on the path.
     pub fn stage(&self) -> Stage<'_> {
         Stage {
             factor: self.factor,

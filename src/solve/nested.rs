@@ -1,12 +1,12 @@
 //! Multigrid over systems of one body, coarse to fine: each with its own tangent, taken where its own equilibrium was found.
 //!
-//! Nothing is asked of the systems but that fields of each can be carried to the next finer one: meshes need not be nested, nor
-//! end at the same curved outline. A climb from mesh to mesh has all tangents but the finest already.
+//! The systems need only a transfer of fields from each to the next finer one: meshes need not be nested, nor end at
+//! the same curved outline. A climb from mesh to mesh already has all tangents but the finest.
 //!
 //! | step | how |
 //! |---|---|
 //! | smoother | block Gauss–Seidel, forward before and backward after the coarser levels: symmetric |
-//! | to a finer level | the interpolation by the elements, P; held unknowns have no part in it, tied ones that of their master |
+//! | to a finer level | the interpolation by the elements, P; held unknowns do not take part, tied ones follow their master |
 //! | from a finer level | Pᵀ |
 //! | coarsest level | sparse Cholesky factor |
 //!
@@ -23,12 +23,12 @@ use super::nodal::Nodes;
 use super::potential::Potential;
 use super::sparse::{Cholesky, FactorFault};
 
-/// Writes the unknowns of the coarser system, of the same component, with their shares, that an unknown of the finer one is made of.
+/// Writes the unknowns of the coarser system, with their shares, that make up an unknown of the finer one, of the same component.
 pub type Carry<'a> = &'a dyn Fn(usize, &mut Vec<(usize, f64)>);
 
 /// The systems from coarse to fine.
 pub struct Nested {
-    /// Above the coarsest one.
+    /// The levels above the coarsest one.
     levels: Vec<Level<2, 2, Shares>>,
     coarsest: Cholesky,
     /// The nodes of the coarsest system, and right-hand side and solution there.
@@ -73,7 +73,7 @@ impl Ladder {
         }
     }
 
-    /// With unknowns that follow others, their masters.
+    /// Adds unknowns that follow others, with their masters.
     #[must_use]
     pub fn tied(mut self, ties: &BTreeMap<usize, usize>) -> Self {
         for (unknown, master) in ties {
@@ -82,7 +82,7 @@ impl Ladder {
         self
     }
 
-    /// Puts a finer system on top, whose matrix is to be taken.
+    /// Adds a finer system on top, whose matrix is taken later.
     pub fn above(self, unknowns: &[usize], nodes: &Nodes, carry: Carry) -> Nested {
         let shares = self.shares(unknowns, nodes, carry);
         let mut cycle = self.cycle;
@@ -130,10 +130,10 @@ impl Ladder {
 /// Shares below this are rounding.
 const LEAST: f64 = 1e-7;
 
-/// The shares that the components of coarser nodes have in those of finer ones.
+/// The shares of the components of coarser nodes in those of finer ones.
 #[derive(Default)]
 struct Shares {
-    /// Where those of each finer node begin.
+    /// Where the shares of each finer node begin.
     starts: Vec<u32>,
     columns: Vec<u32>,
     values: Vec<[f32; 2]>,

@@ -9,7 +9,7 @@ use super::tangent::{Describe, Tangent, inverted};
 use super::vector::{dot, gather, largest, scale};
 use crate::error::SolveFault;
 
-/// When to stop.
+/// Stopping criteria.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
     /// Largest residual of a free unknown relative to the largest reaction. Default: 1e-10.
@@ -34,11 +34,11 @@ pub struct Convergence {
     pub residuals: Vec<f64>,
     /// The potential at the solution.
     pub energy: f64,
-    /// Iterations in which the full step was cut.
+    /// Iterations in which the full step was shortened.
     pub cut_steps: usize,
     /// Iterations in which the tangent was not positive definite and was shifted.
     pub shifted_steps: usize,
-    /// Load steps, as short as they could be, in which the body moved farther than the step foretold: it snapped to another branch.
+    /// Load steps of the shortest length in which the body moved farther than predicted: it snapped to another branch.
     pub snaps: usize,
 }
 
@@ -58,24 +58,24 @@ pub struct Newton {
     indefinite: Option<Vec<f64>>,
 }
 
-/// Forces are negligible below this share of the stiffest unknown's stiffness times the largest displacement:
-/// a body that moves without strain has rounding alone.
+/// Forces are negligible below this share of the stiffest unknown's stiffness times the largest displacement: a body
+/// that moves without strain has only rounding.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// The share of the relative residual before a step that may be left after it for its tangent to serve for another one.
+/// The share of the relative residual before a step that may remain after it if its tangent is to be used again.
 const SERVES: f64 = 0.05;
 
-/// Relative residual below which the tangent no longer changes its kind.
+/// Relative residual below which the tangent no longer changes its definiteness.
 const SMALL: f64 = 1e-3;
 
-/// Relative residual below which a tangent that is not positive definite is that of an unstable equilibrium. From
-/// there rounding would choose between the branches beside it.
+/// Relative residual below which a tangent that is not positive definite is that of an unstable equilibrium. Beyond
+/// that, rounding would choose between the branches beside it.
 const SADDLE: f64 = 1e-5;
 
 /// Relative residual at which a stagnating iteration counts as converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-11;
 
-/// Where the iteration stands.
+/// The state of the iteration.
 struct Iterate {
     energy: f64,
     /// Relative residual.
@@ -95,7 +95,7 @@ impl Newton {
         Self::with_solver(potential, fixed, LinearSolver::Automatic)
     }
 
-    /// The same, with systems solved as wanted.
+    /// The same with a linear solver.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -121,8 +121,8 @@ impl Newton {
         self.indefinite.as_deref()
     }
 
-    /// Moves the free entries of `u` to a minimum of the potential near by. On return `residual` holds
-    /// ∂Π/∂u at all unknowns: zero at free ones, the reactions at held ones.
+    /// Moves the free entries of `u` to a nearby minimum of the potential. On return `residual` is ∂Π/∂u at all
+    /// unknowns: zero at free ones, the reactions at held ones.
     ///
     /// `describe` names an element for messages.
     ///
@@ -145,7 +145,7 @@ impl Newton {
             }
             u.copy_from_slice(&start);
             let log = self.solve_directly(potential, u, residual, settings, describe)?;
-            // What a factor solves from the same start multigrid should have solved: these cells do not suit it.
+            // A factor solves from the same start what multigrid did not: multigrid does not suit these cells.
             self.tangent.iterative = None;
             return Ok(log);
         }
@@ -211,8 +211,8 @@ impl Newton {
         }
     }
 
-    /// Steps with the tangent taken last, which was positive definite close by, while each leaves little of the residual before
-    /// it: such steps cost a fraction of a factor. Whether the residual has come below the tolerance.
+    /// Takes steps with the tangent taken last, which was positive definite nearby, while each reduces the residual
+    /// enough: such steps cost a fraction of a factor. Returns whether the residual has come below the tolerance.
     fn hold_tangent(
         &mut self,
         potential: &dyn Potential,
@@ -247,8 +247,8 @@ impl Newton {
         }
     }
 
-    /// Newton's method with steps by multigrid, each as exact as its place on the way deserves. `None` where anything is not
-    /// as it should be: Newton's method with factors then finds the solution, or what is wrong.
+    /// Newton's method with steps by multigrid, each solved as exactly as its stage requires. `None` where anything
+    /// fails: Newton's method with factors then finds the solution, or the fault.
     fn solve_inexactly(
         &mut self,
         potential: &dyn Potential,
@@ -292,7 +292,7 @@ impl Newton {
         }
     }
 
-    /// Logs a linearised state.
+    /// Records a linearised state.
     fn measure(
         &self,
         u: &[f64],
@@ -322,8 +322,7 @@ impl Newton {
         free.fold(0.0, |worst: f64, i| worst.max(residual[*i].abs()))
     }
 
-    /// Largest residual of a free unknown relative to the largest of all, reactions included, or to `least`
-    /// where there are next to none.
+    /// Largest residual of a free unknown relative to the largest of all, reactions included, or to `least` where forces are negligible.
     fn relative_residual(&self, residual: &[f64], least: f64) -> f64 {
         if residual.iter().any(|r| !r.is_finite()) {
             return f64::NAN;
@@ -334,10 +333,10 @@ impl Newton {
         }
     }
 
-    /// Goes along `step` as far as the energy falls (Armijo) and all elements stay admissible.
+    /// Line search along `step`: the energy must fall (Armijo) and all elements must stay admissible.
     ///
     /// Where the energy no longer resolves the step, a falling residual is taken instead. Returns the length and the
-    /// energy there; `residual` is that of the new place.
+    /// energy there; `residual` is that of the new state.
     fn search(
         &self,
         potential: &dyn Potential,
@@ -371,8 +370,8 @@ impl Newton {
     }
 }
 
-/// How far the residual of a step's system has to fall: about as far as the step's own error leaves a residual, by that of the
-/// steps before, and no farther than the tolerance asks for.
+/// Reduction of the residual of a step's system: about to the residual that the step's own error leaves, judged by
+/// the steps before, and no farther than the tolerance requires.
 ///
 /// # References
 /// S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17, 16 (1996), doi:10.1137/0917003

@@ -9,20 +9,20 @@ mod matrix;
 
 pub use matrix::NodalMatrix;
 
-/// Which node and component each unknown of a stiffness is. A component without an unknown, because it is held, is
-/// one that nothing moves: its row is that of the identity.
+/// The node and the component of each unknown of a stiffness. A component that is not an unknown, because it is held,
+/// does not move: its row is that of the identity.
 #[derive(Clone)]
 pub struct Nodes {
-    /// Of each unknown: its node, and 0 or 1.
+    /// For each unknown: its node, and 0 or 1.
     of: Vec<(u32, u8)>,
-    /// Where each node is, relative to the middle of all and to their extent.
+    /// The place of each node, relative to the middle of all and to their extent.
     places: Vec<[f64; 2]>,
     /// Which components of each node are unknowns.
     free: Vec<[bool; 2]>,
 }
 
 impl Nodes {
-    /// The nodes of some unknowns with their places, ascending: 2 n and 2 n + 1 are those of node n.
+    /// The nodes of some unknowns, ascending, with their places: unknowns 2 n and 2 n + 1 belong to node n.
     pub fn new(unknowns: &[usize], all_places: &[[f64; 2]]) -> Self {
         let (mut of, mut places, mut free) = (Vec::new(), Vec::new(), Vec::<[bool; 2]>::new());
         let mut last = usize::MAX;
@@ -48,7 +48,7 @@ impl Nodes {
         Self { of, places, free }
     }
 
-    /// Their number.
+    /// The number of nodes.
     pub fn count(&self) -> usize {
         self.places.len()
     }
@@ -78,7 +78,7 @@ impl Nodes {
         all
     }
 
-    /// Forces without any symmetry, with a large part of every smooth mode and some of every other.
+    /// Forces without any symmetry, with a large part of every smooth mode and some part of every other.
     pub fn uneven(&self) -> Vec<[f64; 2]> {
         let rough = irregular(2 * self.places.len(), 1);
         let nodes = self
@@ -109,7 +109,7 @@ impl Nodes {
     }
 }
 
-/// What conjugate gradients found.
+/// The result of conjugate gradients.
 pub struct Found {
     /// The approximate solution.
     pub x: Vec<[f64; 2]>,
@@ -121,12 +121,12 @@ pub struct Found {
     pub reduction: f64,
 }
 
-/// What is wanted of a system with a right-hand side of some size.
+/// The accuracy wanted of a system with a right-hand side of some size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wanted {
-    /// Its size alone.
+    /// The size of the right-hand side alone.
     Size,
-    /// That the residual falls by a factor.
+    /// A reduction of the residual by a factor.
     Reduction(f64),
 }
 
@@ -176,7 +176,7 @@ pub fn conjugate_gradients(
         if found.iterations == most {
             break;
         }
-        // z of before: rounding makes the preconditioner slightly unsymmetric (Polak and Ribière).
+        // z of the iteration before: rounding makes the preconditioner slightly unsymmetric (Polak and Ribière).
         let last = product(&r, &z);
         precondition(&r, &mut z);
         let next = product(&r, &z);

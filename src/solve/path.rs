@@ -16,11 +16,11 @@ use crate::error::SolveFault;
 pub struct PathEnd {
     /// The load factor that could not be reached.
     pub factor: f64,
-    /// Why.
+    /// The fault there.
     pub fault: SolveFault,
     /// The equilibria at the load factors before it.
     pub states: Vec<State>,
-    /// The last equilibrium on the way from there; nothing where not one was found.
+    /// The last intermediate equilibrium after them; `None` where none was found.
     pub last: Option<Box<State>>,
 }
 
@@ -41,25 +41,26 @@ impl PathEnd {
     }
 }
 
-/// The shortest step, as a share of the load factor that it leads to; how near a path comes to its end.
+/// The shortest step, as a share of the load factor that it leads to; the resolution of a path's end.
 const SHORTEST: f64 = 1.0 / 1024.0;
 
 /// The shortest step from or to rest, as a share of the load factor that is wanted or left.
 const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
 
-/// Tolerances from which on an equilibrium is a first guess, whatever its branch; one that needs steps shorter than twice such a share of the way is not worth them.
+/// Tolerances from which on an equilibrium is a first guess, on any branch; a guess that needs steps shorter than twice such a share of the way is
+/// given up.
 const ROUGH: f64 = 1e-2;
 const SHORTEST_GUESS: f64 = 1.0 / 4.0;
 
-/// Iterations up to which a step was easy.
+/// Most iterations of an easy step.
 const EASY: usize = 6;
 
-/// Solves all load factors, one after the other. One that cannot be reached from the one before in one go
-/// is approached by shorter steps: halved where they fail, doubled after easy ones. Those that a journal has kept are not
-/// solved again.
+/// Solves all load factors, one after the other. One that cannot be reached from the one before in a single step is
+/// approached by shorter steps: halved where they fail, doubled after easy ones. Load factors that a journal has kept
+/// are not solved again.
 ///
-/// What a body remembers changes at the load factors that are given alone: on the way to one of them it is a body with the history
-/// of the one before, and what is found there does not depend on the steps.
+/// The memory of a body changes only at the given load factors: on the way to one of them the body has the history of
+/// the one before, and results do not depend on the intermediate steps.
 ///
 /// # Errors
 /// [`PathEnd`] with the load factor at which no equilibrium was found and the states before it.
@@ -150,9 +151,9 @@ pub fn compliance(
 /// An equilibrium at the end of a step.
 struct Found {
     state: State,
-    /// Whether it is farther from its first guess than that from the state before: the body has snapped to another branch.
+    /// Whether it is farther from its first guess than the guess is from the state before: the body has snapped to another branch.
     is_far: bool,
-    /// Whether it is neither, nor was there a tangent on the way that was not positive definite, where there are other branches.
+    /// Whether it is not far, and all tangents on the way were positive definite: otherwise there are other branches.
     is_sure: bool,
 }
 
@@ -165,7 +166,7 @@ struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// Begins at rest; the pattern is that at a load factor.
+    /// Begins at rest; the pattern is that of one load factor.
     fn new(
         loading: &'a dyn Loading,
         settings: NewtonSettings,
@@ -181,8 +182,8 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// Solves one load factor from the state before it, through intermediate ones where it must, which are told; a fault comes
-    /// with the last of these.
+    /// Solves one load factor from the state before it, through intermediate ones where needed, which are reported; a
+    /// fault is returned with the last of these.
     fn reach(
         &mut self,
         from: Option<&State>,
@@ -198,7 +199,7 @@ impl<'a> Path<'a> {
             let previous = last.as_deref().or(from);
             let start = previous.map_or(0.0, |state| state.factor);
             let rest = factor - start;
-            // A rest that is hardly longer than a step is taken with it.
+            // A remainder hardly longer than a step is taken with it.
             let step = self.step.min(self.loading.longest_step(factor));
             let aim = if rest.abs() <= 1.001 * step {
                 factor
@@ -210,7 +211,7 @@ impl<'a> Path<'a> {
                 false => SHORTEST * aim.abs(),
             };
             let shortest = 0.5 * (aim - start).abs() <= at_rest.max(least);
-            // A step that would be halved after a shift anyhow is given up there.
+            // A step that would be halved after a shift anyway is given up at the shift.
             self.newton.shifts = shortest || self.is_rough();
             let found = match self.solve_at(previous, aim, &history) {
                 Ok(found) if found.is_sure || shortest => found,
@@ -249,7 +250,7 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Whether a first guess is wanted alone: why there is none is nobody's question.
+    /// Whether only a first guess is wanted: the reason of a failure is then not needed.
     fn is_guess(&self) -> bool {
         self.settings.tolerance >= ROUGH
     }

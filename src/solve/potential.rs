@@ -31,10 +31,10 @@ pub struct SkewCoupling {
     pub stiffness: f64,
 }
 
-/// What takes each element with its stiffness, row by row, the lower triangle at least; `None` where stiffnesses are not wanted.
+/// Receives each element with its stiffness, row by row, the lower triangle at least; `None` where stiffnesses are not wanted.
 pub type Take<'a> = Option<&'a mut dyn FnMut(usize, &[f64])>;
 
-/// A potential energy Π(u) = Σ Πₑ(u), one term an element.
+/// A potential energy Π(u) = Σ Πₑ(u), one term for each element.
 ///
 /// Mass-spring lattices, finite elements, loads and the corrector's difference scheme are all of this kind,
 /// so that one assembly, one Newton method and one derivative check serve them all.
@@ -42,7 +42,7 @@ pub trait Potential: Sync {
     /// Which unknowns each element depends on.
     fn connectivity(&self) -> &Connectivity;
 
-    /// Πₑ, and its derivatives into `local`, at the element's own unknowns `u`.
+    /// Πₑ at the element's own unknowns `u`; its derivatives are written to `local`.
     ///
     /// # Errors
     /// [`Inadmissible`] when the element is inverted.
@@ -61,7 +61,7 @@ pub trait Potential: Sync {
         evaluate_by_elements(self, u, forces, None).map(|_| ())
     }
 
-    /// Π; adds ∂Π/∂u at all unknowns, and gives the stiffnesses of all elements where they are wanted.
+    /// Π; adds ∂Π/∂u at all unknowns, and passes on the stiffnesses of all elements where they are wanted.
     ///
     /// # Errors
     /// [`Inadmissible`] with an element that is inverted.
@@ -81,7 +81,7 @@ pub trait Potential: Sync {
         None
     }
 
-    /// Length of u.
+    /// Number of unknowns, the length of u.
     fn unknowns(&self) -> usize {
         self.connectivity().unknowns()
     }
@@ -97,8 +97,8 @@ pub trait Potential: Sync {
     }
 }
 
-/// The potential of a body that may remember what it went through, such as a material that softens. Potentials made of others do not
-/// remember: [`After`](super::After) is what a body with a history has.
+/// The potential of a body that may remember its loading, such as a material that softens. Potentials composed of
+/// others do not remember: a body with a history is an [`After`](super::After).
 pub trait Remembering: Potential {
     /// [`Potential::evaluate_element`] of the body with a history.
     ///
@@ -112,14 +112,13 @@ pub trait Remembering: Potential {
         history: &[f64],
     ) -> Result<f64, Inadmissible>;
 
-    /// Takes the state `u` into a history, which stays empty where the material has no memory.
+    /// Adds the state `u` to a history, which stays empty where the material has no memory.
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]);
 
-    /// What the body has dissipated on its way, in mJ.
+    /// The energy that the body has dissipated so far, in mJ.
     fn dissipated(&self, history: &[f64]) -> f64;
 
-    /// Whether rotations leave the energy as it is, so that moments balance on the deformed body; otherwise they do on the body
-    /// at rest.
+    /// Whether rotations leave the energy unchanged, so that moments balance on the deformed body; otherwise they balance on the body at rest.
     fn is_objective(&self) -> bool {
         true
     }
@@ -160,7 +159,7 @@ pub struct ElementTerms {
 }
 
 impl ElementTerms {
-    /// Takes an element's terms at `u`, its stiffness where it is wanted; its energy.
+    /// Evaluates an element's terms at `u`, with its stiffness where it is wanted; returns its energy.
     ///
     /// # Errors
     /// [`Inadmissible`] when the element is inverted.

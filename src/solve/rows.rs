@@ -32,7 +32,7 @@ impl SparseRows {
         self.rows.push(merged.into_iter().collect());
     }
 
-    /// Whether it is as [`Self::push`] makes it, of finite numbers: a matrix from a file may be anything.
+    /// Whether its structure is that of [`Self::push`] and its numbers are finite: a matrix from a file may be malformed.
     pub fn is_sound(&self) -> bool {
         let ascending = |row: &Vec<(usize, f64)>| row.windows(2).all(|pair| pair[0].0 < pair[1].0);
         let within = |row: &Vec<(usize, f64)>| {
@@ -81,7 +81,7 @@ impl SparseRows {
         self.rows.extend(other.rows);
     }
 
-    /// The matrix with all its zeros.
+    /// The dense matrix.
     pub fn to_dense(&self) -> DMatrix<f64> {
         let mut dense = DMatrix::zeros(self.rows.len(), self.columns);
         for (index, row) in self.rows.iter().enumerate() {

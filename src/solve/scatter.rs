@@ -58,7 +58,7 @@ impl Scatter {
         (SymmetricPattern::of_columns(starts, rows), own)
     }
 
-    /// Notes the places of one local column of an element, below the diagonal of the whole.
+    /// Records the positions of one local column of an element, below the diagonal of the whole.
     fn put(
         &mut self,
         unknowns: &[usize],

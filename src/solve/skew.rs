@@ -6,9 +6,9 @@
 //! det (K + S) = det K' · det (1 + D G)
 //! ```
 //!
-//! U are the unit vectors of the coupled unknowns, and of some around them, and S = U C Uᵀ. The body is braced by σ where K itself is not
-//! positive definite: that says nothing of the stability of a body whose loads have no potential. It is lost, without oscillation, where
-//! det (K + S) vanishes.
+//! U contains the unit vectors of the coupled unknowns, and of some around them, and S = U C Uᵀ. The body is braced
+//! by σ where K itself is not positive definite, which does not mean that a body whose loads have no potential is
+//! unstable. Stability is lost, without oscillation, where det (K + S) vanishes.
 //!
 //! # References
 //! V. V. Bolotin, Nonconservative Problems of the Theory of Elastic Stability, Pergamon (1963)
@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::potential::SkewCoupling;
 
-/// S, and what K is braced with.
+/// S, and the bracing of K.
 #[derive(Clone, Default)]
 pub struct SkewPart {
     /// The unknowns of U.
@@ -28,12 +28,12 @@ pub struct SkewPart {
     couplings: DMatrix<f64>,
     /// σ.
     pub brace: f64,
-    /// K'⁻¹ U of the factor there is; empty where they are not known.
+    /// K'⁻¹ U with the present factor; empty where it is not known.
     pub columns: Vec<Vec<f64>>,
 }
 
 impl SkewPart {
-    /// Of couplings between free unknowns by their positions.
+    /// The skew part from couplings between free unknowns, given by their positions.
     pub fn new(all: &[SkewCoupling]) -> Self {
         let ends = all.iter().flat_map(|own| [own.row, own.column]);
         let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
@@ -51,12 +51,12 @@ impl SkewPart {
         }
     }
 
-    /// That of the transposed tangent.
+    /// Changes it to that of the transposed tangent.
     pub fn transpose(&mut self) {
         self.couplings.transpose_mut();
     }
 
-    /// Takes more unknowns into U.
+    /// Adds unknowns to U.
     pub fn widen(&mut self, around: &[usize]) {
         let more: Vec<usize> = around
             .iter()
@@ -97,7 +97,7 @@ impl SkewPart {
         self.system().determinant() > 0.0
     }
 
-    /// (K + S)⁻¹ b of K'⁻¹ b; the columns must be known; `None` where there is none.
+    /// (K + S)⁻¹ b from K'⁻¹ b; the columns must be known; `None` where there is no inverse.
     pub fn complete(&self, mut x: Vec<f64>) -> Option<Vec<f64>> {
         let there = self.coupled.iter().map(|unknown| x[*unknown]);
         let there = DVector::from_iterator(self.coupled.len(), there);

@@ -32,7 +32,7 @@ pub enum FactorFault {
 }
 
 impl FactorFault {
-    /// The fault of a solver: `singular` where it is not the memory's.
+    /// The fault of a solver: that of memory, otherwise `singular`.
     pub fn or(self, singular: SolveFault) -> SolveFault {
         match self {
             Self::NotPositiveDefinite => singular,
@@ -56,7 +56,7 @@ impl From<LuError> for FactorFault {
     }
 }
 
-/// So many zeros.
+/// A vector of so many zeros.
 fn zeros(count: usize) -> Result<Vec<f64>, FactorFault> {
     let mut zeros = Vec::new();
     let reserved = zeros.try_reserve_exact(count);
@@ -77,12 +77,12 @@ pub struct Cholesky {
     factor: Vec<f64>,
     values: Vec<f64>,
     workspace: MemBuffer,
-    /// What a factorisation or a single right-hand side needs.
+    /// Memory for a factorisation or a single right-hand side.
     scratch: StackReq,
 }
 
 impl Cholesky {
-    /// Analyses a pattern, to be eliminated in an order of approximately least degree.
+    /// Analyses a pattern, to be eliminated in an order of approximately minimum degree.
     ///
     /// # Errors
     /// [`FactorFault::OutOfMemory`] when the factor does not fit.
@@ -143,7 +143,7 @@ impl Cholesky {
         (&self.values, &self.factor)
     }
 
-    /// Puts a factor that was kept elsewhere in place of a factorisation.
+    /// Restores a factor that was kept elsewhere, in place of a factorisation.
     ///
     /// # Errors
     /// [`FactorFault`] when the parts do not belong to this pattern.
@@ -179,7 +179,7 @@ impl Cholesky {
         Ok(())
     }
 
-    /// Solves A x = b with one step of iterative refinement, which also proves the factor right.
+    /// Solves A x = b with one step of iterative refinement, which also verifies the factor.
     ///
     /// # Errors
     /// [`FactorFault`] when the residual shows that A is singular to working precision.
@@ -197,7 +197,7 @@ impl Cholesky {
         difference(b, &self.pattern.multiply(&self.values, x))
     }
 
-    /// x ← A⁻¹ x by substitution alone, without refinement and proof: for iterations that look at their own residual.
+    /// x ← A⁻¹ x by substitution alone, without refinement and verification: for iterations that check their own residual.
     pub fn substitute(&mut self, x: &mut [f64]) {
         self.substitute_columns(x, 1);
     }
@@ -241,7 +241,7 @@ impl SparseLu {
         if matrix.len() != size || entries.iter().any(|entry| !entry.val.is_finite()) {
             return Err(FactorFault::NotPositiveDefinite);
         }
-        // More threads than free cores are ruinous, and one gives the same bits every time.
+        // More threads than free cores are very slow, and one thread gives the same bits every time.
         faer::set_global_parallelism(Par::Seq);
         let sparse = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries);
         let factor = match sparse {
@@ -276,7 +276,7 @@ fn structure(pattern: &SymmetricPattern) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(size, size, starts, None, rows)
 }
 
-/// x where it solves A x = b, given b − A x.
+/// x where it solves A x = b, for a given b − A x.
 fn solved(x: Vec<f64>, b: &[f64], defect: &[f64]) -> Result<Vec<f64>, FactorFault> {
     let scale = norm(b).max(f64::MIN_POSITIVE);
     (norm(defect) / scale < 1e-6)

@@ -13,9 +13,9 @@ pub struct Tangent {
     pub(super) assembly: Assembly,
     /// Analysed when it is first needed.
     cholesky: Option<Cholesky>,
-    /// Where there is one, and the tangent taken last has not been factorised.
+    /// The tangent for multigrid, where it is used and the tangent taken last has not been factorised.
     pub(super) iterative: Option<Iterative>,
-    /// Whether the tangent taken last is in the factor.
+    /// Whether the factor is that of the tangent taken last.
     pub(super) factorised: bool,
     /// The part of the tangent factorised last that is not symmetric, over the free unknowns.
     pub(super) skew: SkewPart,
@@ -63,11 +63,11 @@ impl Tangent {
         self.assembly.free()
     }
 
-    /// Factorises the tangent at `u` for [`Self::changes`]; the residual there, at held unknowns too.
+    /// Factorises the tangent at `u` for [`Self::changes`]; returns the residual there, including held unknowns.
     ///
     /// # Errors
-    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite: what followed from a
-    /// shifted one would be the derivative of another body.
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite: a shifted one would
+    /// give the derivative of another body.
     pub fn at(
         &mut self,
         potential: &dyn Potential,
@@ -84,8 +84,8 @@ impl Tangent {
         }
     }
 
-    /// −K⁻¹ r at the free unknowns, by the tangent factorised last, of many residuals one after the other; zero at held
-    /// unknowns. The first one proves the factor right.
+    /// −K⁻¹ r at the free unknowns, by the tangent factorised last, for many residuals one after the other; zero at
+    /// held unknowns. The first one verifies the factor.
     ///
     /// # Errors
     /// A [`SolveFault`] when the tangent is singular to working precision.
@@ -114,7 +114,7 @@ impl Tangent {
             let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
             let mut columns: Vec<f64> = right.collect();
             cholesky.substitute_columns(&mut columns, group.len());
-            // Where nothing is free every column is empty.
+            // Without free unknowns every column is empty.
             for (residual, begin) in group.iter().zip((0..).step_by(free.len().max(1))) {
                 let column = columns.get(begin..begin + free.len());
                 changes.push(spread(free, column.unwrap_or_default(), residual.len()));
@@ -196,7 +196,7 @@ impl Tangent {
         let tangent = stiffness.clone();
         let skew = std::mem::take(&mut self.skew);
         let factorised = self.factorise(&mut stiffness);
-        // Its columns were those of another factor.
+        // The known columns are those of another factor.
         self.skew = skew;
         self.skew.columns.clear();
         factorised.ok()?;
@@ -212,7 +212,7 @@ impl Tangent {
         Some((dot(&mode, &forces), spread(self.free(), &mode, u.len())))
     }
 
-    /// Factorises the tangent at `u`; the residual there, and whether the tangent had to be shifted.
+    /// Factorises the tangent at `u`; returns the residual there, and whether the tangent had to be shifted.
     fn factorise_at(
         &mut self,
         potential: &dyn Potential,
@@ -235,7 +235,7 @@ impl Tangent {
         Ok((residual, shifted))
     }
 
-    /// Factorises the tangent taken last, if it is not; says whether it had to be shifted.
+    /// Factorises the tangent taken last, unless it is factorised; returns whether it had to be shifted.
     fn replace_by_factor(&mut self) -> Result<bool, SolveFault> {
         match &self.iterative {
             Some(iterative) if !self.factorised => {
@@ -255,8 +255,7 @@ impl Tangent {
         factorised.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))
     }
 
-    /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; says
-    /// whether it had to be shifted.
+    /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; returns whether it had to be shifted.
     pub(super) fn factorise(&mut self, stiffness: &mut [f64]) -> Result<bool, SolveFault> {
         let mean = self.assembly.pattern().mean_diagonal(stiffness);
         let mut shift = 0.0;
@@ -320,7 +319,7 @@ impl Tangent {
     }
 }
 
-/// An element's fault with its name.
+/// The fault of an inverted element, with its name.
 pub(crate) fn inverted(fault: Inadmissible, describe: Describe) -> SolveFault {
     SolveFault::Inverted {
         element: describe(fault.element),

@@ -12,7 +12,7 @@ pub fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The largest magnitude; NaN where an entry is none.
+/// The largest magnitude; NaN where an entry is NaN.
 pub fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, x| larger(most, x.abs()))
 }

@@ -1,11 +1,11 @@
-//! How the noise of a regression correlates, by restricted likelihood.
+//! The correlation of a regression's noise, by restricted likelihood.
 //!
 //! ```text
 //! z = A δ + ε,   Cov(ε) = τ² R,   δ held by S with slope g₀
 //! −2 ln L = n ln τ² + 2 ln det R₁ + ln det M + (zᵀR⁻¹z)/τ² − gᵀM⁻¹g,   M = AᵀR⁻¹A/τ² + S,   g = AᵀR⁻¹z/τ² + g₀
 //! ```
 //!
-//! R₁ is that of one component of n/2 places. What the fit has taken away from the noise is thereby given back to it.
+//! R₁ is that of one component of n/2 places. The likelihood thereby restores the part of the noise that the fit has removed.
 //!
 //! # References
 //! D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977), doi:10.1080/01621459.1977.10480998
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::correlation::{Correlation, Decay, Sites, Whitening};
 
-/// A regression, its rows of variance one if they were white; two of each place.
+/// A regression whose rows would have variance one if they were white; two rows for each place.
 pub struct CorrelatedRegression<'a> {
     /// The places of the rows.
     pub sites: &'a Sites,
@@ -32,7 +32,7 @@ pub struct CorrelatedRegression<'a> {
 /// The likeliest noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrelatedNoise {
-    /// How it correlates.
+    /// Its correlation.
     pub correlation: Correlation,
     /// τ².
     pub variance: f64,
@@ -57,7 +57,7 @@ struct Score {
 }
 
 impl WhiteRegression {
-    /// Of rows that are white, or are made so.
+    /// The regression of rows that are white, or are made white.
     pub fn new(
         design: &DMatrix<f64>,
         residual: &DVector<f64>,
@@ -86,7 +86,7 @@ impl WhiteRegression {
         }
     }
 
-    /// zᵀR⁻¹z of what is left at the best δ, and the number of parameters that took from it; `None` where nothing determines δ.
+    /// zᵀR⁻¹z of the residuals at the best δ, and the number of parameters that were fitted; `None` where δ is not determined.
     pub fn left(
         &self,
         held: &DMatrix<f64>,
@@ -99,7 +99,7 @@ impl WhiteRegression {
         Some((left.max(f64::MIN_POSITIVE), effective))
     }
 
-    /// The best δ; `None` where nothing determines it.
+    /// The best δ; `None` where it is not determined.
     pub fn best(
         &self,
         held: &DMatrix<f64>,
@@ -119,7 +119,7 @@ impl WhiteRegression {
     ) -> Option<(f64, DVector<f64>, f64)> {
         const LEAST: f64 = 1e-12;
         let mut matrix = &self.normal / variance + held;
-        // Directions that nothing determines stay where they are.
+        // Directions that are not determined stay unchanged.
         let ridge = LEAST * matrix.trace() / matrix.nrows().max(1) as f64;
         (0..matrix.nrows()).for_each(|i| matrix[(i, i)] += ridge);
         let target = &self.right / variance + slope;
@@ -153,7 +153,7 @@ impl WhiteRegression {
 const SHARES: [f64; 4] = [0.25, 0.6, 0.9, 0.995];
 
 impl CorrelatedRegression<'_> {
-    /// The likeliest correlation of a length between half of `spacing` and `longest`; `None` where nothing determines it.
+    /// The likeliest correlation with a length between half of `spacing` and `longest`; `None` where it is not determined.
     pub fn likeliest(&self, spacing: f64, longest: f64) -> Option<CorrelatedNoise> {
         const STEP: f64 = 1.8;
         let white = WhiteRegression::new(self.design, self.residual, None);

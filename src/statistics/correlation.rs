@@ -1,4 +1,4 @@
-//! Noise that correlates with distance, and what makes it white.
+//! Noise that correlates with distance, and the transformation that makes it white.
 //!
 //! ```text
 //! Corr(εᵢ, εⱼ) = s ρ(|xᵢ − xⱼ|/ℓ)  (i ≠ j),   ρ(1) = 1/e                       s: share of the noise that correlates
@@ -6,8 +6,8 @@
 //! U ε is white:  (U ε)ᵢ = (εᵢ − Σⱼ bᵢⱼ εⱼ)/√fᵢ,   j: the nearest ones of those before i
 //! ```
 //!
-//! bᵢ and fᵢ are the best prediction of εᵢ by a few neighbours that stand before it in a random order, and its variance (Vecchia).
-//! UᵀU is the sparse precision, R⁻¹ of all markers up to what farther ones add.
+//! bᵢ and fᵢ are the best prediction of εᵢ by a few neighbours that precede it in a random order, and its variance
+//! (Vecchia). UᵀU is the sparse precision: R⁻¹ of all markers up to the contribution of farther ones.
 //!
 //! # References
 //! A. V. Vecchia, J. R. Stat. Soc. B 50, 297 (1988), doi:10.1111/j.2517-6161.1988.tb01729.x;
@@ -17,10 +17,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::neighbours::nearest_before;
 
-/// Neighbours of which each value is predicted.
+/// Number of neighbours by which each value is predicted.
 const NEIGHBOURS: usize = 10;
 
-/// How a correlation falls with distance.
+/// The form of the decrease of a correlation with distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
     /// e⁻ᵃ.
@@ -32,11 +32,11 @@ pub enum Decay {
 /// A correlation that falls with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correlation {
-    /// How it falls.
+    /// The form of the decrease.
     pub decay: Decay,
     /// s in 0…1.
     pub share: f64,
-    /// ℓ, in the unit of the places: where what correlates has fallen to 1/e.
+    /// ℓ, in the unit of the places: the distance at which the correlated part has fallen to 1/e.
     pub length: f64,
 }
 
@@ -56,7 +56,7 @@ impl Correlation {
             }
     }
 
-    /// The number of independent values that tell as much of a variance as values at these places: n²/Σ ρᵢⱼ².
+    /// The number of independent values with the same information on a variance as values at these places: n²/Σ ρᵢⱼ².
     pub fn independent(&self, places: &[[f64; 2]]) -> f64 {
         const MOST: usize = 300;
         let stride = places.len().div_ceil(MOST).max(1);
@@ -113,7 +113,7 @@ struct Row {
 }
 
 impl Whitening {
-    /// What makes noise of this correlation white; nothing where it has none.
+    /// The transformation that makes noise of this correlation white; the identity where there is no correlation.
     pub fn new(sites: &Sites, correlation: &Correlation) -> Self {
         let row = |(place, before): &(usize, Vec<usize>)| {
             let at = |a: usize, b: usize| match a == b {

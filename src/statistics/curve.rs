@@ -1,10 +1,10 @@
-//! Noise that correlates along curves: what makes it white, and its covariance, in as many steps as there are values.
+//! Noise that correlates along curves: its whitening and its covariance, in as many steps as there are values.
 //!
 //! ```text
 //! Corr(εᵢ, εⱼ) = s e^(−|xᵢ − xⱼ|/ℓ)  (i ≠ j, of one curve)        s: share of the noise that correlates
 //! ```
 //!
-//! It is a process of first order seen with white noise, so that the Kalman filter predicts each value from all before it.
+//! It is a process of first order observed with white noise, so that the Kalman filter predicts each value from all before it.
 //!
 //! # References
 //! A. C. Harvey, Forecasting, Structural Time Series Models and the Kalman Filter (1989), doi:10.1017/CBO9781107049994
@@ -46,9 +46,9 @@ impl Curve {
 /// Noise along curves.
 #[derive(Clone, Copy)]
 pub struct NoiseAlong<'a> {
-    /// The curves, whose noises know nothing of one another.
+    /// The curves, whose noises are independent.
     pub curves: &'a [Curve],
-    /// How the noise of each correlates; exponential.
+    /// The correlation of the noise of each; exponential.
     pub correlation: Correlation,
 }
 
@@ -121,7 +121,7 @@ impl NoiseAlong<'_> {
         product
     }
 
-    /// Σⱼ e^(−|xᵢ − xⱼ|/ℓ) vⱼ at every row of a curve: what comes from before it, and from behind.
+    /// Σⱼ e^(−|xᵢ − xⱼ|/ℓ) vⱼ at every row of a curve: the parts from the rows before it and from those after it.
     fn weighted_sums(&self, curve: &Curve, values: DVectorView<f64>) -> Vec<f64> {
         let mut sums: Vec<f64> = curve.rows.iter().map(|row| values[*row]).collect();
         let mut before = 0.0;
@@ -139,7 +139,7 @@ impl NoiseAlong<'_> {
         sums
     }
 
-    /// The number of independent values that tell as much of a variance: n²/Σ ρᵢⱼ².
+    /// The number of independent values with the same information on a variance: n²/Σ ρᵢⱼ².
     pub fn independent(&self) -> f64 {
         let squared = NoiseAlong {
             curves: self.curves,

@@ -1,4 +1,4 @@
-//! What the estimates of a least-squares fit to curves are worth where the noise may correlate along them.
+//! The uncertainty of a least-squares fit to curves where the noise may correlate along them.
 //!
 //! ```text
 //! Cov(β) = s² P S R S Pᵀ,   P = (JᵀJ)⁻¹Jᵀ,   s² = rᵀ(R⁻¹ − R⁻¹J (JᵀR⁻¹J)⁻¹ JᵀR⁻¹) r/ν,   ν = n − k
@@ -8,10 +8,10 @@
 //!
 //! S are the sizes of the noise of the rows, which differ from curve to curve; in s² and w, J and r stand for S⁻¹J and S⁻¹r.
 //!
-//! A short curve does not tell how far its noise correlates, and the likeliest length is too short in the mean: intervals
-//! that take it as known hold the truth too seldom. So all are asked: white noise, and exponential correlations whose lengths
-//! reach from less than a gap between points to twice the longest curve, each with the weight that the residuals give it. Distance
-//! is counted in points as they follow one another, and in strain where that is another thing.
+//! A short curve does not determine how far its noise correlates, and the likeliest length is too short on average: intervals
+//! that take it as known cover the truth too seldom. Therefore all noises are averaged: white noise, and exponential correlations
+//! whose lengths reach from less than a gap between points to twice the longest curve, each with its weight from the residuals.
+//! Distance is counted in points as they follow one another, and in strain where that differs.
 //!
 //! # References
 //! D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977), doi:10.1080/01621459.1977.10480998;
@@ -24,8 +24,8 @@ use super::correlation::{Correlation, Decay};
 use super::curve::{Curve, NoiseAlong};
 use super::{f_tail, student_reach, student_tail};
 
-/// The weight of white noise before the data speak, and of noise with these correlated shares together, over all lengths. Over thousands of
-/// points a thousandth of white noise is told from none.
+/// The prior weight of white noise, and of noise with these correlated shares together, over all lengths. Over
+/// thousands of points a correlated share of a thousandth is distinguished from none.
 const WHITE: f64 = 0.5;
 const CORRELATED: [(f64, f64); 4] = [(0.999_99, 0.2), (0.999, 0.15), (0.97, 0.05), (0.6, 0.1)];
 
@@ -43,13 +43,13 @@ pub struct CurveResiduals<'a> {
     pub design: &'a DMatrix<f64>,
     /// r.
     pub residual: &'a DVector<f64>,
-    /// Ways in which all rows follow one another on curves.
+    /// Orders in which all rows follow one another on curves.
     pub orders: &'a [Vec<Curve>],
-    /// The standard deviation of the noise of each row over that of all.
+    /// The standard deviation of the noise of each row relative to that of all.
     pub sizes: &'a DVector<f64>,
 }
 
-/// Noise that residuals may have.
+/// Possible noise of residuals.
 #[derive(Clone, Copy)]
 struct Candidate {
     order: usize,
@@ -66,14 +66,14 @@ struct Part {
     independent: f64,
 }
 
-/// What the noise along curves makes of the estimates.
+/// The uncertainty of the estimates under the noise along curves.
 #[derive(Clone, Debug)]
 pub struct CurveNoise {
     parts: Vec<Part>,
     freedom: f64,
 }
 
-/// Columns whose lengths are one and whose directions are all different, and what brings values along them back to estimates.
+/// Columns of unit length and different directions, and the matrix that maps values along them back to estimates.
 struct Basis {
     columns: DMatrix<f64>,
     back: DMatrix<f64>,
@@ -119,7 +119,7 @@ impl Triangle {
         }
     }
 
-    /// What is left of the residual's square behind so many columns.
+    /// The remaining square of the residual after so many columns.
     fn left(&self, columns: usize) -> f64 {
         let last = self.triangle.ncols() - 1;
         let below = self.triangle.column(last).rows_range(columns..).norm();
@@ -137,7 +137,7 @@ impl Triangle {
 }
 
 impl CurveResiduals<'_> {
-    /// What the estimates are worth; `None` where there are no more rows than estimates.
+    /// The uncertainty of the estimates; `None` where there are no more rows than estimates.
     pub fn noise(&self) -> Option<CurveNoise> {
         let rows = self.design.nrows();
         let estimates = self.design.ncols();
@@ -169,8 +169,7 @@ impl CurveResiduals<'_> {
         })
     }
 
-    /// How probable it is that smooth functions, a column each, take so much of noise as of the residuals; `None` where too
-    /// few rows are left to tell.
+    /// The probability that smooth functions, a column each, reduce noise as much as the residuals; `None` where too few rows remain.
     ///
     /// ```text
     /// F = ((S₀ − S₁)/q)/(S₁/(n − k − q)),   p = Σ w(R) P(F_(q, n−k−q) > F),   w by the likelihood with the functions
@@ -291,7 +290,7 @@ impl CurveNoise {
         })
     }
 
-    /// The number of independent values that tell as much of the noise's variance as all of them.
+    /// The number of independent values with the same information on the noise's variance as all of them.
     pub fn independent(&self) -> f64 {
         self.mean(|part| part.independent)
     }
@@ -324,7 +323,7 @@ fn with_last(columns: &DMatrix<f64>, last: &DVector<f64>) -> DMatrix<f64> {
 
 /// Columns with those of the functions that add a direction to them.
 fn with_functions(mut columns: DMatrix<f64>, functions: &DMatrix<f64>) -> DMatrix<f64> {
-    /// What must be left of a function beside the columns before it.
+    /// The least part of a function that must remain beside the columns before it.
     const LEAST: f64 = 1e-4;
     for function in functions.column_iter() {
         let mut own: DVector<f64> = function.into_owned();

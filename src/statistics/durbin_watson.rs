@@ -1,4 +1,4 @@
-//! Whether what a fit leaves of curves is white noise: Durbin and Watson's test.
+//! Whether a fit's residuals along curves are white noise: Durbin and Watson's test.
 //!
 //! ```text
 //! d = Σ (rᵢ₊₁ − rᵢ)²/Σ rᵢ²     neighbours of one curve          2: white, 0: all alike, 4: to and fro
@@ -18,12 +18,12 @@ use super::curve::Curve;
 pub struct DurbinWatson {
     /// d in 0…4.
     pub statistic: f64,
-    /// How probable so small a d is where the noise is white and normal.
+    /// The probability of so small a d for white normal noise.
     pub probability: f64,
 }
 
 impl DurbinWatson {
-    /// Of residuals of a least-squares fit; `None` where no neighbours, or no freedoms, are left.
+    /// The statistic of the residuals of a least-squares fit; `None` where there are no neighbours or no degrees of freedom.
     pub fn new(design: &DMatrix<f64>, residual: &DVector<f64>, curves: &[Curve]) -> Option<Self> {
         let freedom = design.nrows().checked_sub(design.ncols())?;
         let pairs = || curves.iter().flat_map(|curve| curve.rows.windows(2));

@@ -23,7 +23,7 @@ pub fn nearest(places: &[[f64; 2]], count: usize) -> Vec<Vec<usize>> {
     (0..places.len()).map(others).collect()
 }
 
-/// All places in a random order that is always the same one, each with the `count` nearest of those before it.
+/// All places in a random but reproducible order, each with the `count` nearest of those before it.
 pub fn nearest_before(places: &[[f64; 2]], count: usize) -> Vec<(usize, Vec<usize>)> {
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));

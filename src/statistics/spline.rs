@@ -3,10 +3,10 @@
 /// The most functions that are not zero at one place: those of degree 5.
 pub const MOST_FUNCTIONS: usize = 6;
 
-/// Values of the functions that are not zero at a place; those behind the degree are zero.
+/// Values of the functions that are not zero at a place; entries beyond the degree are zero.
 pub type LocalValues = [f64; MOST_FUNCTIONS];
 
-/// How the knots go on beyond the range.
+/// The continuation of the knots beyond the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// On equal intervals: the outermost functions reach beyond the range.
@@ -33,8 +33,8 @@ pub struct BSpline {
 /// The exponent by which intervals become shorter towards an end.
 const GRADING: f64 = 2.0;
 
-/// The exponent of the distance from an end that weighs roughness there: of a function that goes like r⁰·⁶ at the end, as displacements do
-/// beside a clamp, r² f″² is integrable.
+/// The exponent of the distance from an end that weights roughness there: for a function that goes like r⁰·⁶ at the
+/// end, as displacements do beside a clamp, r² f″² is integrable.
 const WEIGHT: i32 = 2;
 
 impl BSpline {
@@ -58,7 +58,7 @@ impl BSpline {
     /// distance; functions may be rough there.
     ///
     /// # Panics
-    /// When its knots go on beyond the range.
+    /// When its knots continue beyond the range.
     #[must_use]
     pub fn graded(self, graded: [bool; 2]) -> Self {
         assert!(self.ends == Ends::Clamped, "knots beyond the range");
@@ -113,7 +113,7 @@ impl BSpline {
     }
 
     /// The first function that is not zero at `x`, and the derivatives of some order of it and the next ones; beyond
-    /// the range the outermost polynomials go on.
+    /// the range the outermost polynomials continue.
     ///
     /// ```text
     /// Bⱼ,q = (s − tⱼ)/(tⱼ₊q − tⱼ) Bⱼ,q₋₁ + (tⱼ₊q₊₁ − s)/(tⱼ₊q₊₁ − tⱼ₊₁) Bⱼ₊₁,q₋₁     knots t, s = (x − low)/h

@@ -1,4 +1,4 @@
-//! Noise whose size differs from place to place, and from component to component.
+//! Noise whose size differs from place to place, and between components.
 //!
 //! ```text
 //! dᵢ = zᵢ − ¼ Σⱼ zⱼ                       j: the four nearest neighbours of i
@@ -25,14 +25,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{chi_squared_limit, extremes, nearest, quantile};
 
-/// Fewer places tell nothing, and fewer than the second number nothing of quadratic terms.
+/// Fewer places determine nothing, and fewer than the second number no quadratic terms.
 const FEWEST: [usize; 2] = [30, 60];
 
 /// Neighbours of a place that differences are taken to, and those whose middle it may lie out of.
 const NEIGHBOURS: usize = 4;
 const AROUND: usize = 8;
 
-/// The correlation of neighbours beyond which nothing is said of the margin, and how far a place is out of the middle of its neighbours there.
+/// The correlation of neighbours above which the margin is not analysed, and how far a place is out of the middle of its neighbours there.
 const CORRELATED: f64 = 0.3;
 const MARGIN: f64 = 0.2;
 
@@ -52,11 +52,11 @@ const COMMON: f64 = 1.45;
 const LEVEL: f64 = 1e-4;
 const LEAST: f64 = 1.25;
 
-/// The same of the components, in standard errors and as a ratio.
+/// The same limits for the components, in standard errors and as a ratio.
 const SURE: f64 = 4.0;
 const LEAST_OF_COMPONENTS: f64 = 1.1;
 
-/// Terms of a place, the first of which are asked for where places are few.
+/// Terms of a place; where places are few, only the first of them are used.
 const TERMS: usize = 7;
 const FEW_TERMS: usize = 4;
 
@@ -66,7 +66,7 @@ const OUT: [usize; 2] = [2, 3];
 /// The largest logarithm of a ratio of deviations; quadratic terms reach far where places are few.
 const MOST: f64 = 2.5;
 
-/// How much larger or smaller noise is than elsewhere.
+/// The variation of the size of noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unevenness {
     /// The factor of the standard deviation of each component at each place; their geometric mean is one.
@@ -74,7 +74,7 @@ pub struct Unevenness {
 }
 
 impl Unevenness {
-    /// What vectors of noise show at some places, `None` at those that are not sound; `None` where all may be of one size.
+    /// The unevenness of vectors of noise at some places, `None` at places that are not sound; `None` where all may be of one size.
     pub fn found(places: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
         let sound = places.iter().zip(noise);
         let (own, z): (Vec<_>, Vec<_>) =
@@ -119,11 +119,11 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// What differences to neighbours tell.
+/// The information in differences to neighbours.
 struct Told {
-    /// Whether something is said of the margin.
+    /// Whether the margin is analysed.
     margin: bool,
-    /// q of the places that are looked at.
+    /// q of the places that are used.
     sites: Vec<[f64; TERMS]>,
     /// Their neighbours.
     around: Vec<Vec<usize>>,
@@ -138,7 +138,7 @@ struct Logarithms {
 }
 
 impl Told {
-    /// Of sound places; `None` where they are too few, or have no noise.
+    /// The differences at sound places; `None` where these are too few, or have no noise.
     fn of(places: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Self> {
         if places.len() < FEWEST[0] {
             return None;
@@ -178,7 +178,7 @@ impl Told {
         }
     }
 
-    /// g or h, where chance would hardly make it; quadratic terms are none where places are few.
+    /// g or h, where chance would hardly cause it; quadratic terms are zero where places are few.
     fn slopes(&self, logarithms: &Logarithms) -> Option<[f64; TERMS]> {
         let sites = &self.sites;
         let count = match sites.len() < FEWEST[1] {
@@ -203,7 +203,7 @@ impl Told {
         (is_sure && high - low > 2.0 * LEAST.ln()).then_some(slopes)
     }
 
-    /// The mean of ln σx/σy, where it is surely not nothing.
+    /// The mean of ln σx/σy, where it is significantly different from zero.
     fn mean_apart(&self, apart: &Logarithms) -> Option<f64> {
         let mean = apart.values.mean();
         let left = apart.values.add_scalar(-mean);
@@ -212,7 +212,7 @@ impl Told {
         is_sure.then_some(mean)
     }
 
-    /// v s², of what is left. Gross errors spread logarithms wider than noise does.
+    /// v s², from the residuals. Gross errors spread logarithms more widely than noise does.
     fn variance(&self, left: &DVector<f64>, least: f64) -> f64 {
         let products = self.around.iter().enumerate().map(|(own, others)| {
             let beside = others.iter().map(|other| left[*other]).sum::<f64>();
@@ -236,8 +236,8 @@ fn at(slopes: &[f64; TERMS], sites: &[[f64; TERMS]]) -> Vec<f64> {
     sites.iter().map(of_site).collect()
 }
 
-/// Logarithms of variances that do not fall below those of nine tenths: the least ones are where few places tell of them, and would have the
-/// largest say.
+/// Logarithms of variances, not below those of nine tenths of them: the least ones lie where few places determine
+/// them, and would have the largest influence.
 fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
     const FEW: f64 = 0.1;
     let mut sorted = logarithms.clone();
@@ -250,7 +250,7 @@ fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// q of places, relative to those that are sound; `None` where it is no number.
+/// q of places, relative to those that are sound; `None` where it is not a number.
 fn sites(places: &[[f64; 2]], sound: &[[f64; 2]], margin: bool) -> Option<Vec<[f64; TERMS]>> {
     let sides = [0, 1].map(|axis| extremes(sound.iter().map(|place| place[axis])));
     let around = nearest(places, AROUND).into_iter().enumerate();
@@ -281,7 +281,7 @@ fn out_of_the_middle(places: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) ->
     sum.map(|sum: f64| share(sum.abs(), far))
 }
 
-/// A ratio; of nothing, nothing.
+/// A ratio; zero where the whole is not positive.
 fn share(part: f64, whole: f64) -> f64 {
     match whole > 0.0 {
         true => part / whole,

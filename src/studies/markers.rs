@@ -56,7 +56,7 @@ pub use specimen_file::SpecimenFile;
 use specimen_mesh::{SpecimenMesh, mesh};
 pub use verdict::worst as worst_answer;
 
-/// A field that was read, with all that its correction needs.
+/// A field that was read, with all data for its correction.
 #[derive(Clone, Debug)]
 pub struct MarkerStudy {
     /// The material.
@@ -67,7 +67,7 @@ pub struct MarkerStudy {
     pub mesh: Mesh,
     /// Size of its cells in mm, where they were made.
     pub cell_size: Option<f64>,
-    /// Where the mesh comes from, in words.
+    /// The origin of the mesh, in words.
     pub mesh_origin: String,
     /// The mesh that the field came on, where it is brought onto another one: then it is a computed field without
     /// noise, see [`transfer`].
@@ -76,20 +76,19 @@ pub struct MarkerStudy {
     pub series: MarkerSeries,
     /// How the files were understood.
     pub understood: Understood,
-    /// What is known besides.
+    /// What is known besides the displacements.
     pub conditions: Conditions,
     /// The law with parameters that are found with the field, if there are any.
     pub regressed: Option<RegressedLaw>,
-    /// What deserves attention.
+    /// Warnings.
     pub warnings: Vec<Diagnostic>,
-    /// What makes the figures of all frames doubtful.
+    /// Doubts about the figures of all frames.
     pub doubts: Vec<Diagnostic>,
-    /// Where the specimen's edge is nobody's knowledge but the markers': how far outside of them it may lie, in mm. The
-    /// intervals of forces hold that.
+    /// Where only the markers show the specimen's edge: how far outside of them it may lie, in mm. The intervals of forces include this.
     pub unknown_gap: Option<f64>,
 }
 
-/// What deserves attention of a card on a mesh.
+/// The warnings about a card on a mesh.
 fn of_material(card: &Card, mesh: &Mesh) -> impl Iterator<Item = Diagnostic> {
     let left_out = card.viscosity.left_out();
     let left_out = left_out.map(|told| {
@@ -111,7 +110,7 @@ impl MarkerStudy {
     /// Reads everything.
     ///
     /// # Errors
-    /// [`Error::Input`] with what is wrong and what to do.
+    /// [`Error::Input`] with the faults and their remedies.
     pub fn prepare(request: Request) -> Result<Self, Error> {
         let card = Card::load(&request.material, Path::new("."))?;
         Self::prepare_with(card, request)
@@ -193,8 +192,8 @@ impl MarkerStudy {
         }
     }
 
-    /// Estimates the field of every frame, and compares what is left of each with that of the one before. Frames that cannot be corrected
-    /// are left out as by [`Self::leave_out`]; each is told before it begins.
+    /// Estimates the field of every frame, and compares the residuals of each with those of the one before. Frames
+    /// that cannot be corrected are left out as by [`Self::leave_out`]; each is reported before it begins.
     ///
     /// # Errors
     /// As [`estimate`], with the frame in its message, where none can be.

@@ -33,7 +33,7 @@ use solution::ModelMotion;
 /// The `kind` of these studies.
 pub const KIND: &str = "motion";
 
-/// A motion's study: its title, the plate that moves, and what deserves attention.
+/// A motion's study: its title, the moving plate, and warnings.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
@@ -100,7 +100,7 @@ impl MovingPlate {
         self.moved(FINITE_ELEMENTS, (&model, sheet), time, &told)
     }
 
-    /// How far a computation is.
+    /// The progress of a computation.
     fn at(&self, what: &str, time: f64) -> String {
         format!(
             "{what}, {} of {} s",

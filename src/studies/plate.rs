@@ -25,7 +25,7 @@ use results::{Results, run};
 /// The `kind` of these studies.
 pub const KIND: &str = "plate";
 
-/// Reads a study of the file `path`, which may ask for so much.
+/// Reads a study of the file `path` within a budget.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault of the study and of its card.
@@ -53,7 +53,7 @@ pub fn ready(study: Study) -> PreparedStudy {
     }
 }
 
-/// What is told of a plate; pictures and grids where the study wants them.
+/// The outcome of a plate; with pictures and grids where the study wants them.
 fn outcome(study: &Study, results: &Results) -> Outcome {
     let requirements = results.requirements(study);
     let warnings = warnings::warnings(study, results);

@@ -44,7 +44,7 @@ pub fn load(
     case.load(file, text, budget, read::read)
 }
 
-/// The same on a mesh in memory, which takes the place of the one that the study names as `file`.
+/// The same on a mesh in memory, which replaces the one that the study names as `file`.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
@@ -73,7 +73,7 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let mut ends = Vec::new();
     let models = solved(specimen, &mut ends, progress)?;
-    // Not even an equilibrium on the way to the first load factor.
+    // There is not even an equilibrium on the way to the first load factor.
     let is_nothing = models.reached() == 0 && ends.iter().all(End::is_empty);
     if let Some(first) = ends.first().filter(|_| is_nothing) {
         return Err(first.error());

@@ -1,4 +1,4 @@
-//! What is noted of a run.
+//! The record of a run.
 
 use std::collections::HashMap;
 
@@ -9,29 +9,29 @@ use super::plan::Run;
 use super::variable::Setting;
 use crate::results::Results;
 
-/// What stands between the warnings of a run.
+/// The separator between the warnings of a run.
 pub(super) const BETWEEN: &str = " | ";
 
-/// A run with what came of it.
+/// A run with its results.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Row {
     /// The run's number.
     pub number: usize,
-    /// What was set.
+    /// The values that were set.
     pub settings: Vec<Setting>,
     /// Every number of every model at every step, by names such as `corrected.force_N@0.5`: model, quantity with its unit, and the
     /// stretch, load factor, time in s or frame, the second time at one with `#2` behind it. Components along x and y end with `.x` and `.y`.
     pub figures: Vec<(String, f64)>,
-    /// Whether all that the study requires is met.
+    /// Whether all requirements of the study are met.
     pub passed: bool,
-    /// Why there is no solution, or where a model ended early; empty where neither is the case.
+    /// Why there is no solution, or where a model ended early; empty otherwise.
     pub fault: String,
-    /// What deserves attention in the study and in its results, each in a sentence.
+    /// Warnings of the study and of its results, each in a sentence.
     pub warnings: Vec<String>,
 }
 
 impl Row {
-    /// Of what a study has found.
+    /// The record of a study's findings.
     pub fn of(run: &Run, results: &Results) -> Self {
         let outcome = &results.outcome;
         let mut figures = Vec::new();
@@ -65,7 +65,7 @@ impl Row {
         }
     }
 
-    /// Of a study without a solution.
+    /// The record of a study without a solution.
     pub fn failed(run: &Run, fault: String, warnings: Vec<String>) -> Self {
         Self {
             number: run.number,

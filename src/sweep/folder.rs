@@ -1,4 +1,4 @@
-//! The folder of a sweep: each run is kept as soon as it ends, and parts that several jobs have computed are put together.
+//! The folder of a sweep: each run is kept as soon as it ends, and parts computed by several jobs are combined.
 
 use std::collections::HashMap;
 use std::fs;
@@ -30,7 +30,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The part `part`, from 1 on, of so many; `None` of one that is not among them.
+    /// The part `part`, from 1 on, of so many; `None` if there is no such part.
     pub fn new(part: usize, parts: usize) -> Option<Self> {
         (1..=parts).contains(&part).then_some(Self { part, parts })
     }
@@ -45,14 +45,14 @@ impl Shard {
     }
 }
 
-/// Which of the runs, and where they come from.
+/// The runs, and where they come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
-    /// All are computed.
+    /// All runs are computed.
     Whole,
-    /// Those of one part are computed, into a folder of their own.
+    /// The runs of one part are computed, into a folder of their own.
     Shard(Shard),
-    /// The tables of so many parts are put together.
+    /// The tables of so many parts are combined.
     Join(usize),
 }
 
@@ -66,11 +66,11 @@ pub struct SweepFolder<'a> {
 }
 
 impl<'a> SweepFolder<'a> {
-    /// Opens the folder, with what the same sweep by the same `program` has left when it was broken off. The results follow from
-    /// the files `inputs`, and must not replace them.
+    /// Opens the folder, with the runs that the same sweep by the same `program` has left when it was interrupted.
+    /// The results follow from the files `inputs`, and must not replace them.
     ///
     /// # Errors
-    /// [`Error::Input`] with the faults of the sweep and of the study; [`Error::Write`] as of [`ResultFolder::resume`].
+    /// [`Error::Input`] with the faults of the sweep and of the study; [`Error::Write`] as in [`ResultFolder::resume`].
     pub fn open(
         sweep: &'a Sweep,
         share: Share,
@@ -105,7 +105,7 @@ impl<'a> SweepFolder<'a> {
         &self.results
     }
 
-    /// A warning where the folder holds other results of sweeps, those of another study or of other keys.
+    /// A warning where the folder contains other results of sweeps: those of another study or of other keys.
     pub fn replaces(&self) -> Option<Diagnostic> {
         let other_study = self.results.replaces();
         other_study.or_else(|| {
@@ -124,13 +124,13 @@ impl<'a> SweepFolder<'a> {
         })
     }
 
-    /// How many runs there are, computed or not.
+    /// The number of runs, computed or not.
     pub fn count(&self) -> usize {
         self.runs.len()
     }
 
-    /// Computes the runs, or puts them together; each is kept as soon as it ends. `ended` is told the number of each, also of those
-    /// that a sweep before has left; `attend` is that of [`Sweep::compute`]. Where it unwinds, what is kept stays for a later start.
+    /// Computes the runs, or combines them; each is kept as soon as it ends. `ended` is called with the number of each, including those
+    /// that an earlier sweep has left; `attend` is that of [`Sweep::compute`]. Where it unwinds, the kept runs stay for a later start.
     ///
     /// # Errors
     /// Those of [`Sweep::compute`], and [`Error::Write`].
@@ -216,7 +216,7 @@ pub fn join(runs: &[Run], mut rows: Vec<Row>) -> Result<Vec<Row>, Error> {
     }
 }
 
-/// Lets the runs that are kept stay where a computation is broken off by unwinding.
+/// Leaves the kept runs in place where a computation is interrupted by unwinding.
 struct PartsStay(Arc<Unfinished>);
 
 impl Drop for PartsStay {

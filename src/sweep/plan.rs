@@ -10,36 +10,36 @@ use super::variable::{MOST_RUNS, Setting, Values, Variable};
 use crate::error::Diagnostic;
 use crate::statistics::{normal_quantile, normal_reach};
 
-/// What the scrambled sequence holds.
+/// Most points, and dimensions, of the scrambled sequence.
 const MOST_OF_SOBOL: usize = 1 << 16;
 const SOBOL_DIMENSIONS: usize = 256;
 
-/// How points are drawn.
+/// The way in which points are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Sobol's sequence with Owen's scrambling.
     Sobol,
-    /// Independent of each other.
+    /// Random points, independent of each other.
     Random,
 }
 
-/// How many points are drawn, and how.
+/// The number of points that are drawn, and the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampling {
-    /// How many; `None` where none are.
+    /// The number of points; `None` where none are drawn.
     pub samples: Option<usize>,
-    /// How.
+    /// The way.
     pub method: Method,
-    /// What tells one drawing from another.
+    /// The seed of the drawing.
     pub seed: u32,
 }
 
-/// One run: its number from 1 on, and what each variable is set to.
+/// One run: its number from 1 on, and the values of each variable.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// Its number.
     pub number: usize,
-    /// In the order of [`Sweep::keys`](super::Sweep::keys).
+    /// The values, in the order of [`Sweep::keys`](super::Sweep::keys).
     pub settings: Vec<Setting>,
 }
 
@@ -54,10 +54,10 @@ pub struct FittedParameters {
 }
 
 impl FittedParameters {
-    /// Reads them.
+    /// Reads the parameters.
     ///
     /// # Errors
-    /// A text that is no fit, or a fit without uncertainty.
+    /// A description of a text that is not a fit, or of a fit without uncertainty.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostic> {
         const HINT: &str =
             "take the JSON file that `gelbench materials fit` writes beside the card";
@@ -123,7 +123,7 @@ impl FittedParameters {
     }
 }
 
-/// Deviations of normal distributions with the 95 % intervals of a fit, which of few data reach farther than 1.96 standard errors.
+/// Standard deviations of normal distributions with the 95 % intervals of a fit, which reach farther than 1.96 standard errors where data are few.
 fn widened(errors: &[f64], parameters: &[Value]) -> Vec<f64> {
     let deviation = |(error, one): (&f64, &Value)| {
         let end = |index: usize| one["interval_95_percent"][index].as_f64();
@@ -162,7 +162,7 @@ fn without_errors(file: &str, fit: &Value, parameters: &[Value]) -> Diagnostic {
     Diagnostic::error(file, message).hint(hint)
 }
 
-/// Refuses no key, a key twice, and one within another.
+/// Refuses an empty list of keys, a key twice, and a key within another.
 pub fn check_keys(keys: &[String]) -> Result<(), Diagnostic> {
     if keys.is_empty() {
         let fault = Diagnostic::error("", "nothing is varied");
@@ -249,7 +249,7 @@ pub fn rows(
     Ok(all)
 }
 
-/// How many points are drawn of so many distributions: one where there are none.
+/// The number of points drawn from so many distributions: one where there are none.
 fn points_to_draw(sampling: Sampling, dimensions: usize) -> Result<usize, Diagnostic> {
     let samples = match (sampling.samples, dimensions) {
         (None, 0) => 1,

@@ -14,13 +14,13 @@ pub struct Points {
 }
 
 impl Points {
-    /// What such a table looks like.
+    /// The format of such a table.
     pub const HINT: &str = "column heads are keys, with the unit in brackets: plate.width [mm],material.c10 [MPa]; each line below is a point";
 
-    /// Of columns, by keys with their units such as `material.c10 [MPa]`.
+    /// Points from columns, by keys with their units such as `material.c10 [MPa]`.
     ///
     /// # Errors
-    /// No points, columns of different lengths, or more than a million points.
+    /// Without points, with columns of different lengths, or with more than a million points.
     pub fn of_columns(columns: &[(String, Vec<String>)]) -> Result<Self, Diagnostic> {
         let count = columns.first().map_or(0, |(_, values)| values.len());
         if count == 0 {
@@ -47,10 +47,10 @@ impl Points {
         })
     }
 
-    /// Of a table of commas.
+    /// Points from a CSV table.
     ///
     /// # Errors
-    /// [`Error::Input`] where it is none, and those of [`Points::of_columns`].
+    /// [`Error::Input`] where it is not one, and the errors of [`Points::of_columns`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         let named = |fault: Diagnostic| {
             let message = format!("{}: {}", path.display(), fault.message);
@@ -76,7 +76,7 @@ impl Points {
         self.keys.iter().cloned()
     }
 
-    /// What is set at each point, in the order of the keys.
+    /// The values at each point, in the order of the keys.
     pub fn rows(&self) -> &[Vec<Setting>] {
         &self.rows
     }

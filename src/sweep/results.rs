@@ -1,4 +1,4 @@
-//! What many runs say together: spreads, rank correlations, bands.
+//! Statistics over many runs: spreads, rank correlations, bands.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,23 +10,23 @@ use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke, number};
 use crate::statistics::{quantile, rank_correlation};
 
-/// Below so many runs there is neither a spread nor a correlation.
+/// With fewer runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;
 
-/// A figure over all runs that have it.
+/// A figure over all runs in which it exists.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
     /// Its name.
     pub name: String,
-    /// How many runs have it.
+    /// The number of runs in which it exists.
     pub runs: usize,
     /// The mean.
     pub mean: f64,
-    /// The standard deviation; NaN of fewer than two runs.
+    /// The standard deviation; NaN for fewer than two runs.
     pub standard_deviation: f64,
     /// The values below which 5, 50 and 95 % of the runs lie.
     pub quantiles: [f64; 3],
-    /// Spearman's rank correlation with each key; NaN where there are fewer than ten runs, or a key is no number.
+    /// Spearman's rank correlation with each key; NaN where there are fewer than ten runs, or a key is not a number.
     pub rank_correlations: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ fn parts_of(name: &str) -> (&str, &str) {
     name.rsplit_once('@').unwrap_or((name, ""))
 }
 
-/// The figures of the last step alone. Where steps are varied, that is another one in each run: of those that reach it, under one name.
+/// The figures of the last step alone. Where steps are varied, it differs between runs: the runs that reach it are taken together under one name.
 fn at_last_step(rows: &[Row]) -> Vec<Row> {
     const OWN: &str = "the last step";
     let last = |row: &'_ Row| Some(parts_of(&row.figures.last()?.0).1.to_owned());
@@ -167,7 +167,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
     blocks
 }
 
-/// What deserves attention in the runs together: figures that some lack, and what is said of single runs, the same said once.
+/// Warnings about the runs together: figures that some lack, and the warnings of single runs, each once.
 pub fn cautions(rows: &[Row]) -> Vec<String> {
     let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();
     let biased = (failed > 0).then(|| {
@@ -232,7 +232,7 @@ pub fn json(keys: &[String], rows: &[Row]) -> Value {
 }
 
 /// Pictures: the band of every model's force over the steps, and the force of the last step over each key.
-/// `along` is what the axis of steps is called.
+/// `along` is the name of the axis of steps.
 pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
     let (all, heads) = (statistics(rows), heads(keys, rows));
     let forces: Vec<&Statistics> = all.iter().filter(|one| is_force(&one.name)).collect();
@@ -287,12 +287,12 @@ fn is_force(name: &str) -> bool {
 /// two steps, or too few runs.
 fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
     let mut lines = Vec::new();
-    // The corrected model's band is that which is filled.
+    // The band of the corrected model is the filled one.
     for ModelStyle { name, key, colour } in [CORRECTED, MASS_SPRING, FINITE_ELEMENTS] {
         let own = forces
             .iter()
             .filter(|one| one.name.split('.').next() == Some(key) && one.runs >= FEWEST);
-        // In the order of the path: a load factor may come again, as its second time `0.3#2`.
+        // In the order of the path: a load factor may occur again, its second time as `0.3#2`.
         let at = |one: &Statistics| {
             let (_, at) = one.name.rsplit_once('@')?;
             at.split('#').next()?.parse().ok()

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::units::{self, Dimension};
 
-/// How test data are to be written.
+/// The form in which test data are written.
 #[derive(Clone, Debug)]
 pub struct Conversion {
     /// The stress measure.
@@ -22,7 +22,7 @@ impl Conversion {
     /// The data as a table that `gelbench materials fit` reads.
     ///
     /// # Errors
-    /// [`Error::Input`] when the unit is no unit of stress.
+    /// [`Error::Input`] when the unit is not a unit of stress.
     pub fn table(&self, data: &TestData) -> Result<String, Error> {
         let factor = units::factor(&self.unit, Dimension::Stress);
         let factor = factor.map_err(|fault| {

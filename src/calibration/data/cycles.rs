@@ -1,4 +1,4 @@
-//! The cycles of a record: where a strain turns back, and the branches between.
+//! The cycles of a record: the rows where a strain turns back, and the branches between.
 
 use std::ops::Range;
 
@@ -10,19 +10,19 @@ use crate::error::Diagnostic;
 pub enum Cycle {
     /// The loading branch of the first cycle.
     First,
-    /// That of the last cycle.
+    /// The loading branch of the last cycle.
     Last,
-    /// That of a cycle, counted from 1.
+    /// The loading branch of a cycle, counted from 1.
     Number(usize),
     /// All rows.
     All,
 }
 
-/// The key under which a file or the command line says it.
+/// The key of this setting in a file or on the command line.
 pub const CYCLE: &str = "cycle";
 
 impl Cycle {
-    /// What is stated, if anything is.
+    /// The stated setting, if there is one.
     pub fn stated(head: &Head) -> Faulty<Option<Self>> {
         let Some(text) = head.setting(CYCLE, None)? else {
             return Ok(None);
@@ -42,9 +42,9 @@ impl Cycle {
     }
 }
 
-/// A swing of the strain smaller than this share of its whole range is none.
+/// A swing of the strain smaller than this share of its whole range does not count.
 const SMALLEST_SWING: f64 = 0.05;
-/// Strains within this share of a branch's end are those of a hold there.
+/// Strains within this share of a branch's end belong to a hold there.
 const HOLD: f64 = 1e-3;
 /// A hold has at least this share of the rows.
 const HOLD_ROWS: f64 = 0.03;
@@ -87,7 +87,7 @@ impl Branches {
         }
     }
 
-    /// The rows of the chosen part; nothing where there is no such cycle.
+    /// The rows of the chosen part; `None` where there is no such cycle.
     pub fn rows(&self, cycle: Cycle) -> Option<Range<usize>> {
         match cycle {
             Cycle::All => Some(0..self.rows),
@@ -138,7 +138,7 @@ fn between_holds(values: &[f64], pair: &[usize]) -> (Range<usize>, usize) {
     (leaves.unwrap_or(from)..end + 1, to)
 }
 
-/// Where a strain turns back: a curve of loading alone does not.
+/// The rows where a strain turns back: a curve of loading alone has none.
 #[derive(Default)]
 pub struct Turns {
     last: Option<f64>,
@@ -149,7 +149,7 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// Takes the strain of a row.
+    /// Adds the strain of a row.
     pub fn add(&mut self, row: usize, strain: f64) {
         let changed = self.last.filter(|last| *last != strain);
         if let Some(last) = changed {
@@ -163,10 +163,10 @@ impl Turns {
         self.last = Some(strain);
     }
 
-    /// What is said where it did.
+    /// The warning where it did.
     pub fn warning(&self, head: &Head) -> Option<Diagnostic> {
         let row = self.first?;
-        // Whoever says which cycles are taken knows that there are some.
+        // A user who states which cycles are taken knows that there are some.
         if !matches!(Cycle::stated(head), Ok(None)) {
             return None;
         }

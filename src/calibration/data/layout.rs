@@ -1,4 +1,4 @@
-//! What the columns of a table mean, and the rows read by it.
+//! The meaning of a table's columns, and the rows read accordingly.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::error::{Diagnostic, Error};
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::Dimension;
 
-/// What the columns mean.
+/// The meaning of the columns.
 pub struct Layout {
     test: Test,
     stress_measure: StressMeasure,
@@ -25,12 +25,12 @@ pub struct Layout {
     strain_ratio: Option<f64>,
     /// The specimen of a table with one column of displacements and one of forces.
     machine: Option<Machine>,
-    /// Column and factor to s; a fault where the unit is not known.
+    /// Column and factor to s; a fault where the unit is unknown.
     time: Option<Faulty<Scaled>>,
 }
 
 impl Layout {
-    /// Finds out what the columns mean; all that is missing is told at once.
+    /// Determines the meaning of the columns; all missing information is reported at once.
     pub fn new(head: &Head) -> Result<Self, Vec<Diagnostic>> {
         let roles = roles(head);
         let mut faults = Faults::default();
@@ -67,13 +67,13 @@ impl Layout {
         strains.chain(self.stresses.iter().map(|(column, ..)| *column))
     }
 
-    /// The columns that are read, that of times among them.
+    /// The columns that are read, including that of times.
     pub fn all_columns(&self) -> impl Iterator<Item = usize> {
         let time = self.time.iter().flatten().map(|(column, _)| *column);
         self.columns().chain(time)
     }
 
-    /// The strains of an observation along an axis: what a strip across the first one does along it is not known.
+    /// The strains of an observation along an axis: the strain across a strip is not known.
     fn along(&self, axis: usize, [first, second]: [f64; 2]) -> [f64; 2] {
         match self.test == Test::Uniaxial && axis == 1 {
             true => [f64::NAN, first],
@@ -140,7 +140,7 @@ impl Layout {
         })
     }
 
-    /// What of the table is fitted.
+    /// The part of the table that is fitted.
     fn part(&self, head: &Head) -> Faulty<Part> {
         let rows = &head.table.rows;
         let plain = Part::whole(rows.len());
@@ -170,7 +170,7 @@ impl Layout {
         Times::Known(times.flat_map(|time| vec![time; each]).collect())
     }
 
-    /// What rounding took from strains and stresses; nothing of strains that were commanded.
+    /// The rounding of strains and stresses; zero for strains that were commanded.
     fn rounding(&self, table: &Table, rows: &Range<usize>) -> [f64; 2] {
         let own = |column: usize| WrittenColumn::of(table, column, rows);
         let measured = own(self.stresses[0].0);
@@ -209,12 +209,12 @@ impl Layout {
     }
 }
 
-/// What is missing or wrong, each once.
+/// Missing information and faults, each once.
 #[derive(Default)]
 struct Faults(Vec<Diagnostic>);
 
 impl Faults {
-    /// What was found, or nothing where it is a fault.
+    /// The value that was found, or `None` after recording a fault.
     fn of<T>(&mut self, found: Faulty<T>) -> Option<T> {
         let fault = match found {
             Ok(found) => return Some(found),
@@ -227,10 +227,10 @@ impl Faults {
     }
 }
 
-/// A test begins at a stretch of 1; what begins beyond this factor of it may be in percent.
+/// A test begins at a stretch of 1; a test that begins beyond this factor of it may be in percent.
 const AT_REST: f64 = 10.0;
 
-/// Whether a column of stretches without a unit holds plain ratios.
+/// Whether a column of stretches without a unit contains plain ratios.
 fn is_plain_stretch(head: &Head, column: usize) -> bool {
     let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
     values.fold(f64::INFINITY, f64::min) < AT_REST
@@ -307,7 +307,7 @@ fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<StressCol
     Ok((measure, columns))
 }
 
-/// The cross-section of the specimen in mm²: as it is stated, or width times thickness.
+/// The cross-section of the specimen in mm²: the stated one, or width times thickness.
 fn area(head: &Head) -> Faulty<f64> {
     let stated = head.quantity("area", Dimension::Area)?;
     let sides = ["width", "thickness"].map(|key| head.quantity(key, Dimension::Length));

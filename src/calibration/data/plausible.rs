@@ -1,14 +1,14 @@
-//! Test data that cannot be, or are hardly what they seem.
+//! Test data that are impossible, or hardly plausible.
 
 use super::test_data::{Observation, StrainColumn, Test};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::statistics::median;
 
-/// Strains of compression that are positive by less than this share of the largest are at rest.
+/// Positive strains below this share of the largest count as rest in a test of compression.
 const SCATTER: f64 = 1e-3;
 
-/// Data that say nothing, or a test of compression that counts pressing as positive, are refused.
+/// Refuses data without information, and tests of compression that count pressing as positive.
 pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
     let strains = || observations.iter().map(|one| one.strains[one.axis]);
     let says_nothing = observations.iter().all(|one| one.stress == 0.0)
@@ -19,7 +19,7 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
         let hint = "look at the columns and their units";
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
     }
-    // Against the strain of the one axis that is driven a stress is only while it recoils; of two, the second may be held back.
+    // A stress acts against the strain of a single driven axis only during recoil; of two axes, the second may be held back.
     let work = || {
         observations
             .iter()
@@ -43,14 +43,14 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
     Ok(())
 }
 
-/// A stress at a strain of nothing, where nothing was taken off: a preload, or a load cell that was not set to zero.
+/// A stress at zero strain, where nothing was subtracted: a preload, or a load cell that was not set to zero.
 pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagnostic> {
     /// Rows by whose second differences noise is estimated.
     const ROWS: usize = 12;
-    /// Standard deviations, and a share of the largest stress, below which a stress is none.
+    /// Standard deviations, and a share of the largest stress, below which a stress counts as zero.
     const CLEARLY: f64 = 4.0;
     const NOTHING: f64 = 0.005;
-    /// A strain below this share of the largest is none.
+    /// A strain below this share of the largest counts as zero.
     const AT_REST: f64 = 1e-3;
     let largest = |value: fn(&Observation) -> f64| {
         let values = observations.iter().map(|one| value(one).abs());
@@ -92,7 +92,7 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
 
 /// Strains that are so large that they may be in percent.
 pub fn implausible(head: &Head, strain: StrainColumn, largest: f64) -> Option<Diagnostic> {
-    /// λ − 1: stretches of soft gels are seen up to about 20.
+    /// λ − 1: stretches of soft gels reach about 20.
     const MOST: f64 = 20.0;
     let about = match strain {
         StrainColumn::Stretch => "stretches",

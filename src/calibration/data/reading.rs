@@ -8,7 +8,7 @@ use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
-/// What a file or the command line must say about test data.
+/// The statements about test data that a file or the command line must make.
 pub const KEYS: [&str; 15] = [
     "test",
     "stress measure",
@@ -28,7 +28,7 @@ pub const KEYS: [&str; 15] = [
 ];
 
 impl TestData {
-    /// Reads a file; `reading` says what the file does not, by [`KEYS`].
+    /// Reads a file; `reading` supplements the file's own statements, by [`KEYS`].
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and reason; nothing is ever guessed.
@@ -69,14 +69,14 @@ struct MeasuredRows {
     kept: Vec<usize>,
     /// Rows without a number in a column that is read.
     holes: usize,
-    /// Rows that stand before in the same table, where all do.
+    /// Rows that repeat an earlier one of the table, where all rows do.
     copies: usize,
-    /// Rows that stand before in the same table, where others do not.
+    /// Rows that repeat an earlier one of the table, where other rows do not.
     repeated: usize,
 }
 
 impl MeasuredRows {
-    /// Rows that stand several times are copies where all rows do so equally often; else some may have been measured alike.
+    /// Repeated rows are copies where all rows are repeated equally often; otherwise some may be equal measurements.
     fn of(table: &Table, layout: &Layout) -> Self {
         let columns: Vec<usize> = layout.all_columns().collect();
         let key = |row: usize| -> Vec<u64> {
@@ -109,9 +109,9 @@ impl MeasuredRows {
         }
     }
 
-    /// What is to be said of the others.
+    /// The warnings about the other rows.
     fn warnings(&self, table: &Table) -> Vec<Diagnostic> {
-        /// So many equal rows, as a share, are no chance.
+        /// A share of equal rows that is not due to chance.
         const MANY: f64 = 0.2;
         let repeated = match self.repeated as f64 > MANY * self.kept.len() as f64 {
             true => self.repeated,

@@ -8,7 +8,7 @@ use super::zero::Beginning;
 use crate::document::{Faulty, Head};
 use crate::units::{self, Dimension};
 
-/// The key under which a file or the command line says where the specimen begins to be stretched.
+/// The key of the place where the specimen begins to be stretched, in a file or on the command line.
 pub const ZERO: &str = "zero";
 
 /// A table of displacements and forces.
@@ -22,7 +22,7 @@ pub struct Machine {
     pub presses: bool,
 }
 
-/// What of a record is fitted.
+/// The part of a record that is fitted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
     /// The rows.
@@ -33,9 +33,9 @@ pub struct Part {
     pub zero: f64,
     /// The stress of the record there, in MPa.
     pub offset: f64,
-    /// Which of them was found, and is uncertain.
+    /// Which of them was found from the record, and is uncertain.
     pub found_zero: Option<FoundZero>,
-    /// What was done, in words.
+    /// Descriptions of what was done.
     pub remarks: Vec<String>,
 }
 
@@ -62,7 +62,7 @@ impl Part {
         self.signs[0] * (x - self.zero)
     }
 
-    /// A stress of the record without what is taken off.
+    /// A stress of the record less the offset.
     pub fn stress(&self, y: f64) -> f64 {
         self.signs[1] * (y - self.offset)
     }
@@ -94,7 +94,7 @@ impl Part {
         Ok(part)
     }
 
-    /// Takes the rows of a cycle.
+    /// Chooses the rows of a cycle.
     fn choose(
         &mut self,
         head: &Head,
@@ -170,7 +170,7 @@ impl Part {
                 self.take_stated((head, machine), [x, y], place, FoundZero::Strain { length })?;
             }
         }
-        // What lies before the zero is not fitted.
+        // Rows before the zero are not fitted.
         let way = (x[x.len() - 1] - x[0]).signum();
         let before = x
             .iter()
@@ -182,8 +182,8 @@ impl Part {
         Ok(())
     }
 
-    /// Takes the zero at a stated place of a branch, as a row and the part of the step behind it; what one row reads there scatters, so that the
-    /// `found` one is found again with the law.
+    /// Takes the zero at a stated place of a branch, as a row and the part of the step behind it; a single row's
+    /// reading scatters, so that the `found` one is determined again with the law.
     fn take_stated(
         &mut self,
         (head, machine): (&Head, Machine),
@@ -206,7 +206,7 @@ impl Part {
         Ok(())
     }
 
-    /// Takes off what was found at the beginning of a branch with these stresses, and says so.
+    /// Subtracts the offsets that were found at the beginning of a branch with these stresses, and records a remark.
     fn set_right(&mut self, machine: Machine, beginning: Beginning, stresses: &[f64]) {
         let mm = |strain: f64| machine.length * strain;
         let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));

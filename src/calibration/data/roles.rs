@@ -1,27 +1,27 @@
-//! What the names of columns say.
+//! The meaning of the names of columns.
 
 use super::test_data::Test;
 use crate::document::{Faulty, Head};
 
-/// What a column is of.
+/// The kind of quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A stretch, strain or displacement.
     Strain,
     /// A stress or force.
     Stress,
-    /// When the row was measured.
+    /// The time of the row.
     Time,
-    /// What is not read.
+    /// A column that is not read.
     Other,
 }
 
-/// What a column's name says.
+/// The meaning of a column's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Role {
-    /// What it is of.
+    /// The kind of quantity.
     pub kind: Kind,
-    /// The measure, where the name says it.
+    /// The measure, where the name states it.
     pub measure: Option<&'static str>,
     /// 0 or 1.
     pub axis: usize,
@@ -51,7 +51,7 @@ const MACHINE_DISPLACEMENTS: [&str; 15] = [
     "位移",
 ];
 
-/// Names that they give to the force.
+/// Names that testing machines give to the force.
 const MACHINE_FORCES: [&str; 11] = [
     "tensile_load",
     "compressive_load",
@@ -66,7 +66,7 @@ const MACHINE_FORCES: [&str; 11] = [
     "载荷",
 ];
 
-/// Names that they give to strains and stresses, whose measure they do not say.
+/// Names that testing machines give to strains and stresses without stating their measure.
 const MACHINE_STRAINS: [&str; 6] = [
     "tensile_strain",
     "compressive_strain",
@@ -84,7 +84,7 @@ const MACHINE_STRESSES: [&str; 6] = [
     "应力",
 ];
 
-/// Names that they give to the time.
+/// Names that testing machines give to the time.
 const TIMES: [&str; 10] = [
     "time",
     "t",
@@ -138,7 +138,7 @@ impl Role {
         }
     }
 
-    /// What a name says that only machines write: it counts where no other column is of its kind.
+    /// The meaning of a name that only machines write: it counts where no other column is of its kind.
     fn of_machine(name: &str) -> Option<Self> {
         let (stem, axis) = axis_of(name);
         let is = |names: &[&str]| names.contains(&stem);
@@ -148,7 +148,7 @@ impl Role {
         is(&MACHINE_FORCES).then(|| Self::stress(Some(FORCE), axis))
     }
 
-    /// What a name says that only machines write beside displacements and forces: it counts where there are none of these.
+    /// The meaning of a name that only machines write beside displacements and forces: it counts where there are none of these.
     fn of_machine_s_evaluation(name: &str) -> Option<Self> {
         let (stem, axis) = axis_of(name);
         if MACHINE_STRAINS.contains(&stem) {
@@ -169,13 +169,13 @@ fn axis_of(name: &str) -> (&str, usize) {
     }
 }
 
-/// The columns of some kind with what their names say.
+/// The columns of some kind with the meaning of their names.
 pub fn of_kind(roles: &[Role], kind: Kind) -> impl Iterator<Item = (usize, &Role)> {
     let all = roles.iter().enumerate();
     all.filter(move |(_, role)| role.kind == kind)
 }
 
-/// What the names of the columns say; the first two of a file without names are strain and stress.
+/// The meaning of the columns' names; the first two columns of a file without names are strain and stress.
 pub fn roles(head: &Head) -> Vec<Role> {
     let columns = &head.table.columns;
     if columns.iter().all(|column| column.name.is_empty()) {
@@ -198,8 +198,7 @@ pub fn roles(head: &Head) -> Vec<Role> {
     roles
 }
 
-/// Refuses columns that do not fit together: each axis has one strain and one stress, all strains and all
-/// stresses have one measure.
+/// Refuses columns that are not consistent: each axis has one strain and one stress, all strains have one measure, and so have all stresses.
 pub fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
     let place = || head.table.columns_place.clone();
     for (kind, what) in [(Kind::Strain, "strain"), (Kind::Stress, "stress")] {

@@ -1,11 +1,11 @@
-//! How finely the numbers of a column were written, and whether that says what was taken from them.
+//! The resolution with which the numbers of a column were written, and whether it indicates their rounding.
 //!
 //! ```text
 //! s = 10⁻ᵈ     the last digit that the column has,   ρ² = mean of s²/12
 //! ```
 //!
-//! Zeros at the end count where the file has them. A strain that a machine was told to reach is exact, however few digits it
-//! is written with: nothing was taken from such a column, see [`WrittenColumn::is_commanded`].
+//! Zeros at the end count where the file has them. A strain that a machine was told to reach is exact, however few
+//! digits it is written with: such a column is not rounded, see [`WrittenColumn::is_commanded`].
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ impl WrittenColumn {
         }
     }
 
-    /// The root mean square of what rounding may have taken, after the values are `read` in another measure and unit.
+    /// The root mean square of the possible rounding, after the values are `read` in another measure and unit.
     pub fn rounding(&self, read: &dyn Fn(f64) -> f64) -> f64 {
         let square = |(value, step): (&f64, &f64)| {
             let half = 0.5 * step;
@@ -42,7 +42,7 @@ impl WrittenColumn {
     /// multiples of more than the last digit, or the same ones come again while what was `measured` there goes to and fro. Where it
     /// goes one way with the strain that stands still, the strain went on between the digits.
     pub fn is_commanded(&self, measured: &Self) -> bool {
-        /// Numbers of more digits are as good as exact.
+        /// Numbers of more digits count as exact.
         const MOST: f64 = 1e15;
         let finest = self.steps.iter().copied().filter(|step| *step > 0.0);
         let finest = finest.fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! Test data: how far a specimen was stretched, and the stress that was measured.
+//! Test data: the strains of a specimen, and the stresses that were measured.
 
 use crate::document::{Statements, name_of};
 use crate::error::Diagnostic;
@@ -6,7 +6,7 @@ use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::sheet::{Kinematics, PlaneTensor};
 
-/// The kinds of test that a sheet can be put to.
+/// The kinds of test of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Test {
     /// Stretched or pressed along one axis, free across.
@@ -36,7 +36,7 @@ impl Test {
     }
 }
 
-/// What a column of deformation holds.
+/// The quantity in a column of deformation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrainColumn {
     /// λ.
@@ -73,7 +73,7 @@ impl StrainColumn {
 /// One measured stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// λ − 1 along both axes; across a uniaxial test not a number.
+    /// λ − 1 along both axes; NaN across a uniaxial test.
     pub strains: [f64; 2],
     /// The axis along which the stress was measured: 0 or 1.
     pub axis: usize,
@@ -88,19 +88,19 @@ pub enum Times {
     None,
     /// One for each observation, in s.
     Known(Vec<f64>),
-    /// The file has some that cannot be read.
+    /// The file has times that cannot be read.
     Unknown(Box<Diagnostic>),
 }
 
-/// A zero that was found at the beginning of a machine's record: uncertain, so that it is found again with the law.
+/// A zero that was found at the beginning of a machine's record: it is uncertain, so that it is determined again with the law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FoundZero {
-    /// That of strain, on a specimen of this length in mm.
+    /// The zero of strain, on a specimen of this length in mm.
     Strain {
         /// The length.
         length: f64,
     },
-    /// That of stress, on a specimen of this cross-section in mm².
+    /// The zero of stress, on a specimen of this cross-section in mm².
     Stress {
         /// The cross-section.
         area: f64,
@@ -114,7 +114,7 @@ pub struct TestData {
     pub name: String,
     /// The kind of test.
     pub test: Test,
-    /// The stress that was measured.
+    /// The measure of the stresses.
     pub stress_measure: StressMeasure,
     /// The axes along which the stresses of each row were measured.
     pub axes: Vec<usize>,
@@ -124,22 +124,22 @@ pub struct TestData {
     pub drawn_axis: usize,
     /// The largest stress without its sign, in MPa.
     pub largest_stress: f64,
-    /// Root mean squares of what rounding may have taken from the strains (nominal), none from those that were commanded, and from
-    /// the stresses in MPa, by the digits of the file.
+    /// Root mean squares of the possible rounding, by the digits of the file: of the strains (nominal), zero for
+    /// commanded ones, and of the stresses in MPa.
     pub rounding: [f64; 2],
-    /// When the observations were made.
+    /// The times of the observations.
     pub times: Times,
-    /// How long the strain took to the first row, where the file begins stretched, in s.
+    /// The time that the strain took to the first row, where the file begins stretched, in s.
     pub rise: f64,
-    /// What the record holds and is not fitted: slack, holds, other cycles.
+    /// The part of the record that is not fitted: slack, holds, other cycles.
     pub left_out: Vec<Observation>,
     /// The zero that was found in the record, if one was.
     pub found_zero: Option<FoundZero>,
-    /// What was taken of a record and what was taken off, in words.
+    /// Descriptions of the part of a record that was taken, and of what was subtracted.
     pub remarks: Vec<String>,
-    /// What the head says about source, specimen, DOI and licence.
+    /// The head's statements on source, specimen, DOI and licence.
     pub head: Statements,
-    /// What to look at before trusting the data.
+    /// Warnings about the data.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -204,8 +204,7 @@ impl TestData {
         all
     }
 
-    /// λ − 1 along the axis that the data are drawn over: the one of the stress in a uniaxial test, else the one
-    /// that is stretched further.
+    /// λ − 1 along the axis over which the data are drawn: the one of the stress in a uniaxial test, otherwise the one that is stretched further.
     pub fn drawn_strain(&self, observation: &Observation) -> f64 {
         match self.test {
             Test::Uniaxial => observation.strains[observation.axis],
@@ -213,10 +212,10 @@ impl TestData {
         }
     }
 
-    /// The stretches between which the data lie along both axes, rest included.
+    /// The range of stretches of the data along both axes, including rest.
     pub fn stretch_range(&self) -> [f64; 2] {
         let strains = || self.observations.iter().flat_map(|one| one.strains);
-        // f64::min and f64::max pass over strains that are not known.
+        // f64::min and f64::max ignore strains that are not known.
         [
             1.0 + strains().fold(0.0, f64::min),
             1.0 + strains().fold(0.0, f64::max),

@@ -1,13 +1,13 @@
-//! Where a specimen begins to be stretched: slack and preload of a record.
+//! The strain at which a specimen begins to be stretched: slack and preload of a record.
 //!
 //! ```text
 //! y = y₀ + b ⟨x − x₀⟩ + c ⟨x − x₀⟩²,   ⟨x⟩ = max(x, 0)
 //! ```
 //!
-//! is fitted to the beginning of a loading branch by least squares, x₀ being searched for. The specimen was slack up to x₀ if this
-//! is far nearer than the same curve without a bend, and if the force before it does not rise: a material that is soft
-//! at first has no such bend. Where nothing was slack and a force acts at once, it is a preload, and the zero is where the curve,
-//! followed back, has no force: x₀ − y₀/b.
+//! is fitted to the beginning of a loading branch by least squares, with a search for x₀. The specimen was slack up
+//! to x₀ if this is far nearer than the same curve without a bend, and if the force before it does not rise: a
+//! material that is soft at first has no such bend. Where there is no slack and a force acts at once, it is a
+//! preload, and the zero is where the curve, extrapolated backwards, has no force: x₀ − y₀/b.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,15 +16,15 @@ use crate::statistics::{inverse, median};
 
 /// The beginning of a branch ends at this share of its largest stress.
 const BEGINNING: f64 = 0.2;
-/// Fewer rows than this tell nothing.
+/// Fewest rows that determine anything.
 const FEWEST: usize = 12;
 /// More rows are thinned.
 const MOST: usize = 400;
 /// Rows on either side of a bend.
 const BESIDE: usize = 5;
-/// How much better a bend has to be, by F.
+/// Least improvement by a bend, by F.
 const CLEARLY: f64 = 30.0;
-/// What is below this share of the largest stress is nothing.
+/// Values below this share of the largest stress count as zero.
 const NOTHING: f64 = 5e-4;
 
 /// A bend before the first row.
@@ -33,7 +33,7 @@ const START: f64 = -1e-9;
 /// What was found at the beginning of a branch; strains and stresses of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Beginning {
-    /// Stress rises from nothing at the first row.
+    /// Stress rises from zero at the first row.
     Clean,
     /// The specimen was slack.
     Slack {
@@ -41,17 +41,17 @@ pub enum Beginning {
         zero: f64,
         /// Its standard error.
         error: f64,
-        /// The stress that was read while nothing pulled.
+        /// The reading of the stress without load.
         offset: f64,
     },
     /// A stress acted at the first row.
     Preload {
-        /// The strain at which the curve, followed back, has no stress.
+        /// The strain at which the curve, extrapolated backwards, has no stress.
         zero: f64,
         /// The stress at the first row.
         stress: f64,
     },
-    /// The first stress is against the pull, as a load cell reads that was not set to zero.
+    /// The first stress is opposite to the pull, as in a load cell that was not set to zero.
     Offset(f64),
 }
 
@@ -81,7 +81,7 @@ fn bent(x: &[f64], y: &DVector<f64>, bend: f64) -> Option<Bent> {
 }
 
 impl Beginning {
-    /// Of a loading branch.
+    /// The beginning of a loading branch.
     pub fn of(strains: &[f64], stresses: &[f64]) -> Self {
         Self::search(strains, stresses).unwrap_or(Self::Clean)
     }
@@ -138,7 +138,7 @@ impl Beginning {
         [first, width]: [f64; 2],
         range: f64,
     ) -> Option<Self> {
-        // The first quarter alone: a curve that stiffens is no parabola.
+        // The first quarter alone: a curve that stiffens is not a parabola.
         let near = (x.len() / 4).max(FEWEST);
         let (x, y) = (&x[..near], y.rows(0, near).into_owned());
         let plain = bent(x, &y, START)?;
@@ -193,7 +193,7 @@ fn slack(x: &[f64], y: &DVector<f64>, plain: &Bent) -> Option<(f64, f64, f64)> {
         return None;
     }
     let (b, c) = (found.coefficients[1], found.coefficients[2]);
-    // A bend, and no parabola that begins there.
+    // A bend, rather than a parabola that begins there.
     if b < 0.3 * after {
         return None;
     }

@@ -1,4 +1,4 @@
-//! From grid to grid: the field on its way up.
+//! The climb of a field from grid to grid.
 
 use super::ratios::{Ratios, geometric_tail};
 use super::{
@@ -6,23 +6,23 @@ use super::{
 };
 use crate::error::{Error, SolveFault};
 
-/// What the iteration may leave on all grids but the finest, relative to what it may leave there.
+/// The iteration's error on all grids but the finest, relative to that allowed there.
 const ON_THE_WAY: f64 = 3.0;
-/// What the iteration may leave relative to the change that came, as a share of the tolerance: what it leaves is an estimate,
-/// too small by a factor of 1.6 at most on the plates measured.
+/// The estimated error of the iteration that is allowed relative to the change found, as a share of the tolerance:
+/// the estimate is too small by a factor of 1.6 at most on the plates measured.
 const SURE: f64 = 0.7;
-/// Times that the iteration goes on where the change that it brought is smaller than expected.
+/// Times that the iteration continues where its change is smaller than expected.
 const AGAIN: usize = 6;
 
-/// A field on its way up.
+/// A field during the climb.
 pub(super) struct Ascent {
     /// The grid that it has reached.
     index: usize,
     field: Field,
-    /// What this grid added to the field of the one before, where there was one, and its size.
+    /// The change of the field from the grid before to this one, where there was one, and its size.
     change: Option<Field>,
     size: f64,
-    /// How changes shrink from grid to grid.
+    /// The ratio by which changes shrink from grid to grid.
     ratio: f64,
     ratios: Ratios,
     iteration_error: f64,
@@ -32,7 +32,7 @@ pub(super) struct Ascent {
 }
 
 impl Ascent {
-    /// A corrected field on the first grid, what its correction left in mm, and what it took.
+    /// A corrected field on the first grid, the remaining error of its correction in mm, and its work.
     pub fn new(
         (index, ratios): (usize, Ratios),
         way: Way,
@@ -54,14 +54,14 @@ impl Ascent {
         }
     }
 
-    /// Notes that the field on a finer grid was found along a path of load steps, and what was left.
+    /// Records that the field on a finer grid was found along a path of load steps, and the remaining error.
     fn note_load_path(&mut self, left: f64, cells: [usize; 2]) {
         self.corrections = vec![self.size, left];
         self.iteration_error = left;
         self.way.by_load_path.push(cells);
     }
 
-    /// The field, and what the grid added to the one before, interpolated on the next grid.
+    /// The field, and its change from the grid before, interpolated on the next grid.
     fn onto_next(&self, levels: &[Level]) -> (Field, Option<Field>) {
         let [coarse, fine] = [self.index, self.index + 1].map(|index| &levels[index].grid);
         let change = self.change.as_ref();
@@ -71,8 +71,7 @@ impl Ascent {
         )
     }
 
-    /// The size of the change from the field before, interpolated, to one on a finer grid, and the ratio of changes
-    /// that it tells.
+    /// The size of the change from the interpolated field before to one on a finer grid, and the ratio of changes that follows.
     fn change_to(&self, level: &Level, field: &Field, interpolated: &Field) -> [f64; 2] {
         let mut change = field.clone();
         change.add(-1.0, interpolated);
@@ -80,7 +79,7 @@ impl Ascent {
         [size, self.ratios.told([self.size, size], self.ratio)]
     }
 
-    /// Takes the field of a finer grid over; `interpolated` is the one before on it.
+    /// Sets the field of a finer grid; `interpolated` is the one before on it.
     fn take(&mut self, level: &Level, field: Field, mut interpolated: Field) {
         [self.size, self.ratio] = self.change_to(level, &field, &interpolated);
         interpolated.scale(-1.0);
@@ -88,7 +87,7 @@ impl Ascent {
         (self.index, self.field, self.change) = (level.index, field, Some(interpolated));
     }
 
-    /// Whether it has a change, and all changes are those of one grid.
+    /// Whether a change is known, and all changes are between consecutive grids.
     fn follows_all_grids(&self) -> bool {
         self.change.is_some() && self.way.by_load_path.is_empty()
     }
@@ -135,7 +134,7 @@ impl Climb<'_> {
         })
     }
 
-    /// Whether the finest grids tell the discretisation error: see [`ClimbSolution::error_is_sure`].
+    /// Whether the finest grids determine the discretisation error: see [`ClimbSolution::error_is_sure`].
     fn tells_error(&self) -> bool {
         let [.., coarse, fine] = &self.levels[..] else {
             return false;
@@ -144,7 +143,7 @@ impl Climb<'_> {
         (0..2).all(|axis| fine[axis] == 2 * coarse[axis] && coarse[axis] >= 4 * self.scheme.side())
     }
 
-    /// One grid up, by the iteration: from the change that is expected, else from none.
+    /// Climbs one grid by the iteration: from the expected change, otherwise from zero change.
     fn step_up(&mut self, ascent: &mut Ascent) -> Result<(), SolveFault> {
         let index = ascent.index + 1;
         let (interpolated, change) = ascent.onto_next(&self.levels);
@@ -168,8 +167,8 @@ impl Climb<'_> {
         Ok(())
     }
 
-    /// Iterates on a grid until what is left is below a share of the discretisation error: first by the change that
-    /// is expected, then, on the finest grid, by the one that came.
+    /// Iterates on a grid until the remaining error is below a share of the discretisation error: first of that from
+    /// the expected change, then, on the finest grid, of that from the change found.
     fn settle(
         &mut self,
         index: usize,
@@ -201,7 +200,7 @@ impl Climb<'_> {
         Ok(reached)
     }
 
-    /// The next grid, or a finer one, by Newton's method along a path of load steps from rest.
+    /// Climbs to the next grid, or a finer one, by Newton's method along a path of load steps from rest.
     fn step_up_by_load_path(&mut self, ascent: &mut Ascent, stretch: f64) -> Result<(), Error> {
         let found = self.along_load_path(ascent.index + 1, stretch)?;
         self.write_operators(&found);

@@ -1,4 +1,4 @@
-//! How the corrections of an iteration fall, and what the last one leaves.
+//! The decrease of an iteration's corrections, and the error that the last one leaves.
 //!
 //! The iteration ends with the correction z = M⁻¹ r, where M⁻¹ is one V-cycle: an error e, K e = r, becomes
 //! (1 − M⁻¹ K) e. In the direction of the smallest eigenvalue θ of M⁻¹ K, which a cycle reaches least, |z| = θ |e|, so that
@@ -13,20 +13,20 @@
 //! T = tridiagonal:   Tⱼⱼ = 1/αⱼ + βⱼ₋₁/αⱼ₋₁,   Tⱼ,ⱼ₊₁ = √βⱼ/αⱼ
 //! ```
 //!
-//! and corrections that each fall by a factor ρ leave ρ/(1 − ρ) of the last one: the larger one counts, with room for
-//! what few iterations do not see. As one sheet under one stretch has much the same θ on all grids, the smallest one of the
-//! coarser grids, which take more iterations, counts too.
+//! and corrections that each fall by a factor ρ leave ρ/(1 − ρ) of the last one: the larger one counts, with a margin
+//! for what few iterations do not show. Because one sheet under one stretch has much the same θ on all grids, the
+//! smallest one of the coarser grids, which take more iterations, counts too.
 //!
 //! # References
 //! Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM (2003), § 6.7.3, doi:10.1137/1.9780898718003
 
 use nalgebra::DMatrix;
 
-/// Share of a correction that it leaves at least: half of it or a little more was measured where they fall fast.
+/// Least share of a correction that it leaves: half of it or a little more was measured where they fall fast.
 const LEFT: f64 = 0.6;
-/// Few iterations see the corrections fall too fast: by so much less than the error at most, on the plates measured.
+/// Margin for few iterations, in which the corrections fall faster than the error: the largest ratio on the plates measured.
 const ROOM: f64 = 1.5;
-/// The slowest fall of corrections and the smallest eigenvalue that are believed.
+/// The slowest fall of corrections and the smallest eigenvalue that are accepted.
 const SLOWEST: f64 = 0.95;
 const SMALLEST: f64 = 1.0 - SLOWEST;
 
@@ -35,7 +35,7 @@ const SMALLEST: f64 = 1.0 - SLOWEST;
 pub struct Fall {
     /// Root mean squares over the nodes in mm.
     pub corrections: Vec<f64>,
-    /// θ, as far as it is known.
+    /// θ, as far as known.
     pub weakest: f64,
     diagonal: Vec<f64>,
     beside: Vec<f64>,
@@ -55,8 +55,7 @@ impl Fall {
         }
     }
 
-    /// Takes the correction after a step of length α along a direction that holds a share β of the one before it; `share`
-    /// is the next direction's.
+    /// Adds the correction after a step of length α along a direction with a share β of the one before it; `share` is that of the next direction.
     pub fn push(&mut self, correction: f64, length: f64, share: f64) {
         self.corrections.push(correction);
         if !(length > 0.0 && share >= 0.0) {
@@ -74,7 +73,7 @@ impl Fall {
         self.corrections[0]
     }
 
-    /// What the last correction left, once it has been applied.
+    /// The error that the last correction leaves once it has been applied.
     pub fn left(&self) -> f64 {
         let last = self.corrections[self.corrections.len() - 1];
         let rate = self.rate().max(1.0 - self.weakest);
@@ -91,12 +90,12 @@ impl Fall {
         whole.max(last / before).min(SLOWEST)
     }
 
-    /// θ as an iteration that goes on from this one takes it: by Lanczos' matrix, or by how the corrections fell.
+    /// θ for an iteration that continues this one: from Lanczos' matrix, or from the fall of the corrections.
     pub fn slowest(&self) -> f64 {
         self.weakest.min(1.0 - self.rate())
     }
 
-    /// This iteration and one that went on from it, as one.
+    /// This iteration and its continuation as one.
     pub fn followed_by(mut self, mut more: Self) -> Self {
         self.corrections.append(&mut more.corrections);
         Self {

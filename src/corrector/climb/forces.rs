@@ -11,14 +11,14 @@ use crate::material::HyperelasticLaw;
 /// Elements that are evaluated together: their numbers stay in the nearest cache.
 const BLOCK: usize = 32;
 
-/// Numbers of double precision in the widest vector of today's machines.
+/// Numbers of double precision in the widest vector of present machines.
 const VECTOR: usize = 8;
 
-/// Columns of elements that one thread does in one go at least.
+/// Least number of columns of elements that one thread handles at a time.
 const COLUMNS_AT_ONCE: usize = 8;
 
-/// F(u) in N at all nodes, of elements with `NODES` nodes along each axis; at the grips these are the reactions.
-/// Whether all points are admissible, J > 0.
+/// F(u) in N at all nodes, from elements with `NODES` nodes along each axis; at the grips these are the reactions.
+/// Returns whether all points are admissible, J > 0.
 pub fn forces<const NODES: usize>(
     law: &dyn HyperelasticLaw,
     thickness: f64,
@@ -77,13 +77,13 @@ type Plate<'a, const NODES: usize> = (&'a dyn HyperelasticLaw, f64, &'a Grid, &'
 struct Columns {
     first: usize,
     count: usize,
-    /// Of each column.
+    /// The number of elements in each column.
     elements: usize,
 }
 
 /// Neighbours in a column that are evaluated together.
 struct Run {
-    /// The number of the column among its like.
+    /// The number of the column among those of its kind.
     place: usize,
     first: usize,
     count: usize,
@@ -113,11 +113,10 @@ impl Columns {
     }
 }
 
-/// Points of an element at most, and nodes.
+/// Most points of an element, and most nodes.
 const POINTS: usize = 9;
 
-/// A block of elements: numbers of one kind lie side by side, one for each element. On the stack: an evaluation
-/// allocates nothing.
+/// A block of elements: numbers of one kind lie side by side, one for each element. It is on the stack, so that an evaluation allocates nothing.
 struct Workspace<const NODES: usize> {
     /// Displacements of axis, line and node along Y.
     displacements: [f64; 2 * POINTS * BLOCK],
@@ -210,7 +209,7 @@ impl<const NODES: usize> Workspace<NODES> {
         admissible
     }
 
-    /// Takes the displacements of some elements of a column over.
+    /// Copies the displacements of some elements of a column.
     fn gather(&mut self, grid: &Grid, u: &Field, column: usize, run: &Run) {
         let order = NODES - 1;
         let lanes = run.lane..run.lane + run.count;
@@ -234,7 +233,7 @@ impl<const NODES: usize> Workspace<NODES> {
         }
     }
 
-    /// Repeats the last of some elements up to a whole vector.
+    /// Repeats the last of some elements to fill a whole vector.
     fn pad(&mut self, count: usize, padded: usize) {
         let displacements = self.displacements.chunks_exact_mut(BLOCK);
         let kinds = displacements.take(2 * NODES * NODES);
@@ -363,7 +362,7 @@ impl<const NODES: usize> WithSimd for NodalForces<'_, NODES> {
     }
 }
 
-/// What each point gives to each node, from what each node gives to each point: the transpose, weighted.
+/// The contribution of each point to each node, from that of each node to each point: the transpose, weighted.
 #[inline(always)]
 fn weighted<const NODES: usize>(
     weights: &[f64; NODES],

@@ -1,9 +1,9 @@
-//! A plate's grid: where its nodes are, and fields on them.
+//! A plate's grid: the coordinates of its nodes, and fields on them.
 
 use crate::mesh;
 use crate::multigrid::{Interpolation, Lines};
 
-/// Where the energy of an element is sampled along one axis, and the functions there.
+/// The points at which the energy of an element is sampled along one axis, and the functions there.
 ///
 /// ```text
 /// one cell         two nodes along each axis, sampled at the corners or at 2 × 2 Gauss points
@@ -15,7 +15,7 @@ pub struct Rule<const NODES: usize> {
     pub weights: [f64; NODES],
     /// Values of the functions: point, node.
     pub values: [[f64; NODES]; NODES],
-    /// Their derivatives by the element's unit coordinate.
+    /// Their derivatives with respect to the element's unit coordinate.
     pub derivatives: [[f64; NODES]; NODES],
 }
 
@@ -60,7 +60,7 @@ impl Rule<3> {
     }
 }
 
-/// Places and lengths that differ by less are the same.
+/// Places and lengths that differ by less are equal.
 const SAME: f64 = 1e-9;
 
 /// The nodes of a plate along both axes.
@@ -128,7 +128,7 @@ impl Grid {
         })
     }
 
-    /// The nodes along both axes that a coarser grid has too, where they are at least a third of the coarser grid's nodes.
+    /// The nodes along both axes that a coarser grid has too, if they are at least a third of the coarser grid's nodes.
     pub fn shared_with(&self, coarser: &Self) -> Option<[Vec<usize>; 2]> {
         let shared = [0, 1].map(|axis| -> Vec<usize> {
             let (own, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);
@@ -166,7 +166,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// Zeros.
+    /// A field of zeros.
     pub fn zeros(grid: &Grid) -> Self {
         let nodes = grid.nodes();
         Self {
@@ -175,7 +175,7 @@ impl Field {
         }
     }
 
-    /// From ux, uy of node after node.
+    /// A field from ux, uy of node after node.
     pub fn of_nodes(grid: &Grid, values: &[f64]) -> Self {
         let mut field = Self::zeros(grid);
         for (node, value) in values.chunks_exact(2).enumerate() {

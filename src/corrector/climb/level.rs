@@ -8,10 +8,10 @@ use crate::corrector::DifferenceScheme;
 use crate::material::HyperelasticLaw;
 use crate::multigrid::{Multigrid, Vector};
 
-/// Iterations of a linear system at most.
+/// Most iterations of a linear system.
 const LINEAR_ITERATIONS: usize = 200;
 
-/// Size of the step of a difference of F relative to the displacements.
+/// Step size of a difference of F, relative to the displacements.
 const DIFFERENCE: f64 = 1e-7;
 
 /// The sheet whose equation is solved.
@@ -21,7 +21,7 @@ pub struct Sheet<'a> {
     pub law: &'a dyn HyperelasticLaw,
     /// Thickness in mm.
     pub thickness: f64,
-    /// How its differences are taken.
+    /// Its difference scheme.
     pub scheme: DifferenceScheme,
 }
 
@@ -49,9 +49,9 @@ pub struct Inverted;
 pub struct Level {
     /// The grid.
     pub grid: Grid,
-    /// Which of the multigrid's grids it is.
+    /// The number of the grid among the multigrid's grids.
     pub index: usize,
-    /// The nodes at which what the grid adds is measured; all where there are none.
+    /// The nodes at which the change from the grid before is measured; all nodes where there are none.
     pub shared: Option<[Vec<usize>; 2]>,
     /// F at the field that was evaluated last, or before the last correction of an iteration.
     pub residual: Field,
@@ -61,7 +61,7 @@ pub struct Level {
     correction: Field,
 }
 
-/// What an iteration did.
+/// The work of an iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Evaluations of F on this grid.
@@ -81,17 +81,17 @@ impl Work {
     }
 }
 
-/// How far an iteration came.
+/// The result of an iteration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Iteration {
-    /// Its corrections: the first says how far the start was away, the last one has been applied.
+    /// Its corrections: the first shows how far away the start was, the last one has been applied.
     pub fall: Fall,
-    /// What it took.
+    /// Its work.
     pub work: Work,
 }
 
 impl Iteration {
-    /// This iteration and one that went on from it, as one.
+    /// This iteration and its continuation as one.
     pub fn followed_by(mut self, more: Self) -> Self {
         self.work.add(more.work);
         Self {
@@ -101,18 +101,18 @@ impl Iteration {
     }
 }
 
-/// When an iteration ends.
+/// The stopping criteria of an iteration.
 pub struct Ending<'a> {
-    /// Iterations at most.
+    /// Most iterations.
     pub most: usize,
-    /// The smallest eigenvalue of the preconditioned operator that coarser grids have told: see [`Fall`].
+    /// The smallest eigenvalue of the preconditioned operator found on coarser grids: see [`Fall`].
     pub weakest: f64,
-    /// Whether the first correction and what the last one left are good enough.
+    /// Whether the first correction and the remaining error are good enough.
     pub enough: &'a dyn Fn(f64, f64) -> bool,
 }
 
 impl Level {
-    /// Vectors for the last one of some grids, coarse to fine.
+    /// The vectors for the last one of some grids, coarse to fine.
     pub fn new(grids: &[Grid]) -> Self {
         let index = grids.len() - 1;
         let grid = grids[index].clone();
@@ -130,14 +130,14 @@ impl Level {
         }
     }
 
-    /// The size of what the grid adds to the one before: the root mean square over the nodes that both have, where grids are graded:
-    /// elsewhere interpolation adds its own error, which can be many times as large.
+    /// The size of the change from the grid before. Where grids are graded it is the root mean square over the nodes
+    /// that both have, because interpolation adds its own error elsewhere, which can be many times as large.
     pub fn size_of(&self, change: &Field) -> f64 {
         let shared = self.shared.as_ref();
         shared.map_or_else(|| change.size(), |shared| change.size_at(shared))
     }
 
-    /// F(u) in N at all nodes into [`Self::residual`]: the reactions at the grips.
+    /// Writes F(u) in N at all nodes to [`Self::residual`]; at the grips these are the reactions.
     ///
     /// # Errors
     /// [`Inverted`].
@@ -145,7 +145,7 @@ impl Level {
         sheet.forces(&self.grid, u, &mut self.residual)
     }
 
-    /// Writes the operator at `u`.
+    /// Assembles the operator at `u`.
     ///
     /// # Errors
     /// [`Inverted`].
@@ -161,7 +161,7 @@ impl Level {
     }
 
     /// Moves the free nodes of `u` towards F(u) = 0 by conjugate gradients, whose products with the Jacobian are
-    /// differences of F and whose preconditioner is one V-cycle with the operators written before.
+    /// differences of F and whose preconditioner is one V-cycle with the operators assembled before.
     ///
     /// # Errors
     /// [`Inverted`] when `u` or every step from it turns a cell inside out.
@@ -247,7 +247,7 @@ impl Level {
     }
 
     /// Solves K x = b at the free nodes with x = 0 at the grips, K being the Jacobian of F at `u`, by the same iteration as
-    /// [`Self::iterate`]: x, which holds b − K x at the grips, and what it took; nothing where K is not positive definite.
+    /// [`Self::iterate`]: returns x, with b − K x at the grips, and the work; `None` where K is not positive definite.
     ///
     /// # Errors
     /// [`Inverted`] when `u` is not admissible.
@@ -307,7 +307,7 @@ impl Level {
         Ok(None)
     }
 
-    /// Goes along the direction to where the residual is orthogonal to it; how far.
+    /// Goes along the direction until the residual is orthogonal to it; returns how far.
     fn step(&mut self, sheet: Sheet, u: &mut Field, work: &mut Work) -> Result<f64, Inverted> {
         let free = u.free();
         let mut length = 1.0;

@@ -1,9 +1,9 @@
-//! One grid alone, slowly and safely: Newton's method with a sparse factor along a path of load steps.
+//! One grid alone, slow and robust: Newton's method with a sparse factor along a path of load steps.
 //!
-//! The equation is that of [`forces`](super::forces) down to the last term: the same energy, sampled at the same points. What
-//! the climb's iteration lacks is here: a line search by the energy that keeps J > 0 everywhere, tangents that are
-//! shifted where they are not positive definite, load steps that are halved where they fail, and a diagnosis of why a
-//! path ends.
+//! The equation is exactly that of [`forces`](super::forces): the same energy, sampled at the same points. In
+//! contrast to the climb's iteration there are a line search by the energy that keeps J > 0 everywhere, tangents that
+//! are shifted where they are not positive definite, load steps that are halved where they fail, and a diagnosis of
+//! why a path ends.
 
 use super::grid::{Field, Grid, Rule};
 use super::start::contracted_stretch;
@@ -16,7 +16,7 @@ use crate::solve::{
     Tangent, compliance, follow,
 };
 
-/// The residual that Newton's method leaves, relative to the largest reaction.
+/// The remaining residual of Newton's method, relative to the largest reaction.
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-9,
     max_iterations: 60,
@@ -24,15 +24,15 @@ const NEWTON: NewtonSettings = NewtonSettings {
 
 /// An equilibrium on one grid.
 pub(super) struct Equilibrium {
-    /// Which of the climb's grids it is on.
+    /// The number of its grid among those of the climb.
     pub index: usize,
     /// The displacements in mm.
     pub field: Field,
-    /// What Newton's method left, in mm: its relative residual as a share of the displacements.
+    /// The remaining error of Newton's method in mm: its relative residual as a share of the displacements.
     pub left: f64,
 }
 
-/// A grid's plate between its grips; the load factor is the share of the stretch, so that its sign does not matter.
+/// A grid's plate between its grips; the load factor is the share of the stretch, so that the sign of the stretch does not matter.
 struct GridLoading<'a> {
     problem: &'a ClampedPlate,
     grid: &'a Grid,
@@ -80,7 +80,7 @@ impl Loading for GridLoading<'_> {
 
     /// The state before, scaled with the grip's motion, or the contracted stretch.
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
-        // Rest cannot be scaled.
+        // The state at rest cannot be scaled.
         Some(match previous.filter(|own| own.factor != 0.0) {
             Some(previous) => {
                 let ratio = factor / previous.factor;
@@ -109,7 +109,7 @@ impl Loading for GridLoading<'_> {
 }
 
 impl Climb<'_> {
-    /// The equilibrium on the first grid, from a given one upward, on which it can be found.
+    /// The equilibrium on the first grid, from a given one upward, on which one can be found.
     ///
     /// # Errors
     /// [`Error::Solve`] with the reason on the finest grid.
@@ -133,8 +133,8 @@ impl Climb<'_> {
         })
     }
 
-    /// Writes the operators of its grid and of all coarser ones at an equilibrium. Where that cannot be done, what is finer is
-    /// iterated with those of before, or found along a path of load steps, too.
+    /// Assembles the operators of its grid and of all coarser ones at an equilibrium. Where that fails, finer grids
+    /// are iterated with the earlier operators, or solved along a path of load steps too.
     pub(super) fn write_operators(&mut self, found: &Equilibrium) {
         self.linearise_below(found.index, &found.field).ok();
     }

@@ -13,7 +13,7 @@ impl Climb<'_> {
         self.grid().mesh(self.scheme.side())
     }
 
-    /// A climbed field, ready to be asked at any point of the plate.
+    /// A climbed field, to be evaluated at any point of the plate.
     pub fn deformed(&self, climbed: &ClimbSolution) -> DeformedSheet {
         let law = Arc::clone(&self.problem.law);
         DeformedSheet::new(self.mesh(), climbed.field.to_nodes(), law)

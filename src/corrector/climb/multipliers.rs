@@ -8,7 +8,7 @@ use crate::problem::ClampedPlate;
 const TOLERANCE: f64 = 1e-7;
 
 impl Climb<'_> {
-    /// ψ of the correction of ū to u, as a field of the nodes:
+    /// ψ of the correction of ū to u, as a field at the nodes:
     ///
     /// ```text
     /// Bᵀ ψ = ū − u,   B = [K; 1 at the grips]
@@ -35,7 +35,7 @@ impl Climb<'_> {
         found.map(|field| field.to_nodes()).map_err(fault)
     }
 
-    /// By the iteration, or by a sparse factor where it does not end.
+    /// By the iteration, or by a sparse factor where the iteration does not converge.
     fn solve_multipliers(&mut self, data: &[f64], corrected: &Field) -> Result<Field, SolveFault> {
         let mut difference = Field::of_nodes(self.grid(), data);
         difference.add(-1.0, corrected);

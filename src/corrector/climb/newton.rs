@@ -1,4 +1,4 @@
-//! Plain Newton on the finest grid alone, with the same multigrid: what the climb is compared with.
+//! Plain Newton on the finest grid alone, with the same multigrid: the method that the climb is compared with.
 
 use super::{Climb, ClimbSolution, Field, Inverted, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
@@ -10,8 +10,8 @@ const STEPS: usize = 30;
 const HALVINGS: usize = 10;
 
 impl Climb<'_> {
-    /// Corrects at one stretch by Newton's method from the affine stretch, on the finest grid from the first step on:
-    /// no springs, no change from a coarser one.
+    /// Corrects at one stretch by Newton's method from the affine stretch, on the finest grid from the first step on,
+    /// without springs and without a change from a coarser grid.
     ///
     /// ```text
     /// K(u) d = −F(u) at the free nodes,   u ← u + d,   until |d| ≤ tolerance |u − affine|
@@ -75,7 +75,7 @@ impl Climb<'_> {
         })
     }
 
-    /// d with K d = −F; nothing at the grips.
+    /// d with K d = −F; zero at the grips.
     fn newton_step(&mut self, field: &Field, tolerance: f64) -> Result<(Field, Work), SolveFault> {
         let finest = self.levels.len() - 1;
         self.linearise_below(finest, field)?;

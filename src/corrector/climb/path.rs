@@ -7,10 +7,10 @@ use crate::corrector::extrapolation::{Known, rate_shares, value_shares};
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
 
-/// Cycles too many after which the operators are written anew.
+/// Excess cycles after which the operators are assembled anew.
 const BEYOND: usize = 2;
 
-/// Where both grips are.
+/// The positions of both grips.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grips {
     /// The grip at X = 0.
@@ -28,9 +28,9 @@ impl fmt::Display for Grips {
 }
 
 impl Climb<'_> {
-    /// Corrects at many stretches, one after the other: the first and the last by a climb, which also tell the
-    /// discretisation error, the others from the states before them, extrapolated, with the operators of an
-    /// earlier state as long as they serve.
+    /// Corrects at many stretches, one after the other: the first and the last by a climb, which also gives the
+    /// discretisation error, the others from the states before them, extrapolated, with the operators of an earlier
+    /// state as long as they serve.
     ///
     /// # Errors
     /// [`Error::Solve`] with the stretch at which no field was found.
@@ -55,8 +55,8 @@ impl Climb<'_> {
         told(&first_state);
         let mut known = Known::none();
         known.take(*first, first_state.field);
-        // Cycles beyond those that fresh operators, which are of linear cells, take: as many as an element's side has
-        // cells. Writing the operators anew costs about as much as a few of them.
+        // Cycles beyond those that fresh operators, which are those of linear cells, take: as many as an element's
+        // side has cells. Assembling the operators anew costs about as much as a few of them.
         let mut beyond = usize::MAX;
         for stretch in between.iter().copied() {
             let anew = beyond > BEYOND;
@@ -82,7 +82,7 @@ impl Climb<'_> {
         Ok(())
     }
 
-    /// The state at one stretch from those before, extrapolated; the operators are written anew where they no longer serve.
+    /// The state at one stretch from those before, extrapolated; the operators are assembled anew where they no longer serve.
     fn near_known(
         &mut self,
         known: &Known<Field>,
@@ -112,8 +112,7 @@ impl Climb<'_> {
         ((along + across) / self.grid().nodes() as f64).sqrt()
     }
 
-    /// Corrects a field that is near the result, with the operators written before, to a share of its
-    /// discretisation error.
+    /// Corrects a field that is near the result, with the operators assembled before, to a share of its discretisation error.
     fn near(&mut self, field: &mut Field, error: f64) -> Result<Iteration, SolveFault> {
         self.check_operators()?;
         let finest = self.levels.len() - 1;
@@ -138,8 +137,8 @@ impl Climb<'_> {
     }
 
     /// The force on the moving grip in N from the F that the last iteration left, r = F(u + z): r · w with the
-    /// field's rate w by the stretch. Equilibrium is kept along the path, K w = 0 between the grips: the correction z,
-    /// which is not in r yet, does not change r · w, and no evaluation is needed.
+    /// field's rate w with respect to the stretch. Equilibrium is kept along the path, K w = 0 between the grips: the
+    /// correction z, which r does not include yet, does not change r · w, and no evaluation is needed.
     fn force_along(&self, rate: &Field) -> f64 {
         let residual = &self.levels[self.levels.len() - 1].residual;
         residual.product(rate) / self.problem.size[0]
@@ -175,7 +174,7 @@ fn combine(known: &[Field], shares: &[f64]) -> Field {
     field
 }
 
-/// A plate in the hand: its grips are moved, the corrected field follows.
+/// A plate moved by hand: its grips are moved, and the corrected field follows.
 #[derive(Debug)]
 pub struct Interactive<'a> {
     climb: Climb<'a>,
@@ -207,23 +206,22 @@ impl<'a> Interactive<'a> {
         })
     }
 
-    /// The corrected field and the forces at the grips as they are.
+    /// The present corrected field and forces at the grips.
     pub fn state(&self) -> &ClimbSolution {
         &self.climbed
     }
 
-    /// The corrected field as it is, ready to be asked at any point of the plate.
+    /// The present corrected field, to be evaluated at any point of the plate.
     pub fn deformed(&self) -> DeformedSheet {
         self.climb.deformed(&self.climbed)
     }
 
-    /// Where the grips are.
+    /// The positions of the grips.
     pub fn grips(&self) -> Grips {
         self.grips
     }
 
-    /// Moves the grips by a few mm or degrees; the field between them follows. A motion that is too large for
-    /// one go is made in parts.
+    /// Moves the grips by a few mm or degrees; the field between them follows. A motion that is too large for one step is divided.
     ///
     /// # Errors
     /// [`Error::Solve`] when the field cannot follow; the state before is kept.
@@ -270,7 +268,7 @@ impl<'a> Interactive<'a> {
         Ok(ClimbSolution::near(field, force, error, reached))
     }
 
-    /// Moves the grips by a share of the way that is left, and the nodes between them in proportion.
+    /// Moves the grips by a share of the remaining way, and the nodes between them in proportion.
     fn impose(&self, grips: Grips, share: f64, field: &mut Field) {
         let grid = self.climb.grid();
         let [length, width] = self.climb.problem.size;

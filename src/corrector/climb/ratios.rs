@@ -1,27 +1,27 @@
-//! How much smaller what a grid adds is than what the one before added.
+//! The ratio of the change on a grid to that on the grid before.
 
 use crate::corrector::DifferenceScheme;
 
-/// How changes shrink from grid to grid, or from mesh to mesh.
+/// The ratios by which changes shrink from grid to grid, or from mesh to mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratios {
-    /// Where two changes are not known yet.
+    /// The ratio where two changes are not known yet.
     pub first: f64,
-    /// Those that are believed.
+    /// The range of ratios that are accepted.
     pub believed: [f64; 2],
 }
 
 impl Ratios {
-    /// Where nothing is known of them.
+    /// The ratios where nothing is known about the cells.
     pub const MEASURED: Self = Self {
         first: 1.0 / 3.0,
         believed: [0.15, 0.7],
     };
 
-    /// On cells that are graded by g errors fall with h^(p + 1), but beside a clamped corner, where the field goes like r^α, with
-    /// h^(2 α g) at most. Coarse grids tell that worse than theory does: what they tell is believed near it only. With 2 α = 1.6, errors of
-    /// 1,395 plates of three laws, four proportions, both schemes and gradings of 1.3 to 3 were told within a factor of two but for four to
-    /// twelve, and never by a factor of more than 2.4.
+    /// On cells that are graded by g errors fall with h^(p + 1), but beside a clamped corner, where the field goes
+    /// like r^α, at most with h^(2 α g). Ratios on coarse grids are less accurate than theory: they are accepted only
+    /// near it. With 2 α = 1.6, errors of 1,395 plates of three laws, four proportions, both schemes and gradings of
+    /// 1.3 to 3 were estimated within a factor of two but for four to twelve, and never by a factor of more than 2.4.
     pub fn of_graded(scheme: DifferenceScheme, grading: f64) -> Self {
         let order = (scheme.side() + 1) as f64;
         let ratio = 0.5_f64.powf(order.min(1.6 * grading));
@@ -31,8 +31,7 @@ impl Ratios {
         }
     }
 
-    /// The ratio that the size of a change tells after that of the one before, which is not a number where there was none; then the
-    /// ratio stays what it was.
+    /// The ratio of the size of a change to that of the one before, which is NaN where there was none; the ratio is then unchanged.
     pub fn told(&self, [before, size]: [f64; 2], ratio: f64) -> f64 {
         let [least, most] = self.believed;
         match before.is_nan() {
@@ -42,7 +41,7 @@ impl Ratios {
     }
 }
 
-/// The sum of d q + d q² + …: what all finer grids would add after a change d.
+/// The sum of d q + d q² + …: the change that all finer grids would add after a change d.
 pub fn geometric_tail(change: f64, ratio: f64) -> f64 {
     change * ratio / (1.0 - ratio)
 }

@@ -1,7 +1,6 @@
-//! Where the climb begins: a field on a coarse grid, near enough to be corrected there.
+//! The start of the climb: a field on a coarse grid, near enough to be corrected there.
 //!
-//! The corrector does not care where ū came from, so that several starts are tried in a fixed order until one can be
-//! corrected: see [`Start`].
+//! The corrector does not depend on the origin of ū, so that several starts are tried in a fixed order until one can be corrected: see [`Start`].
 
 use super::ascent::Ascent;
 use super::way::{Start, Way};
@@ -16,12 +15,12 @@ pub(super) struct First {
     pub field: Field,
     /// See [`Way::away`].
     away: f64,
-    /// What the correction left, root mean square over the nodes in mm.
+    /// The remaining error of the correction, root mean square over the nodes in mm.
     left: f64,
     work: Work,
 }
 
-/// The springs are a first guess, which the correction changes by some hundredths: to be nearer to their equilibrium is lost time.
+/// The springs are a first guess, which the correction changes by some hundredths: a more exact equilibrium of them would waste time.
 const SPRINGS: NewtonSettings = NewtonSettings {
     tolerance: 5e-2,
     max_iterations: 60,
@@ -30,10 +29,10 @@ const SPRINGS: NewtonSettings = NewtonSettings {
 /// Load steps that are tried where the springs are too far away.
 const LOAD_STEPS: [usize; 4] = [2, 4, 8, 16];
 
-/// Cells of a lattice of springs at most: more would take longer than what follows.
+/// Most cells of a lattice of springs: more would take longer than the steps that follow.
 const MOST_CELLS: usize = 10_000;
 
-/// The start is far away, so that the first grid is linearised twice: what the first iteration may leave of its first correction.
+/// The start is far away, so that the first grid is linearised twice: the error of the first iteration relative to its first correction.
 const FIRST_TOLERANCE: f64 = 0.05;
 
 impl Climb<'_> {
@@ -71,7 +70,7 @@ impl Climb<'_> {
         Ascent::new(begin, way, first.field, first.left, work)
     }
 
-    /// The corrected field from one start on the first grid; nothing where it cannot be corrected.
+    /// The corrected field from one start on the first grid; `None` where it cannot be corrected.
     pub(super) fn correct_from(&mut self, start: Start, stretch: f64) -> Option<First> {
         let (guess, steps) = match start {
             Start::Springs => (self.springs(stretch, false)?, 1),
@@ -111,7 +110,7 @@ impl Climb<'_> {
         })
     }
 
-    /// Corrects on the first grid; what is left in mm, and what it took.
+    /// Corrects on the first grid; returns the remaining error in mm, and the work.
     fn correct_start(&mut self, field: &mut Field) -> Result<(f64, Work), SolveFault> {
         let alone = self.start + 1 == self.levels.len();
         let tolerance = if alone {
@@ -131,10 +130,10 @@ impl Climb<'_> {
         Ok((left, work))
     }
 
-    /// The springs in equilibrium, at the nodes of the grid at which the climb begins; nothing where they find none.
+    /// The springs in equilibrium, at the nodes of the grid at which the climb begins; `None` where they have no equilibrium.
     ///
-    /// The lattice has about half as many cells as the grid along both axes: what it adds to them is little beside what springs
-    /// are wrong by. Its cells have a shape that springs can make isotropic.
+    /// The lattice has about half as many cells as the grid along both axes: the error of interpolation is small
+    /// compared with that of springs. Its cells have a shape that springs can make isotropic.
     fn springs(&self, stretch: f64, area_term: bool) -> Option<Field> {
         let grid = &self.levels[self.start].grid;
         let halves = grid.cells().map(|cells| cells.div_ceil(2).max(2));
@@ -153,7 +152,7 @@ impl Climb<'_> {
     }
 }
 
-/// The given cells where the ratio of their sides is one that springs bear, else about as many that are nearly square.
+/// The given cells where the ratio of their sides suits springs, otherwise about as many that are nearly square.
 fn sound_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
     let [hx, hy] = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
     if (hx / hy).max(hy / hx) <= LARGEST_ASPECT {

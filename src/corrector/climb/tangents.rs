@@ -1,4 +1,4 @@
-//! The linearised equation on a grid: the stiffness of each cell from the tangent in its middle.
+//! The linearised equation on a grid: the stiffness of each cell from the tangent at its middle.
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::COMPONENTS;
@@ -9,7 +9,7 @@ use super::grid::{Field, Grid};
 /// Cells that are evaluated together.
 const BLOCK: usize = 64;
 
-/// Writes the operator of a grid at the displacements `u`; whether all cells are admissible, J > 0.
+/// Assembles the operator of a grid at the displacements `u`; returns whether all cells are admissible, J > 0.
 pub fn linearise(
     law: &dyn HyperelasticLaw,
     thickness: f64,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a corrected field was first made from, in the order in which it is tried.
+/// The first field from which a corrected field was made, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// Springs alone, in equilibrium on a coarse lattice.
@@ -11,7 +11,7 @@ pub enum Start {
     SpringsWithAreaTerm,
     /// Springs at the first of so many equal load steps.
     LoadSteps(usize),
-    /// The affine stretch, contracted across away from the grips.
+    /// The affine stretch, contracted across the plate away from the grips.
     ContractedStretch,
     /// Newton's method with a sparse factor along a path of load steps.
     LoadPath,
@@ -22,7 +22,7 @@ pub enum Start {
 }
 
 impl Start {
-    /// Whether springs had a part in it.
+    /// Whether springs took part in it.
     pub fn by_springs(self) -> bool {
         matches!(
             self,
@@ -48,20 +48,19 @@ impl fmt::Display for Start {
 /// How a climb came to its field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// What the field on the first grid was made from.
+    /// The start of the field on the first grid.
     pub start: Start,
     /// Cells of the first grid.
     pub cells: [usize; 2],
-    /// How far the start was from the corrected field on the first grid, root mean square over its nodes in mm, in the
-    /// first load step; not a number where nothing was corrected.
+    /// The distance of the start from the corrected field on the first grid, root mean square over its nodes in mm,
+    /// in the first load step; NaN where nothing was corrected.
     pub away: f64,
-    /// Cells of the finer grids on which the iteration found no field, so that Newton's method along a path of load steps
-    /// was taken there.
+    /// Cells of the finer grids on which the iteration found no field, so that Newton's method along a path of load steps was used there.
     pub by_load_path: Vec<[usize; 2]>,
 }
 
 impl Way {
-    /// From one start on a grid with so many cells.
+    /// The way from one start on a grid with so many cells.
     pub(super) fn from_start(start: Start, cells: [usize; 2]) -> Self {
         Self {
             start,

@@ -1,4 +1,4 @@
-//! How the edges of a specimen move, and the bodies that hold them.
+//! The motion of a specimen's edges, and the bodies that hold them.
 
 mod bodies;
 mod edge_displacements;

@@ -1,4 +1,4 @@
-//! The equations that the nearest field satisfies, and how their parameters move it.
+//! The equations that the nearest field satisfies, and their dependence on the parameters.
 
 use std::sync::Arc;
 
@@ -40,17 +40,17 @@ pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
 pub struct Equations<'a> {
     pub task: Task<'a>,
     pub motion: EdgeMotion,
-    /// What holds the sheet.
+    /// The bodies that hold the sheet.
     pub bodies: Vec<Body>,
     pub law: Arc<dyn HyperelasticLaw>,
     pub energy: SheetEnergy,
     pub newton: Newton,
-    /// Forces on the interior, where they are wanted, and their present values in N.
+    /// Forces on the interior, where requested, and their present values in N.
     pub body: Option<BodyForce>,
     pub forces: Vec<f64>,
 }
 
-/// Where the search is.
+/// A state of the search.
 #[derive(Clone, Debug)]
 pub struct Place {
     pub parameters: Vec<f64>,
@@ -106,7 +106,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// A smooth field near the data, in equilibrium, and the markers that it trusts.
+    /// A smooth field near the data, in equilibrium, and its trust of the markers.
     pub fn start(&mut self) -> Result<(Place, Vec<f64>), Error> {
         let points = self.task.observations.points();
         let mut last = None;
@@ -146,7 +146,7 @@ impl<'a> Equations<'a> {
         }))
     }
 
-    /// The parameters with which the edges come nearest to a field.
+    /// The parameters with which the edges are nearest to a field.
     pub fn nearest_parameters(&self, field: &[f64]) -> Vec<f64> {
         const ITERATIONS: usize = 8;
         const RIDGE: f64 = 1e-9;
@@ -175,7 +175,7 @@ impl<'a> Equations<'a> {
         p
     }
 
-    /// Brings the inner nodes into equilibrium while the edges stay; the residual.
+    /// Brings the inner nodes into equilibrium while the edges stay; returns the residual.
     pub fn settle(
         &mut self,
         place: &mut Place,
@@ -197,7 +197,7 @@ impl<'a> Equations<'a> {
         Ok(residual)
     }
 
-    /// Works with the energy and the forces on the interior.
+    /// Calls `work` with the energy and the forces on the interior.
     pub fn with_potential<T>(&mut self, work: impl FnOnce(&mut Newton, &dyn Potential) -> T) -> T {
         match self.body {
             Some(_) => {
@@ -208,7 +208,7 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// What is held down: the roughness of the edges' motion, and the forces on the interior.
+    /// The penalised terms: the roughness of the edges' motion, and the forces on the interior.
     pub fn priors(&self, parameters: &[f64]) -> Vec<Roughness> {
         let mut priors = self.motion.roughness(parameters);
         for prior in &mut priors {
@@ -219,14 +219,14 @@ impl<'a> Equations<'a> {
         priors
     }
 
-    /// The values of the law's parameters among all.
+    /// The values of the law's parameters among all parameters.
     pub fn law_values<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
         let first = self.motion.parameters();
         let regressed = self.task.knowledge.law.as_ref();
         &parameters[first..first + regressed.map_or(0, |law| law.parameters().len())]
     }
 
-    /// Takes the law and the forces on the interior with the parameters.
+    /// Sets the law and the forces on the interior from the parameters.
     fn take(&mut self, parameters: &[f64]) {
         if let Some(body) = &self.body {
             let last = &parameters[parameters.len() - body.columns().len()..];
@@ -257,7 +257,7 @@ impl<'a> Equations<'a> {
         (0..values.len()).map(pair).collect()
     }
 
-    /// ∂F/∂θ of each parameter θ of the law, at held unknowns too.
+    /// ∂F/∂θ for each parameter θ of the law, including held unknowns.
     pub fn law_slopes(&self, parameters: &[f64], field: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let mut slopes = Vec::new();
         for (laws, width) in self.neighbours(parameters) {
@@ -282,7 +282,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// Looks at the equilibrium of a place, and restores it where it is lost.
+    /// Checks the equilibrium of a state, and restores it where it is lost.
     pub fn balance(&mut self, place: &mut Place) -> Result<(), Error> {
         const LOST: f64 = 1e-2;
         self.take(&place.parameters);
@@ -301,7 +301,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// A fault of the search.
+/// A fault of the search as an error.
 pub fn solve(fault: SolveFault) -> Error {
     Error::Solve {
         model: "corrector".into(),

@@ -1,4 +1,4 @@
-//! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
+//! The forces on the edges of an estimated field, the parameters of its law, and how both depend on the position of the edges.
 
 use super::edges::Body;
 use super::equations::Grip;
@@ -13,7 +13,7 @@ use crate::solve::vector::dot;
 use crate::statistics::Estimate;
 
 impl NearestField<'_> {
-    /// The force of a body along an axis, and its derivatives by p; `slopes` are those of F by the law's parameters.
+    /// The force of a body along an axis, and its derivatives with respect to p; `slopes` are those of F with respect to the law's parameters.
     pub(super) fn grip_of(
         &self,
         (body, axis): (usize, usize),
@@ -26,7 +26,7 @@ impl NearestField<'_> {
         Ok((grip, row))
     }
 
-    /// The forces of the bodies that hold the sheet; with the mesh's own error, if it is known.
+    /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known.
     pub fn forces(&self, reach: f64, own: Option<&MeshError>) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
@@ -73,7 +73,8 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces beside those of the field, which the picture's scale moves besides; before the covariance holds that. Those that a parameter of the law follows say nothing.
+    /// The measured forces beside those of the field, which also depend on the picture's scale; called before the covariance includes the scale.
+    /// Forces that a parameter of the law follows are no check.
     pub(super) fn force_checks(
         &self,
         own: Option<&MeshError>,
@@ -130,9 +131,9 @@ impl NearestField<'_> {
         sum[0].hypot(sum[1]) / largest.max(f64::MIN_POSITIVE)
     }
 
-    /// The edges that the data have refused as free though hardly any force can be on them, by the forces with their intervals.
+    /// The edges that the data have refused as free though hardly any force can act on them, according to the forces with their intervals.
     pub(super) fn idle(&self, edges: &[Edge], forces: &[EdgeForce]) -> Vec<bool> {
-        /// Half an interval over the largest force.
+        /// Half an interval relative to the largest force.
         const SMALL: f64 = 0.05;
         let size = |force: &EdgeForce| force.force[0].value.hypot(force.force[1].value);
         let most = forces.iter().map(size).fold(0.0, f64::max);
@@ -150,7 +151,7 @@ impl NearestField<'_> {
         edges.iter().enumerate().map(idle).collect()
     }
 
-    /// ∮ Ψ ds/∫ Ψ dA along the free edges, and those that are idle.
+    /// ∮ Ψ ds/∫ Ψ dA along the free edges and the idle ones.
     pub(super) fn growth(&self, edges: &[Edge], idle: &[bool]) -> f64 {
         let mesh = self.equations.task.specimen.mesh;
         let energy = |cell: usize, local: [f64; 2]| {

@@ -1,4 +1,4 @@
-//! Which of the edges without a stated condition are free, as the data decide.
+//! Which of the edges without a stated condition are free, as decided by the data.
 
 use super::equations::Equations;
 use super::given::{Edge, EdgeCondition, Task, singular_corners};
@@ -8,14 +8,14 @@ use super::search::{MOST_STEPS, NearestField};
 use crate::error::Error;
 use crate::statistics::f_tail;
 
-/// Probability of the misfit under which one of all free edges is refused, where all are free: each of many has its share of it.
+/// Probability that one of several free edges is refused although all are free; it is shared equally among them.
 const LEVEL: f64 = 0.01;
 
-/// Steps of a trial: a free edge that the data do not contradict takes few.
+/// Steps of a trial: a free edge that does not contradict the data takes few.
 const TRIAL_STEPS: usize = 20;
 
-/// Searches with the edges as they are, then with those to be tested free one after the other, the longest first. Where many edges that
-/// follow the markers lead nowhere, the search begins with all of them free, and releases those that the data contradict.
+/// Searches with the edges as they are, then with those to be tested freed one after the other, the longest first. Where many edges that
+/// follow the markers lead to no solution, the search begins with all of them free, and releases those that the data contradict.
 ///
 /// # Errors
 /// As the search with the edges as they are.
@@ -58,7 +58,7 @@ fn from_loaded<'a>(
             edges[index].probability = Some(0.0);
             continue;
         }
-        // Where no equilibrium with the free edge is found, it is not free.
+        // Where no equilibrium with the free edge is found, the edge is not free.
         let trial = Equations::new(task, &freed).and_then(|search| search.run(TRIAL_STEPS));
         let probability = trial
             .as_ref()
@@ -99,7 +99,7 @@ fn from_free<'a>(
     settle(task, found, edges)
 }
 
-/// The nearest field where the edges that the data have left loaded are those of the body.
+/// The nearest field with the edges that the data have left loaded as edges of the body.
 fn settle<'a>(
     task: &Task<'a>,
     found: NearestField<'a>,
@@ -115,7 +115,7 @@ fn settle<'a>(
     }
 }
 
-/// How probable it is that the misfit grows so much by noise, when an edge that is free is taken as such.
+/// The probability that noise alone increases the misfit by so much when a free edge is taken as free.
 fn probability(loaded: &NearestField, free: &NearestField) -> f64 {
     let count = loaded.fit.residual.len() as f64;
     let more = (loaded.fit.effective - free.fit.effective).max(1.0);
@@ -126,8 +126,8 @@ fn probability(loaded: &NearestField, free: &NearestField) -> f64 {
 }
 
 impl NearestField<'_> {
-    /// Whether the force on an edge is so large, and so well known, that it needs no trial: more than a third of the largest
-    /// one, and more than ten times its standard error.
+    /// Whether the force on an edge is so large and well known that the edge needs no trial: more than a third of the
+    /// largest one, and more than ten times its standard error.
     fn is_pulled(&self, index: usize) -> Result<bool, Error> {
         const LARGE: f64 = 1.0 / 3.0;
         const SURE: f64 = 10.0;

@@ -1,4 +1,4 @@
-//! What an estimate begins with: the specimen and its outline, the markers on it, what is known besides, and where to start.
+//! The input of an estimate: the specimen and its outline, the markers on it, prior knowledge, and the start.
 
 mod knowledge;
 mod observations;

@@ -7,19 +7,21 @@
 //! δθ = (Σ Sₖ)⁻¹ Σ tₖ,             Cov(θ) = S⁻¹ (Σ Jₖ + ρ (K − 1) Jₖ') S⁻¹
 //! ```
 //!
-//! M is the matrix of the regression of one frame about the field that is nearest to its markers alone; the forces act on the law by these
-//! equations, with the noise of the field's own force beside that of the measured one. The eigenvectors of Σ Sₖ, every parameter over its value, are the
-//! combinations of parameters that the data determine one by one; those with a relative standard error over [`VAGUE`] are not
-//! determined, and stay as the card has them, but for a common factor of all stresses. Jₖ = Sₖ where the noise of the markers is white; else that of the noise found; Jₖ' is the markers' part of it. ρ is the
+//! M is the matrix of the regression of one frame about the field that is nearest to its markers alone; the forces act on the law through these
+//! equations, with the noise of the field's own force added to that of the measured one. The eigenvectors of Σ Sₖ, with every parameter relative to
+//! its value, are the combinations of parameters that the data determine one by one; those with a relative standard error over [`VAGUE`] are not
+//! determined, and keep the card's values but for a common factor of all stresses. Jₖ = Sₖ where the noise of the markers is white; otherwise it is
+//! that of the noise found; Jₖ' is the markers' part of it. ρ is the correlation of a marker's residuals in one frame and the next: noise of the
+//! picture at rest is common to all frames.
 //! correlation of what is left of a marker in one frame and the next: noise of the picture at rest is common to all frames.
 //!
-//! The error of the meshes themselves is what the equilibria on cells half as large, at the same motions of the edges, make of the
-//! right-hand sides: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::mesh_error) has d, G and d_F of one frame).
-//! ± 1.96 e is added to the intervals as if it were noise; it is alike in all frames, so that more of them do not make it less.
+//! The error of the meshes themselves is the effect on the right-hand sides of the equilibria on cells half as large, at the same motions
+//! of the edges: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::mesh_error) has d, G and d_F of one frame). ± 1.96
+//! e is added to the intervals as if it were noise; it is alike in all frames, so that more frames do not reduce it.
 //!
-//! So are what a standard deviation of the load cell's gain, and one of the pictures' scale, make of the right-hand sides, of the same sign in all frames of
-//! all specimens. Where measured forces scatter more than both noises let them, Cov(θ) is as much larger as their χ² over its degrees of
-//! freedom.
+//! The effects of a standard deviation of the load cell's gain, and of one of the pictures' scale, on the right-hand
+//! sides are added likewise, of the same sign in all frames of all specimens. Where measured forces scatter more than
+//! both noises explain, Cov(θ) is multiplied by their χ² over its degrees of freedom.
 //!
 //! # References
 //! L. Kish, Survey Sampling, Wiley 1965 (the factor 1 + ρ (K − 1)); D. J. Venzon, S. H. Moolgavkar, Appl. Stat. 37, 87 (1988),
@@ -54,8 +56,8 @@ pub use found::{
 /// Finds the parameters of a law from all frames together.
 ///
 /// # Errors
-/// [`Error::Input`] when the data, meshes and conditions do not go together, no force was measured in any frame, or the data determine no
-/// parameter at all; [`Error::Solve`] when no equilibrium near the data is found.
+/// [`Error::Input`] when the data, meshes and conditions do not match, no force was measured in any frame, or the
+/// data determine no parameter at all; [`Error::Solve`] when no equilibrium near the data is found.
 pub fn estimate_jointly(
     frames: &[JointFrame],
     law: &RegressedLaw,
@@ -76,7 +78,7 @@ pub fn estimate_jointly(
     outcome(&descent, found, settings, told)
 }
 
-/// Whether a force was measured in any frame.
+/// Checks that a force was measured in some frame.
 ///
 /// # Errors
 /// [`Error::Input`] where none was.
@@ -96,7 +98,7 @@ pub fn check_joint_frames(frames: &[JointFrame]) -> Result<(), Error> {
     )]))
 }
 
-/// All that follows where the search ends.
+/// The results at the end of the search.
 fn outcome(
     descent: &Descent,
     (course, scales): (Course, Vec<f64>),
@@ -157,8 +159,8 @@ fn outcome(
     })
 }
 
-/// S⁻¹ (Σ Jₖ) S⁻¹, the noise of markers counted as often as it is the same in other frames, and all of it as much larger as forces scatter
-/// more than both noises let them.
+/// S⁻¹ (Σ Jₖ) S⁻¹, with the noise of markers counted as often as it is the same in other frames, and multiplied by
+/// the scatter of forces where it exceeds both noises.
 fn covariance(
     says: &[FrameInformation],
     inverse: &DMatrix<f64>,
@@ -172,7 +174,7 @@ fn covariance(
     inverse * sum * inverse
 }
 
-/// What errors that all frames have in common make of each parameter: those of forces, of pictures, and of meshes, as independent ones.
+/// The effects on each parameter of errors that all frames have in common: those of forces, of pictures, and of meshes, taken as independent.
 fn alike(says: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
     let common = [0, 1].map(|kind| {
         let targets = says.iter().map(|say| &say.common[kind]);
@@ -184,7 +186,7 @@ fn alike(says: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>)
     })
 }
 
-/// S⁻¹ Σ tₖ of the right-hand sides that the meshes' own errors make, as alike in all frames as their meshes are.
+/// S⁻¹ Σ tₖ from the effects of the meshes' own errors on the right-hand sides, which are as alike in all frames as their meshes are.
 fn mesh_error(says: &[FrameInformation], inverse: &DMatrix<f64>) -> Option<Step> {
     let targets = says.iter().map(|say| say.mesh.as_ref());
     let sum = targets.sum::<Option<Step>>()?;
@@ -200,7 +202,7 @@ fn reach(descent: &Descent, freedom: f64) -> f64 {
     }
 }
 
-/// As how many equal frames they count for the parameters: (Σ s)²/Σ s² of their shares s.
+/// The number of equal frames with the same information on the parameters: (Σ s)²/Σ s² of the frames' shares s.
 fn says_that_count(says: &[FrameInformation], inverse: &DMatrix<f64>) -> f64 {
     let shares = says.iter().map(|say| say.information.dot(inverse).max(0.0));
     let [sum, square] = shares.fold([0.0; 2], |[sum, square], share| {

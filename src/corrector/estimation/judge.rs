@@ -1,8 +1,8 @@
-//! The verdict on an estimate: is what is left white, does it correlate as noise does, or is it no noise?
+//! The verdict on an estimate: whether its residuals are white, correlated as noise is, or no noise.
 //!
-//! Noise that correlates is found by restricted likelihood, once with the equations as they are, for the intervals, and once with
-//! every alternative of [`alternatives`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
-//! data tell which alternative takes more from the misfit than noise would let it (F test, in one linearised step).
+//! Correlated noise is found by restricted likelihood twice: with the equations as they are, for the intervals, and with every
+//! alternative of [`alternatives`] and all edges released, where the residuals are noise more surely. The data, made white by the
+//! latter, determine which alternative reduces the misfit more than noise would (F test, in one linearised step).
 
 use super::equations::Equations;
 use super::given::{Edge, EdgeCondition, Task};
@@ -22,33 +22,33 @@ mod whiteness;
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
 
-/// Probability by noise below which an alternative speaks against the equations. Nine are tried, and smoothness is chosen by the data.
+/// Probability under noise below which an alternative contradicts the equations. Nine are tried, and smoothness is chosen by the data.
 const LEVEL: f64 = 1e-5;
 
 /// An alternative explains something where it leaves less than this share of the misfit.
 const EXPLAINS: f64 = 0.98;
 
-/// Noise that leaves fewer independent values than this beside the parameters cannot be told from a misfit, and its own length is
-/// too uncertain for intervals to hold: by their coverage, `gelbench validate interval-coverage`.
+/// With fewer independent values than this beside the parameters, correlated noise cannot be distinguished from a misfit, and its
+/// length is too uncertain for valid intervals: by their coverage, `gelbench validate interval-coverage`.
 const INDEPENDENT: f64 = 100.0;
 
-/// What was found of the noise, and the verdict.
+/// The noise that was found, and the verdict.
 #[derive(Default)]
 pub struct Judgement {
-    /// The trust of the markers on the mesh, zero of gross errors.
+    /// The trust of the markers on the mesh, zero for gross errors.
     pub sound: Vec<f64>,
-    /// How the noise correlates with the equations as they are; white where it is none.
+    /// The correlation of the noise with the equations as they are; `None` for white noise.
     pub noise: Option<CorrelatedNoise>,
-    /// The verdict, but for measured forces.
+    /// The verdict without measured forces.
     pub verdict: Verdict,
-    /// What is contradicted of what is said of the edges.
+    /// The statements on edges that the data contradict.
     pub contradiction: Option<Contradiction>,
 }
 
-/// Judges what is left of the sound markers.
+/// Judges the residuals of the sound markers.
 ///
 /// # Errors
-/// Where the tangent cannot be solved with.
+/// Where the tangent cannot be used to solve systems.
 pub fn judge(
     task: &Task,
     found: &mut NearestField,
@@ -103,7 +103,7 @@ pub fn judge(
         let moved = found.moved_edges(edges)?.into_iter();
         trials.extend(moved.filter_map(|edge| basis.moved(found, edge)));
     }
-    // What hardly moves the misfit explains nothing.
+    // An alternative that hardly changes the misfit explains nothing.
     let left = base.plain_left(&rows, found);
     trials.retain(|trial| trial.left < EXPLAINS * left);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -127,7 +127,7 @@ pub fn judge(
     })
 }
 
-/// What alternatives are tried on.
+/// The basis on which alternatives are tried.
 struct Basis<'a> {
     rows: &'a Rows,
     base: &'a Model,
@@ -142,7 +142,7 @@ impl Basis<'_> {
         }
     }
 
-    /// What an edge that lies elsewhere explains, and how far; `None` where the data do not say.
+    /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
     fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
         let model = self.base.with(self.rows, [&design]);
@@ -163,7 +163,7 @@ fn reasons<'a>(
     alternative.into_iter().chain(long).collect()
 }
 
-/// The names of the edges of which something is said, but that they moved in an unknown way.
+/// The names of the edges with a stated condition, except those that moved in an unknown way.
 fn said<'a>(edges: &'a [Edge]) -> Vec<&'a str> {
     let said = edges.iter().filter(|edge| is_said(edge));
     let mut names: Vec<&str> = said.map(|edge| edge.segment.name.as_str()).collect();
@@ -177,8 +177,7 @@ fn is_said(edge: &Edge) -> bool {
     named && edge.condition != EdgeCondition::Unknown
 }
 
-/// The regression with some of the edges let go of which something is said; `None` where there are none, or data do not determine so
-/// much.
+/// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
 fn let_go(
     task: &Task,
     found: &NearestField,
@@ -213,7 +212,7 @@ fn contradicted(together: Option<&Trial>, each: &[Trial]) -> Option<Contradictio
 }
 
 impl Verdict {
-    /// With what measured forces say beside those of the field.
+    /// Adds the comparison of measured forces with those of the field.
     pub(super) fn with_forces(mut self, checks: &[ForceCheck]) -> Self {
         let size = |check: &&ForceCheck| check.standardised.abs();
         let worst = checks.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
@@ -245,7 +244,7 @@ impl Rows {
         }
     }
 
-    /// Where the mean of what is left of a marker and its neighbours is largest.
+    /// The place at which the mean residual of a marker and its neighbours is largest.
     fn worst(&self, found: &NearestField) -> Worst {
         const NEIGHBOURS: usize = 8;
         let around = nearest(self.sites.places(), NEIGHBOURS);

@@ -1,10 +1,10 @@
-//! What noise that correlates, or is not what was stated, does to an estimate.
+//! The effect on an estimate of noise that is correlated, or that differs from the stated noise.
 //!
 //! ```text
 //! Cov(p) = M⁻¹ (τ² ÃᵀRÃ + S) M⁻¹,   Ã = √(W/v) A                  M⁻¹ where the noise is white: R = 1, τ² = 1
 //! ```
 //!
-//! The field stays the one nearest to the data; its covariance is that of this field under the noise that was found.
+//! The field remains the one nearest to the data; its covariance is that of this field under the noise that was found.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,26 +16,26 @@ use super::search::NearestField;
 use crate::error::Error;
 use crate::statistics::{Sites, Unevenness, extremes, robust_deviation};
 
-/// Noise farther from what was stated than this factor contradicts it, if it is by four standard errors too.
+/// Noise that differs from the stated noise by more than this factor contradicts it, if also by four standard errors.
 const OFF: f64 = 1.25;
 
-/// Standardised residuals from which on a marker is a gross error, also where noise is larger than elsewhere.
+/// Standardised residual from which on a marker is a gross error, even where noise is larger than elsewhere.
 const GROSS: f64 = 8.0;
 
-/// How often weights follow noise that differs from place to place.
+/// How often weights are adapted to noise that differs from place to place.
 const ROUNDS: usize = 3;
 
-/// What markers show of their noise otherwise than was taken of it.
+/// Noise of the markers that differs from the assumed noise.
 #[derive(Clone, Debug, Default)]
 pub struct OtherNoise {
-    /// The scatter of the markers over their stated noise, where they contradict it by its size or by how it differs.
+    /// The ratio of the markers' scatter to their stated noise, where they contradict it by its size or by its variation.
     pub ratio: Option<f64>,
     /// How it differs from place to place.
     pub unevenness: Option<Unevenness>,
 }
 
-/// A search with the noise that it shows: where data contradict the stated noise its size is estimated; markers where noise is larger have less
-/// weight. With it, the scatter over the stated noise, where that is contradicted.
+/// A search with the noise that the data show: where they contradict the stated noise its size is estimated, and markers where
+/// noise is larger have less weight. Also returns the ratio of the scatter to the stated noise, where that is contradicted.
 ///
 /// # Errors
 /// As the search.
@@ -53,7 +53,7 @@ pub fn with_own_noise<T>(
     }
 }
 
-/// Whether a marker's noise tells of that of others.
+/// Whether a marker's noise is representative of that of others.
 fn is_sound(marker: &Option<MarkerEstimate>) -> bool {
     marker
         .as_ref()
@@ -61,14 +61,14 @@ fn is_sound(marker: &Option<MarkerEstimate>) -> bool {
 }
 
 impl OtherNoise {
-    /// Whether it is as it was taken.
+    /// Whether the noise is as assumed.
     pub fn is_none(&self) -> bool {
         self.ratio.is_none() && self.unevenness.is_none()
     }
 }
 
 impl Observations {
-    /// Whether anything is otherwise; the weights follow it.
+    /// Adapts the weights to other noise; returns whether there is any.
     fn take(&mut self, other: &OtherNoise) -> bool {
         if other.is_none() {
             return false;
@@ -86,7 +86,7 @@ impl Observations {
 }
 
 impl NearestField<'_> {
-    /// What the markers show of their noise otherwise than was taken of it.
+    /// The noise of the markers where it differs from the assumed noise.
     pub(super) fn other_noise(
         &self,
         markers: &[Option<MarkerEstimate>],
@@ -100,7 +100,7 @@ impl NearestField<'_> {
         }
     }
 
-    /// Whether the mesh's own error or rounding, which are no noise, are much of what is left of the markers.
+    /// Whether the mesh's own error or rounding, which are no noise, make up much of the markers' residuals.
     fn is_left_by_cells(&self, markers: &[Option<MarkerEstimate>], edges: &[Edge]) -> bool {
         const MUCH: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
@@ -120,7 +120,7 @@ impl NearestField<'_> {
         difference.is_some_and(|own| size(&|row| own.markers[row]) > MUCH * left)
     }
 
-    /// How the noise of markers differs from place to place; outliers tell of it too, but for those that no noise makes.
+    /// The variation of the markers' noise from place to place; outliers count too, except those that no noise explains.
     fn unevenness(&self, markers: &[Option<MarkerEstimate>]) -> Option<Unevenness> {
         let observations = self.observations();
         if observations.reweighted >= ROUNDS {
@@ -138,8 +138,8 @@ impl NearestField<'_> {
         Unevenness::found(&observations.places, &left.collect::<Vec<_>>())
     }
 
-    /// The scatter of the markers over their stated noise, from the median of the standardised residuals, where it is far from one or the
-    /// noise is another one anyhow.
+    /// The ratio of the markers' scatter to their stated noise, from the median of the standardised residuals, where
+    /// it is far from one or the noise differs anyhow.
     fn contradicted_noise(&self, markers: &[Option<MarkerEstimate>], other: bool) -> Option<f64> {
         // The standard error of ln of a deviation from the median.
         const ERROR: f64 = 0.72;
@@ -154,8 +154,7 @@ impl NearestField<'_> {
         (other || ratio.ln().abs() > OFF.ln().max(sure)).then_some(ratio)
     }
 
-    /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where they have followed what markers
-    /// show.
+    /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where the weights have followed the data.
     pub(super) fn deviations(&self, larger: f64) -> Option<[[f64; 2]; 2]> {
         let observations = self.observations();
         let along = |axis: usize| {
@@ -171,7 +170,7 @@ impl NearestField<'_> {
         (self.variances.sound * weights.len() as f64 / weights.iter().sum::<f64>()).sqrt()
     }
 
-    /// The slope of what holds the parameters, which at the best fit is that of the data: −AᵀWr/v.
+    /// The slope of the penalties on the parameters, which at the best fit is that of the data: −AᵀWr/v.
     pub(super) fn slope(
         &self,
         design: &DMatrix<f64>,
@@ -184,8 +183,8 @@ impl NearestField<'_> {
         design.tr_mul(&pull)
     }
 
-    /// Takes the covariance under the noise that was found, and with what smoothing takes away; the degrees of freedom of the noise's
-    /// size where it correlates.
+    /// Sets the covariance under the noise that was found, including what smoothing takes away; returns the degrees
+    /// of freedom of the noise's size where it is correlated.
     pub(super) fn widen(&mut self, judged: &Judgement) -> Option<f64> {
         let smoothed_away = self.smoothed_away();
         let freedom = self.take_noise(judged);
@@ -193,7 +192,7 @@ impl NearestField<'_> {
         freedom
     }
 
-    /// The covariance under the noise that was found; the degrees of freedom of its size where it correlates.
+    /// Sets the covariance under the noise that was found; returns the degrees of freedom of its size where it is correlated.
     fn take_noise(&mut self, judged: &Judgement) -> Option<f64> {
         const LEAST: f64 = 3.0;
         let noise = judged.noise?;

@@ -1,4 +1,4 @@
-//! An estimated field with what the data say about it, as it is handed on.
+//! The result of an estimate: the field with its uncertainty and the verdict of the data.
 
 mod field_estimate;
 mod verdict;

@@ -18,11 +18,11 @@ use crate::finite_element::recovery::Recovery;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::statistics::{chi_squared_limit, normal_reach, student_reach};
 
-/// Share of sound markers that are taken for outliers.
+/// Share of sound markers that are taken for outliers by chance.
 const FALSE_ALARMS: f64 = 1e-3;
 
 impl NearestField<'_> {
-    /// The field with all that follows from it.
+    /// The field with all results that follow from it.
     pub fn into_estimate(
         mut self,
         edges: &[Edge],
@@ -37,7 +37,7 @@ impl NearestField<'_> {
         let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        // A misfit is no noise.
+        // A misfit is not noise.
         let is_noise = judged.verdict.answer != Answer::NotExplained;
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
@@ -69,8 +69,8 @@ impl NearestField<'_> {
         })
     }
 
-    /// Brings all into the covariance that the field is uncertain by, one after the other; figures that are not by all of it are made
-    /// on the way, the beginning of an estimate.
+    /// Adds all uncertainties of the field to the covariance, one after the other; figures that do not include all of
+    /// them are made on the way. Returns the beginning of an estimate.
     fn take_uncertainty(
         &mut self,
         edges: &[Edge],
@@ -89,7 +89,7 @@ impl NearestField<'_> {
             true => normal_reach(),
             false => student_reach(freedom),
         };
-        // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
+        // Where the data are not explained, residuals taken for noise would hide a wrong force.
         let force_checks = match judged.verdict.answer {
             Answer::NotExplained => before,
             _ => self.force_checks(own, &scale_change)?,
@@ -97,7 +97,7 @@ impl NearestField<'_> {
         self.take_scale(&scale);
         let forces = self.forces(reach, own)?;
         let parameters = self.law_parameters(reach, own);
-        // Forces hold unknown places on the side that is possible.
+        // Forces keep unknown places on the side that is possible.
         if let Some(places) = places {
             self.consider(places);
         }
@@ -199,7 +199,7 @@ impl NearestField<'_> {
             (0..4).for_each(|component| rows[component][place] += slope[component]);
         }
         let stress = response.first_piola_kirchhoff_stress;
-        // Where the better gradient turns the cell inside out, all of the stress is in doubt.
+        // Where the better gradient turns the cell inside out, the whole stress is in doubt.
         let (stress_off, thickness_off) =
             Kinematics::new(&PlaneTensor::from(better)).map_or((stress, thickness), |better| {
                 let thinner = specimen.thickness * law.thickness_stretch(&better) - thickness;
@@ -226,7 +226,7 @@ impl NearestField<'_> {
         all
     }
 
-    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker that had a say has drawn the field to it, one that had none has not.
+    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not.
     fn marker(&self, index: usize, limit: f64) -> MarkerEstimate {
         let left = &self.fit.residual;
         let residual = Vector2::new(left[2 * index], left[2 * index + 1]);

@@ -11,19 +11,19 @@ use crate::solve::vector::largest;
 /// Steps allowed.
 pub const MOST_STEPS: usize = 100;
 
-/// Steps after which the variances stay as they are: two of equal likelihood could take turns.
+/// Steps after which the variances are fixed: two of equal likelihood could alternate.
 pub const VARIANCE_STEPS: usize = 6;
 
-/// Length of a step in standard errors that does not matter, where variances that stay let it become no shorter soon.
+/// Length of a step in standard errors that is negligible, where fixed variances let steps shorten only slowly.
 const NEAR: f64 = 0.03;
 
 /// The shortest share of a step.
 const SHORTEST: f64 = 1.0 / 64.0;
 
-/// Part of the noise by which a last step may still move the field.
+/// Part of the noise by which the last step may still move the field.
 const MOVEMENT: f64 = 1e-3;
 
-/// The field where the search ends, with what was known on the last step.
+/// The field at the end of the search, with the data of the last step.
 pub struct NearestField<'a> {
     pub equations: Equations<'a>,
     pub field: Vec<f64>,
@@ -61,7 +61,7 @@ impl<'a> Equations<'a> {
         self.run_from((place, variances), VARIANCE_STEPS, most)
     }
 
-    /// The same from a place, with variances that the data change in so many first steps.
+    /// The same from a given state, with variances that the data change in so many first steps.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -136,7 +136,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// The largest move that does not matter, in mm.
+    /// The largest negligible move, in mm.
     fn close(&self, variances: &VarianceComponents, field: &[f64]) -> f64 {
         let Observations {
             weights,
@@ -171,7 +171,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// Works with the regression about a place.
+    /// Calls `work` with the regression about a state.
     pub(super) fn with_regression<T>(
         &self,
         (place, settled): (&Place, bool),
@@ -214,7 +214,7 @@ impl<'a> Equations<'a> {
         Ok(changes.remove(0))
     }
 
-    /// The variance of the start.
+    /// The variance at the start.
     fn first_variance(&self, field: &[f64]) -> f64 {
         if self.task.observations.known_noise {
             return 1.0;
@@ -223,8 +223,8 @@ impl<'a> Equations<'a> {
         (residual.norm_squared() / residual.len() as f64).max(1e-12 * largest(field).powi(2))
     }
 
-    /// Takes the step, or as much of it as leaves all cells admissible and the law's parameters near; equilibrium is restored
-    /// where it is lost. At most the share `most` of it is taken; whether it was cut beyond that.
+    /// Takes the step, or as much of it as leaves all cells admissible and the law's parameters near; equilibrium is
+    /// restored where it is lost. At most the share `most` of it is taken; returns whether it was cut beyond that.
     fn advance(
         &mut self,
         place: &mut Place,
@@ -257,8 +257,8 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// The share of the next step, of the last one, and the ratio of their lengths: 1 − share where the regression is linear. Steps that
-/// do not become as much shorter swing about the nearest field.
+/// The share of the next step, of the last one, and the ratio of their lengths: 1 − share where the regression is
+/// linear. Steps that do not become as much shorter oscillate about the nearest field.
 fn next_share(share: f64, ratio: f64) -> f64 {
     if ratio > 1.0 - 0.5 * share {
         (0.5 * share).max(SHORTEST)
@@ -286,7 +286,7 @@ impl NearestField<'_> {
         self.equations.task.observations
     }
 
-    /// The displacements of the markers that small residual forces make, a column for each of several.
+    /// The displacements of the markers due to small residual forces, a column for each of several.
     pub fn marker_changes(&mut self, forces: &[Vec<f64>]) -> Result<DMatrix<f64>, Error> {
         let tangent = &mut self.equations.newton.tangent;
         let changes = tangent.changes(forces).map_err(solve)?;
@@ -311,7 +311,7 @@ impl NearestField<'_> {
         (0..row.len()).map(product).sum::<f64>().max(0.0).sqrt()
     }
 
-    /// Reactions where edges are held.
+    /// Reactions at held edges.
     pub fn reactions(&self) -> Vec<f64> {
         let mut reactions = self.residual.clone();
         for unknown in self.equations.newton.free() {

@@ -4,9 +4,9 @@
 //! minimise ½ ‖u − ū‖²   subject to   F(u) = 0 at inner nodes and free edges,   u = ū at the other edges
 //! ```
 //!
-//! ū is the given field interpolated at the nodes. As many equations as unknowns are left, so that the field does not
-//! depend on the norm; the multipliers ζ, K ζ = ū − u, show where the given field contradicts the physics. An edge
-//! that is known has its known displacement instead of ū, a rigid one the rigid motion nearest to ū.
+//! ū is the given field interpolated at the nodes. There are as many equations as unknowns, so that the field does
+//! not depend on the norm; the multipliers ζ, K ζ = ū − u, show where the given field contradicts the physics. An
+//! edge with known displacements has these instead of ū, a rigid one the rigid motion nearest to ū.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -28,22 +28,22 @@ const NEWTON: NewtonSettings = NewtonSettings {
     max_iterations: 40,
 };
 
-/// The rule by which data and physics are traded.
+/// The rule by which data and physics are balanced.
 const RULE: &str =
     "equilibrium holds exactly; edges that are not free keep the displacements of the given field";
 
-/// Parts of the given field that are solved one after the other where it is too far from equilibrium.
+/// Parts of the given field that are solved one after the other where the field is too far from equilibrium.
 const PARTS: [&[f64]; 3] = [
     &[1.0],
     &[0.5, 1.0],
     &[0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0],
 ];
 
-/// Brings the field `displacement` of the mesh `given` onto the specimen's mesh. Nothing is uncertain in the result: all
-/// standard errors are zero, and what is left of each node of the given mesh is no noise.
+/// Brings the field `displacement` of the mesh `given` onto the specimen's mesh. The result has no uncertainty: all
+/// standard errors are zero, and the residual at each node of the given mesh is no noise.
 ///
 /// # Errors
-/// [`Error::Input`] when the mesh and the conditions do not go together, [`Error::Solve`] when no equilibrium is found.
+/// [`Error::Input`] when the mesh and the conditions do not match, [`Error::Solve`] when no equilibrium is found.
 pub fn transfer(
     specimen: &Specimen,
     (given, displacement): (&Mesh, &[f64]),
@@ -115,7 +115,7 @@ fn outcome((segment, condition): &(Segment, EdgeCondition)) -> EdgeOutcome {
     }
 }
 
-/// The values of the unknowns that are held.
+/// The values of the held unknowns.
 fn imposed(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], start: &[f64]) -> Vec<Option<f64>> {
     let mut imposed = vec![None; start.len()];
     for (segment, condition) in edges {
@@ -165,7 +165,7 @@ fn rigid(mesh: &Mesh, nodes: &[usize], field: &[f64]) -> Vec<[f64; 2]> {
     nodes.iter().map(|node| motion.at(arm(node))).collect()
 }
 
-/// The equilibrium with the imposed values, its residual, and how many parts it took.
+/// The equilibrium with the imposed values, its residual, and the number of parts that it took.
 fn equilibrium(
     newton: &mut Newton,
     energy: &SheetEnergy,
@@ -231,7 +231,7 @@ fn forces(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], reactions: &[f64]) ->
     bodies.into_iter().map(force).collect()
 }
 
-/// The given field at its nodes less the corrected one.
+/// The given field at its nodes minus the corrected one.
 fn differences(
     mesh: &Mesh,
     field: &[f64],

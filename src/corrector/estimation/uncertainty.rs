@@ -1,4 +1,4 @@
-//! What makes an estimated field uncertain besides the noise: its mesh, the scale of the picture, edges nobody has seen, smoothness.
+//! Uncertainties of an estimated field besides noise: its mesh, the scale of the picture, edges that were not seen, smoothness.
 
 mod mesh_error;
 mod moved_edges;

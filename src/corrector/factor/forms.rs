@@ -9,7 +9,7 @@ use crate::solve::{Cholesky, FactorFault, SparseLu, SparseRows, SymmetricPattern
 pub struct Projection {
     /// δ.
     pub step: Vec<f64>,
-    /// ψ, one number a row of B.
+    /// ψ, one number per row of B.
     pub multipliers: Vec<f64>,
 }
 

@@ -7,7 +7,7 @@ use crate::solve::Cholesky;
 use crate::solve::vector::{add_scaled, difference, largest, spread};
 use crate::statistics::larger;
 
-/// How a motion is corrected.
+/// Settings of the correction of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowSettings {
     /// Steps of time that are corrected together; fewer where that fails.
@@ -38,7 +38,7 @@ pub struct CorrectedMotion {
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{fault}")]
 pub struct CorrectionEnd {
-    /// Why.
+    /// The fault.
     pub fault: SolveFault,
     /// The instants before it.
     pub corrected: Box<CorrectedMotion>,
@@ -61,7 +61,7 @@ struct RetainedFactor {
 }
 
 impl RetainedFactor {
-    /// Takes the factor of a matrix.
+    /// Sets the factor of a matrix.
     fn take(&mut self, values: &[f64]) -> Result<(), SolveFault> {
         let factor = self.cholesky.factorise(values);
         factor.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
@@ -71,15 +71,14 @@ impl RetainedFactor {
     }
 }
 
-/// A factor is renewed when an iteration leaves more than this part of the residual.
+/// A factor is renewed when the residual after an iteration exceeds this share of the one before.
 const SLOW: f64 = 0.2;
 
 /// A residual that stagnates below this share of the forces is rounding.
 const ROUNDING_FLOOR: f64 = 1e-8;
 
 impl EquationOfMotion<'_> {
-    /// Corrects a motion that is given at instants from time 0 on, with a known start; `progress` is told how many are
-    /// corrected.
+    /// Corrects a motion that is given at instants from time 0 on, with a known start; `progress` is called with the number of corrected instants.
     ///
     /// # Errors
     /// [`CorrectionEnd`] with the instants before it when a window of a single step fails.
@@ -107,7 +106,7 @@ impl EquationOfMotion<'_> {
         }
     }
 
-    /// Corrects the instants after those that are, window after window.
+    /// Corrects the remaining instants, window after window.
     fn correct_onwards(
         &self,
         data: &[Vec<f64>],
@@ -143,7 +142,7 @@ impl EquationOfMotion<'_> {
         Ok(())
     }
 
-    /// The next instants: those of ū, moved on by what its last known instants were corrected by.
+    /// The next instants: those of ū, shifted by the correction of their last known instants.
     fn window(&self, known: &[Vec<f64>], data: &[Vec<f64>], count: usize) -> Window {
         let last = known.len() - 1;
         let (first, begin) = if last == 0 { (0, 0) } else { (last - 1, 1) };
@@ -171,7 +170,7 @@ impl EquationOfMotion<'_> {
         }
     }
 
-    /// Newton steps: one sweep through the blocks of a row each, with the retained factor of the newest instant.
+    /// Newton steps: each is one sweep through the blocks of a row, with the retained factor of the newest instant.
     fn solve(
         &self,
         window: &mut Window,
@@ -222,7 +221,7 @@ impl EquationOfMotion<'_> {
         values
     }
 
-    /// The largest force in N: elastic, reactions included, or that of inertia.
+    /// The largest force in N: elastic, including reactions, or inertial.
     fn scale(&self, interval: &Interval, window: &Window) -> f64 {
         let forces = interval.frames.iter().map(|frame| frame.size);
         let second = window.states.windows(3).map(|three| {
@@ -258,7 +257,7 @@ impl EquationOfMotion<'_> {
         }
     }
 
-    /// Takes a window's instants and multipliers over.
+    /// Appends a window's instants and multipliers.
     fn append(
         &self,
         window: &Window,
@@ -268,7 +267,7 @@ impl EquationOfMotion<'_> {
         corrected: &mut CorrectedMotion,
     ) -> Result<(), SolveFault> {
         if !retained.fresh {
-            // The motion is in equilibrium as it is: no step was wanted.
+            // The motion is in equilibrium already: no step was needed.
             retained.take(&self.block(window.begin, window.begin + 1, interval))?;
         }
         let multipliers = self.multipliers(window, data, interval, &mut retained.cholesky)?;
@@ -307,7 +306,7 @@ impl EquationOfMotion<'_> {
         Ok(psi.split_off(window.begin))
     }
 
-    /// A⁻¹ b by the retained factor, repeated on its defect.
+    /// A⁻¹ b by the retained factor, with refinement on its defect.
     fn refined(
         &self,
         values: &[f64],

@@ -1,4 +1,4 @@
-//! From the springs to the finest mesh.
+//! The climb of a field from the springs to the finest mesh.
 
 use std::collections::BTreeMap;
 
@@ -16,23 +16,24 @@ use crate::solve::{
     NewtonSettings, Potential, Stage, State,
 };
 
-/// What the iteration may leave on all meshes but the finest, relative to what it may leave there.
+/// The iteration's error on all meshes but the finest, relative to that allowed there.
 const ON_THE_WAY: f64 = 3.0;
 
-/// What of the allowed share is used: the imbalance tells the error of the field in the energy, not in the displacement.
+/// The part of the allowed share that is used: the imbalance measures the error of the field in the energy, not in the displacement.
 const SURE: f64 = 0.1;
 
-/// The springs are a first guess, which the correction changes by some hundredths: to be nearer to their equilibrium is lost time, and more iterations than
+/// The springs are a first guess, which the correction changes by some hundredths: a more exact equilibrium wastes time, as do more iterations than
+/// finite elements take from rest.
 /// finite elements take from nothing are too.
 const SPRINGS: NewtonSettings = NewtonSettings {
     tolerance: 5e-2,
     max_iterations: 8,
 };
 
-/// Iterations of the correction after which the springs were no good guess: finite elements take about as many from nothing.
+/// Iterations of the correction after which the springs were no good guess: finite elements take about as many from rest.
 const AFTER_SPRINGS: usize = 6;
 
-/// What the finer meshes add is larger by far, where there are any.
+/// The changes of the finer meshes are larger by far, where there are any.
 const COARSEST: NewtonSettings = NewtonSettings {
     tolerance: 1e-4,
     ..NEWTON
@@ -44,14 +45,14 @@ const ALONE: NewtonSettings = NewtonSettings {
 
 /// The tangents of a mesh and of the coarser ones.
 enum Tangents {
-    /// Of the coarsest mesh.
+    /// That of the coarsest mesh.
     Coarsest(Box<Ladder>),
     /// Those of Newton's method by multigrid, with the ties of the mesh.
     Solved(Box<Newton>, BTreeMap<usize, usize>),
 }
 
 impl Tangents {
-    /// As systems for a finer mesh; `None` where multigrid has not served on all of them.
+    /// As systems for a finer mesh; `None` where multigrid was not used on all of them.
     fn into_ladder(self) -> Option<Ladder> {
         match self {
             Self::Coarsest(ladder) => Some(*ladder),
@@ -60,24 +61,24 @@ impl Tangents {
     }
 }
 
-/// A field on its way up.
+/// A field during the climb.
 pub struct Ascent {
     state: State,
     /// The number of its mesh.
     level: usize,
     tangents: Option<Tangents>,
-    /// What this mesh added to the field of the one before, and its size: root mean square over the nodes in mm.
+    /// The change of the field from the mesh before to this one, and its size: root mean square over the nodes in mm.
     change: Option<Vec<f64>>,
     size: f64,
-    /// How changes shrink from mesh to mesh.
+    /// The ratio by which changes shrink from mesh to mesh.
     ratio: f64,
-    /// The imbalance that a mesh was reached with by multigrid, and the share of it that may be left.
+    /// The imbalance with which a mesh was reached by multigrid, and the share of it that may remain.
     reached: Option<(Approach, f64)>,
     work: Vec<ShapeWork>,
 }
 
 impl Ascent {
-    /// All the way up at a load factor.
+    /// Climbs to the finest mesh at a load factor.
     ///
     /// # Errors
     /// [`Error::Input`] where a mesh does not suit the problem, [`Error::Solve`] where no field was found.
@@ -97,8 +98,8 @@ impl Ascent {
         Ok(ascent)
     }
 
-    /// The springs' field, corrected, on the coarsest mesh; where the springs have none after few iterations, or it does not lead to the corrected one in
-    /// few, finite elements do from nothing.
+    /// The corrected springs' field on the coarsest mesh; where the springs have none after few iterations, or it
+    /// does not lead to the corrected one in few, finite elements start from rest.
     fn begin(levels: &Levels, factor: f64) -> Result<Self, Error> {
         let (problem, mesh) = (levels.problem, &levels.meshes[0]);
         let lattice = match mesh.degree() {
@@ -183,7 +184,7 @@ impl Ascent {
         Ok(())
     }
 
-    /// Newton's method on the next finer mesh, by multigrid on the tangents of the coarser ones where they are at hand.
+    /// Newton's method on the next finer mesh, by multigrid on the tangents of the coarser ones where they are available.
     fn newton(
         &mut self,
         potential: &dyn Potential,
@@ -205,7 +206,7 @@ impl Ascent {
         });
     }
 
-    /// s q + s q² + …, what all finer meshes would add.
+    /// s q + s q² + …, the change that all finer meshes would add.
     fn discretisation_error(&self) -> f64 {
         geometric_tail(self.size, self.ratio)
     }
@@ -240,7 +241,7 @@ impl Ascent {
         }
     }
 
-    /// Whether the tangents of all meshes are at hand for a finer one.
+    /// Whether the tangents of all meshes are available for a finer one.
     #[cfg(test)]
     pub fn is_nested(&self) -> bool {
         match &self.tangents {
@@ -249,15 +250,15 @@ impl Ascent {
         }
     }
 
-    /// What was done on each mesh.
+    /// The work on each mesh.
     #[cfg(test)]
     pub fn work(&self) -> &[ShapeWork] {
         &self.work
     }
 }
 
-/// The equilibrium near a field at a load factor, up to a share of its imbalance, with the tangents for finer meshes, and what it
-/// took; `None` where multigrid does not lead there.
+/// The equilibrium near a field at a load factor, up to a share of its imbalance, with the tangents for finer meshes,
+/// and the work; `None` where multigrid does not converge.
 fn approach(
     model: &Model,
     potential: &dyn Potential,

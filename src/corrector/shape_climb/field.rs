@@ -1,8 +1,8 @@
-//! A field that has climbed, and what was done for it.
+//! A field that has climbed, and the work for it.
 
 use crate::solve::{Approach, Convergence, NewtonSettings, State};
 
-/// Where multigrid does not lead to the end.
+/// Newton settings where multigrid does not converge.
 pub const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
     max_iterations: 60,
@@ -11,18 +11,18 @@ pub const NEWTON: NewtonSettings = NewtonSettings {
 /// A field that has climbed.
 #[derive(Clone, Debug)]
 pub struct ShapeClimb {
-    /// On the finest mesh. The potential of a state that was found near others is not evaluated: it is not a number.
+    /// The state on the finest mesh. The potential of a state that was found near others is not evaluated: it is NaN.
     pub state: State,
-    /// The estimated discretisation error of the field, root mean square over the nodes in mm; not a number where there is one
-    /// mesh alone. That of a state between the first and the last of a path, or in the hand, is in proportion to the field.
+    /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one mesh only.
+    /// For a state between the first and the last of a path, or in the hand, it is in proportion to the field.
     pub discretisation_error: f64,
-    /// What the iteration left, estimated, root mean square over the nodes in mm.
+    /// The estimated error that the iteration left, root mean square over the nodes in mm.
     pub iteration_error: f64,
-    /// What was done on each mesh, coarse to fine; on the finest one alone where the state was found near others.
+    /// The work on each mesh, coarse to fine; on the finest one alone where the state was found near others.
     pub work: Vec<ShapeWork>,
 }
 
-/// The state at a load factor that an approach came to, with its potential and residual.
+/// The state at a load factor that an approach reached, with its potential and residual.
 pub fn approached(
     factor: f64,
     (displacement, residual): (Vec<f64>, Vec<f64>),
@@ -43,13 +43,13 @@ pub fn approached(
     }
 }
 
-/// What was done on a mesh.
+/// The work on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeWork {
-    /// Its nodes.
+    /// The number of its nodes.
     pub nodes: usize,
-    /// Tangents.
+    /// The number of tangents.
     pub linearisations: usize,
-    /// Iterations, each with one cycle of multigrid; none where factors were taken.
+    /// Iterations, each with one cycle of multigrid; zero where factors were used.
     pub iterations: usize,
 }

@@ -1,4 +1,4 @@
-//! A sheet in the hand.
+//! A sheet that is moved by hand.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::error::{Diagnostic, Error, SolveFault};
 use crate::problem::{DeformedSheet, Grip, GroupState, Hand, HandMotion};
 use crate::solve::{Attendance, Loading, follow};
 
-/// A sheet in the hand: the groups that supports hold are moved or pulled, the corrected field follows. Loads stay what they are.
+/// A sheet moved by hand: the groups that supports hold are moved or pulled, and the corrected field follows. Loads stay unchanged.
 pub struct Interactive<'a> {
     climb: Climb<'a>,
     hand: Hand,
@@ -35,12 +35,12 @@ impl<'a> Interactive<'a> {
         })
     }
 
-    /// The corrected field as it is.
+    /// The present corrected field.
     pub fn state(&self) -> &ShapeClimb {
         &self.climbed
     }
 
-    /// The corrected field as it is, ready to be asked at any point of the sheet.
+    /// The present corrected field, to be evaluated at any point of the sheet.
     pub fn deformed(&self) -> DeformedSheet {
         let levels = &self.climb.levels;
         let mesh = &levels.meshes[levels.finest()];
@@ -57,16 +57,16 @@ impl<'a> Interactive<'a> {
         model.reactions(&self.climbed.state).at_group(name)
     }
 
-    /// Where the grips are, or how they are pulled: all groups that supports hold.
+    /// The positions of the grips, or the forces on them: all groups that supports hold.
     pub fn grips(&self) -> &BTreeMap<String, Grip> {
         &self.grips
     }
 
-    /// Moves some grips by a few mm or degrees, or pulls them otherwise; the others stay as they are. A motion that is too large for
-    /// one go is made in parts, with factors.
+    /// Moves some grips by a few mm or degrees, or changes the forces on them; the others stay unchanged. A motion
+    /// that is too large for one step is divided, with factors.
     ///
     /// # Errors
-    /// [`Error::Input`] where a grip is not of the kind that its group's support has, or where groups that share nodes would part;
+    /// [`Error::Input`] where a grip is not of the kind of its group's support, or where groups that share nodes would separate;
     /// [`Error::Solve`] when the field cannot follow. The state before is kept.
     pub fn move_grips(&mut self, grips: &[(&str, Grip)]) -> Result<&ShapeClimb, Error> {
         let mut all = self.grips.clone();
@@ -120,7 +120,7 @@ impl<'a> Interactive<'a> {
     }
 }
 
-/// A motion that the field cannot follow.
+/// The error of a motion that the field cannot follow.
 fn refused([from, to]: [&BTreeMap<String, Grip>; 2], reached: f64, fault: SolveFault) -> Error {
     let moved = from.iter().filter(|(name, grip)| to[*name] != **grip);
     let moved = moved.map(|(name, grip)| format!("`{name}` from {grip} to {}", to[name]));

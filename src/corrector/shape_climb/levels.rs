@@ -1,4 +1,4 @@
-//! The meshes of a climb, with what is the same for all of its states.
+//! The meshes of a climb, with the data common to all of its states.
 
 use std::cell::OnceCell;
 
@@ -13,9 +13,9 @@ pub struct Levels<'a> {
     pub problem: &'a BoundaryProblem,
     pub meshes: &'a [Mesh],
     energies: Vec<SheetEnergy>,
-    /// From each mesh to the next finer one.
+    /// Interpolations from each mesh to the next finer one.
     finer: Vec<Interpolation>,
-    /// From each mesh to the one before it, found when they are first needed.
+    /// Interpolations from each mesh to the one before it, computed when first needed.
     coarser: OnceCell<Vec<Interpolation>>,
 }
 
@@ -51,19 +51,19 @@ impl<'a> Levels<'a> {
         Ok(model.named("corrector"))
     }
 
-    /// The strain energy of a field on a mesh in mJ; not a number where a cell is turned inside out.
+    /// The strain energy of a field on a mesh in mJ; NaN where a cell is turned inside out.
     pub fn strain_energy(&self, level: usize, u: &[f64]) -> f64 {
         let found = Assembly::residual(&self.energies[level], u, &mut vec![0.0; u.len()]);
         found.unwrap_or(f64::NAN)
     }
 
-    /// From the mesh before to a mesh.
+    /// The interpolation from the mesh before to a mesh.
     pub fn to(&self, level: usize) -> &Interpolation {
         &self.finer[level - 1]
     }
 
-    /// The tangents of all meshes but the finest at a field of the finest one, at a load factor; `None` where one of them is not
-    /// positive definite, or there is none.
+    /// The tangents of all meshes but the finest at a field of the finest one, at a load factor; `None` where one of
+    /// them is not positive definite, or does not exist.
     pub fn tangents_below(&self, factor: f64, field: &[f64]) -> Option<Ladder> {
         let coarser = self.coarser.get_or_init(|| {
             let pairs = self.meshes.windows(2);
@@ -96,7 +96,7 @@ impl<'a> Levels<'a> {
     }
 }
 
-/// The problem on a mesh with an energy of its nodes.
+/// The problem on a mesh with an energy of its nodal displacements.
 ///
 /// # Errors
 /// [`Error::Input`] where the mesh does not suit it.
@@ -109,7 +109,7 @@ pub fn on<'a>(
     found.map_err(|fault: Diagnostic| Error::Input(vec![fault]))
 }
 
-/// Writes the unknowns of the coarser mesh, with their shares, that an unknown of the finer one is made of.
+/// Writes the unknowns of the coarser mesh, with their shares, that make up an unknown of the finer one.
 pub fn carrying(interpolation: &Interpolation) -> impl Fn(usize, &mut Vec<(usize, f64)>) + '_ {
     |unknown, terms| {
         let nodes = interpolation.of(unknown / 2).iter();

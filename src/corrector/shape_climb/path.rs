@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::solve::Loading;
 use crate::solve::vector::add_scaled;
 
-/// The field that is expected at a load factor; `None` where nothing is known.
+/// The expected field at a load factor; `None` where nothing is known.
 fn expected(known: &Known<Vec<f64>>, factor: f64) -> Option<Vec<f64>> {
     let mut field = vec![0.0; known.fields.first()?.len()];
     for (share, own) in value_shares(&known.parameters, factor)
@@ -21,13 +21,13 @@ fn expected(known: &Known<Vec<f64>>, factor: f64) -> Option<Vec<f64>> {
 }
 
 impl Climb<'_> {
-    /// Corrects at many load factors, one after the other: the first and the last by a climb, which also tell the
-    /// discretisation error, the others from the states before them, extrapolated, with the tangents of earlier states as
-    /// long as they serve.
+    /// Corrects at many load factors, one after the other: the first and the last by a climb, which also gives the
+    /// discretisation error, the others from the states before them, extrapolated, with the tangents of earlier
+    /// states as long as they serve.
     ///
     /// # Errors
-    /// [`Error::Solve`] with the load factor at which no field was found, after the states before it were told; [`Error::Input`] where a mesh
-    /// does not suit the problem.
+    /// [`Error::Solve`] with the load factor at which no field was found, after the states before it were reported;
+    /// [`Error::Input`] where a mesh does not suit the problem.
     pub fn follow(
         &mut self,
         factors: &[f64],
@@ -36,7 +36,7 @@ impl Climb<'_> {
         let [first, others @ ..] = factors else {
             return Ok(());
         };
-        // Where the last state cannot be reached it is said when its turn comes.
+        // Where the last state cannot be reached, this is reported in its turn.
         let mut last = others.last().and_then(|last| {
             let climbed = self.correct(*last).ok()?;
             Some((climbed, self.systems.as_ref()?.scale))
@@ -46,7 +46,7 @@ impl Climb<'_> {
         if let Some(systems) = &mut self.systems {
             let scale = last.as_ref().map_or(systems.scale, |(_, scale)| *scale);
             errors = [systems.scale.discretisation, scale.discretisation];
-            // A state of rest tells nothing.
+            // A state at rest gives no ratio.
             for own in 0..2 {
                 if errors[own].is_nan() {
                     errors[own] = errors[1 - own];
@@ -75,7 +75,8 @@ impl Climb<'_> {
         Ok(())
     }
 
-    /// The state at a load factor, with a discretisation error over the size of the field, from those before; where they do not lead there, by a climb of its own.
+    /// The state at a load factor from those before, with a discretisation error relative to the size of the field; where they do not lead there, by
+    /// a climb of its own.
     fn after(
         &mut self,
         known: &Known<Vec<f64>>,

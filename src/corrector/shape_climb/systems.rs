@@ -1,4 +1,4 @@
-//! The systems that a climb leaves, for states near others.
+//! The systems that a climb leaves for states nearby.
 
 use super::field::{NEWTON, ShapeClimb, ShapeWork, approached};
 use super::levels::{Levels, carrying};
@@ -9,34 +9,34 @@ use crate::solve::{
     equilibrium,
 };
 
-/// Cycles that the tangent of the finest mesh costs, about, with a look at its stability.
+/// Approximate cost in cycles of the tangent of the finest mesh and of a check of its stability.
 const TANGENT: usize = 30;
 
-/// Iterations a step, over those when the tangents of all meshes were of one place, from which on those of the coarser ones are taken
-/// anew.
+/// Iterations per step, relative to those with the tangents of all meshes at one state, from which on the tangents of
+/// the coarser meshes are taken anew.
 const STALE: f64 = 2.0;
 
-/// How much softer than the whole field what the iteration leaves may be, √(energy) over size.
+/// How much softer than the whole field the iteration's error may be, √(energy) over size.
 const SOFTER: f64 = 4.0;
 
-/// What a climb tells of errors, over the size of its field; not a number what it does not tell.
+/// Errors found by a climb, relative to the size of its field; NaN where they are not known.
 #[derive(Clone, Copy)]
 pub struct Scale {
     /// Root mean square departure of the field from a rigid motion in mm.
     departure: f64,
     /// Discretisation error.
     pub discretisation: f64,
-    /// Imbalance that may be left in √mJ/mm; `None` where there is no multigrid, or where it is not known.
+    /// Imbalance that may remain in √mJ/mm; `None` where there is no multigrid, or where it is not known.
     imbalance: Option<f64>,
-    /// What an imbalance leaves of the field in mm/√mJ.
+    /// Error of the field in mm due to an imbalance, in mm/√mJ.
     compliance: f64,
 }
 
 impl Scale {
-    /// That of a field with a discretisation error in mm; the iteration may leave a share of it, `tolerance`.
+    /// The scale of a field with a discretisation error in mm; the iteration may leave a share of it, `tolerance`.
     ///
-    /// An error z of the field has the imbalance √(z · K z). What finer meshes add is rough, and has a large one; what iterations between
-    /// states leave is about as smooth as the field itself, u, and √(2 W) of its strain energy W stands for ‖u‖.
+    /// An error z of the field has the imbalance √(z · K z). The changes of finer meshes are rough and have a large imbalance; the error of
+    /// iterations between states is about as smooth as the field u itself, and √(2 W) of its strain energy W stands for ‖u‖.
     pub fn of(levels: &Levels, state: &State, [discretisation_error, tolerance]: [f64; 2]) -> Self {
         let finest = levels.finest();
         let departure = departure(&levels.meshes[finest], &state.displacement);
@@ -51,7 +51,7 @@ impl Scale {
         }
     }
 
-    /// With what an approach tells, of whose first imbalance some share may be left.
+    /// The scale with the result of an approach, of whose first imbalance some share may remain.
     pub fn told(self, own: &Approach, share: f64) -> Self {
         let of_approach = share * own.first / self.departure;
         Self {
@@ -60,7 +60,7 @@ impl Scale {
         }
     }
 
-    /// Where there is no multigrid.
+    /// The scale where there is no multigrid.
     pub fn without_multigrid(self) -> Self {
         Self {
             imbalance: None,
@@ -68,7 +68,7 @@ impl Scale {
         }
     }
 
-    /// With the more careful limits of two.
+    /// The scale with the stricter limits of two.
     pub fn and(self, other: Self) -> Self {
         Self {
             departure: self.departure.max(other.departure),
@@ -116,7 +116,7 @@ pub fn departure(mesh: &Mesh, u: &[f64]) -> f64 {
     (squares.sum::<f64>() / count).sqrt()
 }
 
-/// Which tangents are taken anew.
+/// The tangents that are taken anew.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Anew {
     None,
@@ -124,22 +124,22 @@ enum Anew {
     All,
 }
 
-/// The systems of all meshes, and what they are good for.
+/// The systems of all meshes, and how well they serve.
 pub struct Systems {
     newton: Newton,
     pub scale: Scale,
-    /// What the next state begins with.
+    /// The tangents with which the next state begins.
     anew: Anew,
-    /// Iterations a step when all tangents were of one place.
+    /// Iterations per step when all tangents were of one state.
     pace: f64,
-    /// Whether the tangents of the coarser meshes do not serve that of the finest one.
+    /// Whether the tangents of the coarser meshes no longer suit that of the finest one.
     coarser_are_stale: bool,
-    /// Cycles that a state took with a tangent of its own, and all those beyond since.
+    /// Cycles of a state with a tangent of its own, and all cycles beyond that number since.
     own: usize,
     beyond: usize,
 }
 
-/// A load factor, or whatever a loading goes by, with the field that is expected there, and the load factor of the loads.
+/// A load factor, or another parameter of a loading, with the field that is expected there, and the load factor of the loads.
 pub struct Aim {
     pub factor: f64,
     pub start: Vec<f64>,
@@ -147,7 +147,7 @@ pub struct Aim {
 }
 
 impl Systems {
-    /// Those of the finest mesh after a climb; without multigrid they are made there for factors.
+    /// The systems of the finest mesh after a climb; without multigrid they are created there for factors.
     ///
     /// # Errors
     /// [`Error::Solve`] where there is no tangent, [`Error::Input`] where the mesh does not suit the problem.
@@ -182,7 +182,7 @@ impl Systems {
         })
     }
 
-    /// About what a small motion of what is held brings about from an equilibrium; `None` where there is no tangent.
+    /// The approximate effect of a small motion of held unknowns from an equilibrium; `None` where there is no tangent.
     pub fn carried_along(
         &mut self,
         loading: &dyn Loading,
@@ -227,7 +227,7 @@ impl Systems {
         Some(self.of_factors(levels, state.ok()?))
     }
 
-    /// A state that was found with factors.
+    /// The result for a state that was found with factors.
     pub fn of_factors(&self, levels: &Levels, state: State) -> ShapeClimb {
         let mesh = &levels.meshes[levels.finest()];
         ShapeClimb {
@@ -281,7 +281,7 @@ impl Systems {
         None
     }
 
-    /// Says what the next state begins with.
+    /// Decides with which tangents the next state begins.
     fn judge(&mut self, own: &Approach, anew: Anew) {
         let cycles = own.iterations + own.steps + 1;
         if own.linearisations > 0 {

@@ -38,7 +38,7 @@ impl<L: BodyLaw> BodySheet<L> {
     }
 }
 
-/// Some points of a loop; behind the last one rest.
+/// Some points of a loop; entries behind the last one are at rest.
 struct Lanes<S> {
     gradients: [[f64; LANES]; 4],
     shapes: [S; LANES],
@@ -101,9 +101,9 @@ impl<S: Copy> Lanes<S> {
     }
 }
 
-/// What is made of the measures and derivatives at a point.
+/// A result computed from the measures and derivatives at a point.
 trait Made<const N: usize> {
-    /// Component by component.
+    /// The components of the result.
     fn of(measures: &Measures, w: &Derivatives) -> [f64; N];
 }
 
@@ -125,7 +125,7 @@ impl Made<COMPONENTS> for Response {
     }
 }
 
-/// What is made of every point of a list; `false` where one is turned inside out.
+/// Computes the result for every point of a list; `false` where one is turned inside out.
 ///
 /// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
 /// machines give the same bits.

@@ -7,14 +7,14 @@ use super::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 /// Steps of Newton's method before the root is looked for between bounds.
 const MOST_STEPS: usize = 40;
 
-/// A step of ln λ₃ of this size, in parts of the strains, is the last one: what is then left, about its square, is condensed with W_b,
-/// which leaves of it nothing in the stress, and 1e-11 in the tangent.
+/// A step of ln λ₃ of this size, relative to the strains, is the last one: the remaining error, about its square, is
+/// condensed with W_b, which removes it from the stress, and leaves 1e-11 in the tangent.
 const LAST_STEP: f64 = 3e-6;
 
-/// Where roots are looked for: ln λ₃ within ± this.
+/// Range in which roots are searched: ln λ₃ within ± this.
 const FARTHEST: f64 = 12.0;
 
-/// In how many pieces.
+/// Number of pieces of this range.
 const PIECES: usize = 960;
 
 /// λ₃^⅓ − 1 where the pieces end.
@@ -32,7 +32,7 @@ fn midpoint_logarithm(area_change: f64) -> f64 {
 
 impl<L: BodyLaw> BodySheet<L> {
     /// q = J₃^⅓ − 1 where W_b = 0, at several points at once, each by itself: Newton's method from a series at small strain.
-    /// Not a number where there is no such thickness.
+    /// NaN where there is no such thickness.
     ///
     /// A step Δb of ln λ₃ is one of ln J₃, and (1 + q) (1 + Δb/3) is its root to the first order, as far as Newton's method goes.
     #[inline(always)]
@@ -54,7 +54,7 @@ impl<L: BodyLaw> BodySheet<L> {
                 let step = w.b / w.bb.abs();
                 let strains = area_change[lane].abs().min(1.0) + root[lane].abs();
                 let last = (w.bb > 0.0) & (step.abs() <= LAST_STEP * strains);
-                // A step beyond 1 is none of Newton's method any more.
+                // A step beyond 1 is outside of the range of Newton's method.
                 let next = root[lane] - (1.0 + root[lane]) * (step.clamp(-1.0, 1.0) / 3.0);
                 root[lane] = if open[lane] == 1 { next } else { root[lane] };
                 open[lane] &= u64::from(!last);
@@ -94,7 +94,7 @@ impl<L: BodyLaw> BodySheet<L> {
         })
     }
 
-    /// q by the series at small strain; higher orders count as far as they are no more than a correction.
+    /// q by the series at small strain; higher orders count as far as they are only a correction.
     #[inline(always)]
     fn expected(&self, area_change: f64, z: f64) -> f64 {
         const MOST: f64 = 0.1;
@@ -102,7 +102,7 @@ impl<L: BodyLaw> BodySheet<L> {
         let area = midpoint_logarithm(area_change);
         let higher = area * area * (c2 + area * c3) + z * (c4 + area * c5);
         let third_of_volume = c1 * area + higher.clamp(-MOST, MOST);
-        // e^x − 1 as far as a beginning needs it; above −1.
+        // e^x − 1, as exact as a start needs it; above −1.
         third_of_volume * (1.0 + third_of_volume * (0.5 + third_of_volume / 6.0))
     }
 
@@ -151,8 +151,8 @@ impl<L: BodyLaw> BodySheet<L> {
     }
 }
 
-/// Of the pieces between ascending places the one whose middle is nearest to a number of those from which to the end a function rises
-/// through zero. Nearer ones are looked at first, and every place once.
+/// Of the pieces between ascending places, finds one over which a function rises through zero, and whose middle is
+/// nearest to a number. Nearer ones are checked first, and every place once.
 fn rising(
     place: impl Fn(usize) -> f64,
     function: impl Fn(f64) -> f64,

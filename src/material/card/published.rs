@@ -22,8 +22,8 @@ impl Card {
         })
     }
 
-    /// How far the law's tension curve is from the published one without its stress at rest, over the
-    /// range of the card: largest difference in % of the largest stress. `None` in plane strain, where no strip is pulled.
+    /// Distance of the law's tension curve from the published one without its stress at rest, over the range of the
+    /// card: largest difference in % of the largest stress. `None` in plane strain, where no strip is pulled.
     pub fn fit_error_percent(&self) -> Option<f64> {
         if self.law.plane_state() == PlaneState::Strain {
             return None;

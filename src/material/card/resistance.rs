@@ -1,4 +1,4 @@
-//! What a card says of changes of volume.
+//! A card's statements on changes of volume.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ const POINTS: u32 = 100;
 const SWELLING: &str = "flory-rehner";
 
 impl Card {
-    /// Reads how the material resists a change of volume.
+    /// Reads the resistance to a change of volume.
     pub(super) fn resist(&mut self, section: &Section) {
         let (bulk, ratio) = ("bulk_modulus", "poisson_ratio");
         let bulk_modulus = match (section.has(bulk), section.has(ratio)) {
@@ -82,10 +82,10 @@ impl Card {
         }
     }
 
-    /// What the card's `[volume]` makes of uniaxial tension: where over the range of the card the nominal stress differs most from that
-    /// of the same parameters at constant volume, as a stretch, and by what share of it. `None` without a `[volume]`.
+    /// The effect of the card's `[volume]` on uniaxial tension: the stretch within the range of the card at which the nominal stress
+    /// differs most from that of the same parameters at constant volume, and the relative difference. `None` without a `[volume]`.
     ///
-    /// Parameters, and curves, are mostly those of tests that were read as if they kept their volume.
+    /// Parameters and curves are mostly those of tests that were evaluated as if the volume were constant.
     pub fn tension_by_volume(&self) -> Option<[f64; 2]> {
         let isochoric = self.isochoric.as_ref()?;
         let volume = Volume {
@@ -104,7 +104,7 @@ impl Card {
         changes.max_by(|a, b| a[1].abs().total_cmp(&b[1].abs()))
     }
 
-    /// What the sheet is in words: `an incompressible material in plane stress`.
+    /// The sheet in words: `an incompressible material in plane stress`.
     pub fn describe_sheet(&self) -> String {
         let material = match (self.law_name == SWELLING, self.bulk_modulus()) {
             (true, _) => "a gel that exchanges solvent".to_owned(),
@@ -124,7 +124,7 @@ impl Card {
         format!("{material} in {plane}{softens}")
     }
 
-    /// The title of a study of this material that gives none: what is studied and the card's title.
+    /// The title of a study of this material that states none: the kind of study and the card's title.
     pub fn title_of(&self, what: &str) -> String {
         let words: Vec<&str> = self.title.split_whitespace().collect();
         format!("{what} of {}", words.join(" "))

@@ -19,8 +19,8 @@ use crate::material::parameters::{Parameters, StrainMeasure, StressMeasure};
 /// | b | `exponent` | – | > 0 | rate of the exponential |
 /// | σ₀ | `offset` | MPa | any, may be left out | constant of the published curve σ₀ + A e^{b ε} |
 ///
-/// A published curve σ₀ + A e^{b ε} with σ₀ ≠ −A has a stress at rest. The law always uses the curve
-/// less its value at rest; `offset = "keep"` on a card is for drawing the published curve only.
+/// A published curve σ₀ + A e^{b ε} with σ₀ ≠ −A has a stress at rest. The law always uses the curve less its value
+/// at rest; `offset = "keep"` on a card serves to draw the published curve only.
 ///
 /// **Limits.** Small strain: E₀ = A b.
 #[derive(Clone, Copy, Debug)]

@@ -11,10 +11,10 @@ use crate::material::parameters::{Parameters, StrainMeasure, StressMeasure};
 /// |---|---|---|---|
 /// | `strain` | – | increasing, not below rest | strains of the points in the card's strain measure |
 /// | `stress` | stress | a rise from rest | stresses of the points in the card's stress measure |
-/// | `extrapolation` | | `"linear"`, `"none"` | beyond the last point: straight on, or no energy at all |
+/// | `extrapolation` | | `"linear"`, `"none"` | beyond the last point: a straight line, or no energy |
 ///
-/// The points are turned into nominal stress P over x = λ − 1. A stress of the first point at rest is
-/// subtracted from all in the measure of the card (`offset = "subtract"`); where the table begins above rest, rest is added with P = 0.
+/// The points are converted to nominal stress P over x = λ − 1. The stress of a first point at rest is subtracted from all
+/// stresses in the card's measure (`offset = "subtract"`); where the table begins above rest, rest is added with P = 0.
 /// P and dP/dx are continuous; the slopes at the points are those of Fritsch and Butland, so that the curve
 /// has no overshoot.
 ///
@@ -26,13 +26,13 @@ pub struct TableCurve {
     extrapolate: bool,
 }
 
-/// What is wrong with the points of a tension curve.
+/// A fault in the points of a tension curve.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CurveFault {
-    /// There are none.
+    /// There are no points.
     #[error("the curve has no points")]
     Empty,
-    /// A strain or a stress is no number.
+    /// A strain or a stress is not a number.
     #[error("{0} is not a finite number")]
     NotFinite(f64),
     /// The first strain is compression.
@@ -43,13 +43,13 @@ pub enum CurveFault {
     NotIncreasing {
         /// A stretch.
         before: f64,
-        /// The one that follows.
+        /// The next stretch.
         after: f64,
     },
     /// The only point is the one at rest.
     #[error("the curve needs a point other than rest")]
     RestAlone,
-    /// The stress falls, or stays, with the first strain.
+    /// The stress falls, or is constant, over the first strain.
     #[error("the curve does not rise from rest")]
     DoesNotRise,
 }
@@ -67,7 +67,7 @@ impl TableCurve {
     /// Reads the table of a card.
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         let mut points = parameters.curve();
-        // In its own measure, as of a formula.
+        // Subtracted in its own measure, as for a formula.
         if let Some(&[_, at_rest]) = points.first().filter(|[strain, _]| *strain == 0.0) {
             points.iter_mut().for_each(|point| point[1] -= at_rest);
         }

@@ -9,7 +9,7 @@ use crate::mesh::cells::Mesh;
 use crate::mesh::geometry::determinant;
 use crate::statistics::extremes;
 
-/// A Jacobian over the square of a cell's size that is none.
+/// A Jacobian that counts as zero, relative to the square of a cell's size.
 const NOTHING: f64 = 1e-9;
 /// The smallest angle between the sides of a good cell, in degrees; the largest one is 180° less it.
 const SMALLEST_ANGLE: f64 = 5.0;

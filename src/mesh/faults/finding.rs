@@ -1,8 +1,8 @@
-//! What is found of a kind of fault, and what is allowed.
+//! The findings of one kind of fault, and the exemptions.
 
 use crate::error::Diagnostic;
 
-/// What looks like a fault but may be meant.
+/// Apparent faults that may be intended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exemptions {
     /// Slits: neighbouring cells with nodes of their own at the same places.
@@ -11,11 +11,11 @@ pub struct Exemptions {
     pub parts: bool,
     /// Cells or parts that are joined in a single node.
     pub hinges: bool,
-    /// Straight edges that turn as those of a curve.
+    /// Straight edges that turn like those of a curve.
     pub polygons: bool,
 }
 
-/// A name that is none of [`Exemptions::NAMES`].
+/// A name that is not among [`Exemptions::NAMES`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("\"{0}\" is not known here")]
 pub struct UnknownName(String);
@@ -24,7 +24,7 @@ impl Exemptions {
     /// The names that studies and options use.
     pub const NAMES: [&'static str; 4] = ["seams", "parts", "hinges", "polygons"];
 
-    /// Those of some names.
+    /// The exemptions with some names.
     ///
     /// # Errors
     /// The first [`UnknownName`].
@@ -43,7 +43,7 @@ impl Exemptions {
     }
 }
 
-/// How many things of a kind were found, and the places of the first ones.
+/// The number of faults of a kind, and the places of the first ones.
 #[derive(Default)]
 pub struct Finding {
     pub count: usize,

@@ -14,7 +14,7 @@ impl DisjointSets {
         Self((0..count).collect())
     }
 
-    /// The number that stands for the set of one.
+    /// The number that represents the set of one.
     pub fn of(&mut self, mut one: usize) -> usize {
         while self.0[one] != one {
             self.0[one] = self.0[self.0[one]];
@@ -70,7 +70,7 @@ pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
     Some(Diagnostic::error("", message).hint(remedy))
 }
 
-/// Nodes from which the boundary goes on in two ways.
+/// Nodes from which the boundary continues in two ways.
 pub fn hinges(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
     if allowed.hinges {
         return None;

@@ -12,7 +12,7 @@ use crate::mesh::refine::key;
 pub struct Side {
     key: [usize; 2],
     pub cell: usize,
-    /// From the smaller end to the larger one, as the cell to its left goes around.
+    /// Whether it leads from the smaller end to the larger one, as the cell to its left goes around.
     forward: bool,
     /// The node in its middle.
     pub middle: Option<usize>,
@@ -26,10 +26,10 @@ impl Side {
     }
 }
 
-/// All sides of a mesh's cells but some.
+/// All sides of a mesh's cells, except some cells.
 pub struct Sides<'a> {
     pub mesh: &'a Mesh,
-    /// By their ends.
+    /// Sorted by their ends.
     all: Vec<Side>,
     /// The cells that are left out.
     again: &'a HashSet<usize>,
@@ -76,7 +76,7 @@ impl<'a> Sides<'a> {
         [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
     }
 
-    /// Sides where cells overlap or do not go together.
+    /// Sides where cells overlap or do not match.
     pub fn faults(&self) -> Vec<Diagnostic> {
         let overlapping = self.meeting().filter(|sides| {
             sides.len() > 2 || (sides.len() == 2 && sides[0].forward == sides[1].forward)

@@ -8,7 +8,7 @@ use super::sides::{Side, Sides};
 use crate::error::Diagnostic;
 use crate::mesh::cells::Mesh;
 
-/// What is nearer than this part of the shortest edge around is at the same place.
+/// Places nearer than this share of the shortest edge around are the same place.
 const NEAR: f64 = 1e-3;
 /// A node is inside of a cell when it lies this far from its sides, in natural coordinates.
 const INSIDE: f64 = 1e-2;
@@ -26,7 +26,7 @@ pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
         }
     }
     if allowed.seams {
-        // What lies on the other bank of a slit does not hang; what hangs has a neighbour among the side's own nodes.
+        // A node on the other side of a slit does not hang; a hanging node has a neighbour among the side's own nodes.
         hanging.retain(|(node, side)| boundary.is_neighbour(*node, *side));
     }
     let seam = boundary.seam(&doubled);
@@ -49,7 +49,7 @@ pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
     found
 }
 
-/// What of the boundary a node is at.
+/// The part of the boundary at a node.
 enum Contact {
     Node(usize),
     Side,
@@ -94,8 +94,7 @@ impl<'a> Boundary<'a> {
         boundary
     }
 
-    /// The mean extent of the sides' boxes, but not so much shorter than the longest one that this would cover more squares
-    /// than there are sides.
+    /// The mean extent of the sides' boxes, but not so much smaller than the longest one that this would cover more squares than there are sides.
     fn usual_extent(&self) -> f64 {
         let extent = |side: &Side| {
             let [low, high] = self.around(*side);
@@ -120,7 +119,7 @@ impl<'a> Boundary<'a> {
         place.map(|x| (x / self.step).floor() as i64)
     }
 
-    /// The box around a side, with what is near.
+    /// The box around a side, including a margin for nearby nodes.
     fn around(&self, side: Side) -> [[f64; 2]; 2] {
         let [a, b] = side.ends().map(|node| self.node(node));
         let bow = self.bow(side);
@@ -170,7 +169,7 @@ impl<'a> Boundary<'a> {
         let square = chord[0].powi(2) + chord[1].powi(2);
         let at =
             |t: f64| [0, 1].map(|axis| a[axis] + t * chord[axis] + 4.0 * t * (1.0 - t) * bow[axis]);
-        // Along the chord; its own bow moves a point along it only where the middle is off the middle.
+        // The parameter along the chord; the side's own bow moves a point along it only where the middle node is off the middle.
         let mut t = 0.5;
         for _ in 0..20 {
             let here = at(t);

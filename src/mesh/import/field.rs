@@ -9,12 +9,12 @@ use super::{frd, gmsh, pvd, vtk};
 use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};
 
-/// What a file holds that cannot be read as a displacement field, in words that follow the file's name.
+/// Contents of a file that cannot be read as a displacement field, in words that follow the file's name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
 pub struct ImportFault {
     reason: String,
-    /// What to do, where it is not to give another file.
+    /// The remedy, where it is not to give another file.
     pub remedy: Option<String>,
 }
 
@@ -40,7 +40,7 @@ pub struct ImportedField {
     pub mesh: Mesh,
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,
-    /// What of the file it is: the array, or the time of the step.
+    /// The part of the file: the array, or the time of the step.
     pub part: String,
 }
 
@@ -51,28 +51,28 @@ pub struct ImportedSeries {
     pub mesh: Mesh,
     /// The fields in the order of the file.
     pub steps: Vec<ImportedStep>,
-    /// What of the file they are.
+    /// The part of the file.
     pub part: String,
 }
 
 /// One field of a series.
 #[derive(Clone, Debug)]
 pub struct ImportedStep {
-    /// Its time, where the file says it.
+    /// Its time, where the file states it.
     pub time: Option<f64>,
-    /// ux, uy of node after node in mm; no number at nodes without a displacement.
+    /// ux, uy of node after node in mm; NaN at nodes without a displacement.
     pub displacement: Vec<f64>,
     /// The first node without a displacement, and why.
     pub hole: Option<String>,
 }
 
-/// The time of a step may differ by so much of it from the one that is wanted.
+/// The largest relative difference of a step's time from the wanted one.
 const NEAR: f64 = 1e-4;
 
 /// Reads a field from VTK (`.vtu`, `.vtk`, `.pvd`), CalculiX (`.frd`) or Gmsh (`.msh` with `$NodeData`); `unit` is
-/// the length of the file's unit in mm. Of VTK's and Gmsh's arrays the one of the name `array` is taken; without a
-/// name the displacement, or the only vector. A unit at the end of an array's name is that of its values. Of several
-/// steps the one with the time `time` is taken.
+/// the length of the file's unit in mm. In VTK and Gmsh files the array with the name `array` is read; without a name
+/// the displacement, or the only vector. A unit at the end of an array's name is that of its values. Among several
+/// steps the one with the time `time` is read.
 ///
 /// # Errors
 /// An [`ImportFault`].
@@ -229,7 +229,7 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
     })
 }
 
-/// The array of a name; without one the displacement among arrays of vectors, or the only one.
+/// The array with a name; without one the displacement among arrays of vectors, or the only one.
 fn choose<T>(
     mut arrays: Vec<(String, T)>,
     wanted: Option<&str>,

@@ -7,8 +7,8 @@
 //!  -4  DISP …                     displacements: -1, node, D1, D2, D3
 //! ```
 //!
-//! CalculiX turns the elements of a sheet into solids. Where the file holds them (`OUTPUT=3D`), their lower faces become
-//! the cells, and the displacement of a node is the mean of all nodes above it.
+//! CalculiX turns the elements of a sheet into solids. Where the file contains these (`OUTPUT=3D`), their lower faces
+//! become the cells, and the displacement of a node is the mean of all nodes above it.
 //!
 //! # References
 //! K. Wittig, CalculiX GraphiX 2.20, "Result Format"
@@ -40,7 +40,7 @@ const KINDS: [(usize, CellShape, usize); 8] = [
     (10, CellShape::Quad8, 8),
 ];
 
-/// Which block the lines belong to.
+/// The block to which the lines belong.
 enum Block {
     Other,
     Nodes,
@@ -48,7 +48,7 @@ enum Block {
     Displacements,
 }
 
-/// What of a file has been read.
+/// The part of a file that has been read.
 struct Reader {
     results: Results,
     block: Block,
@@ -64,7 +64,7 @@ struct Reader {
 /// Reads the text of a file.
 ///
 /// # Errors
-/// Says what is wrong or cannot be read.
+/// A description of what is wrong or cannot be read.
 pub fn read(text: &str) -> Result<Results, Unreadable> {
     let mut reader = Reader {
         results: Results::default(),
@@ -164,7 +164,7 @@ fn digits(format: &str) -> Result<usize, Unreadable> {
     }
 }
 
-/// Three numbers of twelve columns each; what is left out at the end of a line is zero.
+/// Three numbers of twelve columns each; numbers left out at the end of a line are zero.
 fn numbers(line: &str, width: usize) -> Option<[f64; 3]> {
     let mut values = [0.0; 3];
     for (i, value) in values.iter_mut().enumerate() {
@@ -178,7 +178,7 @@ fn numbers(line: &str, width: usize) -> Option<[f64; 3]> {
     Some(values)
 }
 
-/// Keeps an element as a cell; says whether it was a solid.
+/// Adds an element as a cell; returns whether it was a solid.
 fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Unreadable> {
     let Some((number, nodes)) = element else {
         return Ok(false);

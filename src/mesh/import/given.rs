@@ -21,15 +21,14 @@ pub struct MeshData {
     pub nodes: BTreeMap<String, Vec<usize>>,
 }
 
-/// What messages call it.
+/// Its name in messages.
 const NAME: &str = "the mesh";
 
 impl MeshData {
-    /// Makes a mesh of it as [`import`](super::import()) does of a file. Nodes of no cell are left out; the others keep
-    /// their order.
+    /// Makes a mesh of it as [`import`](super::import()) does of a file. Nodes that belong to no cell are left out; the others keep their order.
     ///
     /// # Errors
-    /// Every kind of fault of the mesh, see [`Mesh::faults`]; cells with a wrong number of nodes, groups without any.
+    /// Every kind of fault of the mesh, see [`Mesh::faults`]; cells with a wrong number of nodes, groups without nodes.
     pub fn read(&self, reading: MeshReading) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> {
         let mut cells = self.cells.iter();
         if let Some(cell) = cells.position(|(shape, nodes)| nodes.len() != shape.nodes()) {

@@ -10,7 +10,7 @@ use crate::mesh::cell_shape::CellShape;
 /// Reads the text of a file.
 ///
 /// # Errors
-/// Says what is wrong or cannot be read.
+/// A description of what is wrong or cannot be read.
 pub fn read(text: &str) -> Result<Raw, Unreadable> {
     let mut format = section(text, "MeshFormat")?;
     let version: f64 = format.next()?;
@@ -28,7 +28,7 @@ pub fn read(text: &str) -> Result<Raw, Unreadable> {
 /// The views of vectors at the nodes (`$NodeData`) by their names, each with its steps: times and values by node.
 ///
 /// # Errors
-/// Says what is wrong.
+/// A description of what is wrong.
 pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, Unreadable> {
     let mut views: Vec<(String, Vec<_>)> = Vec::new();
     for section in text.split("$NodeData").skip(1) {
@@ -58,7 +58,7 @@ pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, Unreadable> {
     Ok(views)
 }
 
-/// One step of a view after its names; `None` where its values are no vectors.
+/// One step of a view after its names; `None` where its values are not vectors.
 fn view_step(words: &mut Words) -> Result<Option<Step>, Unreadable> {
     let reals: Vec<f64> = (0..words.next::<usize>()?)
         .map(|_| words.next())
@@ -160,7 +160,7 @@ fn names(text: &str) -> Result<Names, Unreadable> {
     Ok(names)
 }
 
-/// The name of a group; Gmsh negates the tag where a group takes an entity the other way round.
+/// The name of a group; Gmsh negates the tag where a group takes an entity in the opposite direction.
 fn group(names: &Names, dimension: i64, tag: i64) -> String {
     let tag = tag.abs();
     names
@@ -169,7 +169,7 @@ fn group(names: &Names, dimension: i64, tag: i64) -> String {
         .unwrap_or_else(|| format!("physical-{tag}"))
 }
 
-/// Number of nodes of an element, and what it is to a flat mesh.
+/// Number of nodes of an element, and its role in a flat mesh.
 enum Kind {
     Point,
     Line,

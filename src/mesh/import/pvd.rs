@@ -7,7 +7,7 @@ use quick_xml::{Reader, XmlVersion};
 /// The times and the files that the text of a collection names, in its order.
 ///
 /// # Errors
-/// Says what is wrong.
+/// A description of what is wrong.
 pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
     let mut reader = Reader::from_str(text);
     let mut files = Vec::new();

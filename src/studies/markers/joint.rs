@@ -26,26 +26,26 @@ pub type NamedSpecimen = (String, MarkerStudy);
 /// Specimens and laws.
 #[derive(Debug)]
 pub struct JointStudy {
-    /// The specimens; the law of each is that of its card, whose parameters are looked for.
+    /// The specimens; the law of each is that of its card, whose parameters are to be found.
     pub specimens: Vec<NamedSpecimen>,
     /// The laws: the first one is that of the results, the others are compared with it.
     pub cards: Vec<Card>,
-    /// The parameters of the first law that are found; of all others all are.
+    /// The parameters of the first law that are found; for all other laws all of them are.
     pub fit: Vec<String>,
     /// How they are found.
     pub settings: JointSettings,
 }
 
-/// A law and what came of it.
+/// A law and its result.
 #[derive(Debug)]
 pub struct JudgedLaw {
     /// The card with its first values.
     pub card: usize,
-    /// What was found; why nothing was.
+    /// The estimate, or why there is none.
     pub found: Result<JointEstimate, Error>,
 }
 
-/// What was found of all laws.
+/// The results of all laws.
 #[derive(Debug)]
 pub struct JointResults {
     /// The first law.
@@ -68,10 +68,10 @@ pub struct CorrectedSpecimen {
 }
 
 impl JointStudy {
-    /// Whether the specimens can be told apart, and the laws have their parameters.
+    /// Checks that the specimens can be distinguished, and that the laws have their parameters.
     ///
     /// # Errors
-    /// [`Error::Input`] with what is wrong.
+    /// [`Error::Input`] with the faults.
     pub fn check(&self) -> Result<(), Error> {
         let mut names: Vec<&str> = self.specimens.iter().map(|(name, _)| &**name).collect();
         names.sort_unstable();
@@ -183,7 +183,7 @@ impl MarkerStudy {
     }
 }
 
-/// What intervals of a field hold whose law was found with other fields.
+/// The uncertainties included in the intervals of a field whose law was found with other fields.
 pub fn given_the_law() -> Diagnostic {
     let message = "intervals of displacements, stresses and forces apply to the estimated parameter values: the uncertainty of the parameters is not included";
     Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to those of forces and stresses")

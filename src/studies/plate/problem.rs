@@ -1,4 +1,4 @@
-//! What a plate's study asks for: the plate, the models and how they are solved, what is written.
+//! The contents of a plate's study: the plate, the models and how they are solved, the output.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::studies::sections::Tolerances;
 /// A study, checked.
 #[derive(Debug)]
 pub struct Study {
-    /// The file's name without its ending.
+    /// The file's name without its extension.
     pub name: String,
     /// The heading of the report.
     pub title: String,
@@ -28,7 +28,7 @@ pub struct Study {
     pub card: Card,
     /// Cells of the lattice.
     pub cells: [usize; 2],
-    /// What the lattice consists of.
+    /// The options of the lattice.
     pub lattice: LatticeSettings,
     /// How the lattice is solved.
     pub mass_spring: NewtonSettings,
@@ -36,17 +36,17 @@ pub struct Study {
     pub corrector: Correction,
     /// The finite elements that the other models are compared with.
     pub reference: Reference,
-    /// What the corrected field has to reach.
+    /// The requirements on the corrected field.
     pub tolerances: Tolerances,
     /// The pictures of its fields.
     pub pictures: Pictures,
-    /// What is written, and where.
+    /// The output.
     pub output: OutputSettings,
     /// The file's text.
     pub text: String,
-    /// The keys that it does not hold, with the defaults that they took.
+    /// The keys that the study does not state, with the defaults used.
     pub defaults: Vec<String>,
-    /// What deserves attention but does not stop the work.
+    /// Warnings, which do not stop the work.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -85,7 +85,7 @@ pub struct Reference {
     pub linear_solver: LinearSolver,
 }
 
-/// What is written, and where.
+/// The output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputSettings {
     /// The folder that receives everything.
@@ -107,7 +107,7 @@ impl Study {
         self
     }
 
-    /// What it will compute, in words.
+    /// What the study computes, in words.
     pub fn describe(&self) -> String {
         let [nx, ny] = self.cells;
         let [fx, fy] = self.reference.cells;

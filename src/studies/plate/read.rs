@@ -37,7 +37,7 @@ const GRADINGS: Bound = Bound::Within(1.0, 4.0);
 pub const DEFAULT: &str = include_str!("default.toml");
 
 impl Study {
-    /// Checks the text of the study file `path`, which may ask for so much.
+    /// Checks the text of the study file `path` within a budget.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault of the study and of its card.
@@ -86,7 +86,7 @@ impl Study {
     }
 }
 
-/// The keys that are asked for when a text is read.
+/// The keys that are looked up when a text is read.
 pub fn keys(text: &str) -> Vec<Key> {
     let faults = Faults::default();
     let defaults = Document::parse("default.toml", DEFAULT, &faults);
@@ -210,7 +210,7 @@ fn read_reference(
     let cells = read_reference_cells(section, || {
         let wanted = reference_cells(plate.size, judged);
         match section.excess(need(wanted)) {
-            // Finite elements that cannot judge the field in all are better than none.
+            // Finite elements that cannot judge the field fully are better than none.
             Some(_) => reference_cells(plate.size, (judged.0, false)),
             None => wanted,
         }

@@ -23,7 +23,7 @@ pub const MODELS: [&str; 3] = [MASS_SPRING.name, CORRECTED.name, FINITE_ELEMENTS
 pub struct ReferenceMesh {
     /// The model.
     pub model: FiniteElements,
-    /// One state a stretch, as far as the path goes.
+    /// One state per stretch that was reached.
     pub solution: Solution,
 }
 
@@ -35,7 +35,7 @@ pub struct Results {
     pub springs: MassSpring,
     /// The cells of the corrected fields: those of the lattice, or as many that become smaller towards the corners.
     pub corrected_mesh: Mesh,
-    /// The lattice in equilibrium, one state a stretch, as far as the path goes.
+    /// The lattice in equilibrium, one state per stretch that was reached.
     pub uncorrected: Solution,
     /// The corrected field at every stretch; `None` where none was found.
     pub corrected: Vec<Option<CorrectedState>>,
@@ -45,13 +45,13 @@ pub struct Results {
     pub estimates: Vec<Option<ErrorEstimate>>,
     /// The reference field in mm at the nodes of the lattice, and at those of the corrected fields, as far as the path goes.
     pub reference_on: [Vec<Vec<f64>>; 2],
-    /// Deviations from the reference, one entry a stretch.
+    /// Deviations from the reference, one entry per stretch.
     pub comparison: Vec<StepComparison>,
     /// Why models have no solution at stretches of the study, in the order in which they were solved.
     pub ends: Vec<Error>,
     /// Whether the material softens by its largest load.
     pub remembers: bool,
-    /// Wall-clock times: what, and seconds.
+    /// Wall-clock times: names and seconds.
     pub times: Vec<(&'static str, f64)>,
 }
 
@@ -71,7 +71,7 @@ impl Results {
         ]
     }
 
-    /// The displacement fields of a model before a stretch, which a material that softens remembers; none where it does not.
+    /// The displacement fields of a model before a stretch, which a softening material remembers; empty where it does not soften.
     pub fn past(&self, model: usize, step: usize) -> Vec<&[f64]> {
         let remembers = self.remembers;
         let before = (0..step).filter(|_| remembers);
@@ -79,7 +79,7 @@ impl Results {
         before.filter_map(field).collect()
     }
 
-    /// What was done on the material up to a stretch in each of them; nothing where it has no memory.
+    /// The work done on the material up to a stretch in each of them; `None` where it has no memory.
     pub fn works(&self, step: usize) -> [Option<Work>; 3] {
         let of = |solution: &Solution| *solution.works.get(step)?;
         let corrected = self.corrected[step].as_ref();
@@ -90,7 +90,7 @@ impl Results {
         ]
     }
 
-    /// What is measured of each of them.
+    /// The measures of each of them.
     pub fn measures(&self, step: usize) -> [Option<Measures>; 3] {
         let [springs, _, elements] = self.models(step);
         let of = |mesh, state: Option<&State>| state.map(|state| Measures::of(mesh, state));

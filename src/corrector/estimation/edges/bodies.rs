@@ -1,10 +1,10 @@
-//! Bodies that hold the sheet: all sides of one name move and pull as one, and share the reactions of the nodes where they meet.
+//! Bodies that hold the sheet: all sides with one name move and pull as one body, and share the reactions of the nodes where they meet.
 
 use crate::corrector::estimation::given::{EdgeCondition, Segment};
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares, shared_rests};
 
-/// What holds the sheet.
+/// A body that holds the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// The name of its edges.
@@ -13,20 +13,20 @@ pub struct Body {
     pub edges: Vec<usize>,
     /// The reactions along x and along y that make up its force.
     pub shares: [Vec<Share>; 2],
-    /// What is left at corners and shared with others along x and along y, though it may belong to any of them: the share, and the reactions
-    /// that make it up.
+    /// The rests of reactions at corners along x and along y that are shared with other bodies, though they may
+    /// belong to any of them: the share, and the reactions that make it up.
     pub rests: [Vec<(f64, Vec<Share>)>; 2],
-    /// Where bodies meet, known displacements go before rigid ones and these before unknown ones.
+    /// Where bodies meet, known displacements take precedence over rigid ones and these over unknown ones.
     pub rank: usize,
 }
 
 impl Body {
-    /// Its force of some reactions, two numbers a node.
+    /// The force for given reactions, two numbers per node.
     pub fn force(&self, reactions: &[f64]) -> [f64; 2] {
         [0, 1].map(|axis| of_reactions(&self.shares[axis], reactions, axis))
     }
 
-    /// The standard deviation along an axis of what may belong to others, as if each division of it were as likely.
+    /// The standard deviation along an axis of the part that may belong to others, if each division of it were equally likely.
     pub fn division_error(&self, reactions: &[f64], axis: usize) -> f64 {
         let square = |(share, factors): &(f64, Vec<Share>)| {
             (share * of_reactions(factors, reactions, axis)).powi(2) / 3.0
@@ -35,7 +35,7 @@ impl Body {
     }
 }
 
-/// What some shares of reactions along an axis make up.
+/// The sum of some shares of reactions along an axis.
 fn of_reactions(shares: &[Share], reactions: &[f64], axis: usize) -> f64 {
     let parts = shares.iter();
     parts
@@ -88,7 +88,7 @@ pub fn bodies<'a>(
     all.map(body).collect()
 }
 
-/// What the body behind some edges holds.
+/// The nodes and sides held by the body behind some edges.
 fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> Hold {
     let condition = edges[members[0]].1;
     let nodes_of = |wanted: &dyn Fn(&Segment) -> bool| {

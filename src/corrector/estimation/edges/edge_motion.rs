@@ -1,4 +1,4 @@
-//! How the loaded edges of a specimen move, in as few numbers as their conditions allow.
+//! The motion of the loaded edges of a specimen, in as few numbers as their conditions allow.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +23,7 @@ enum Coefficient {
     Unknown(usize),
 }
 
-/// What moves an unknown of the field.
+/// The coefficient that moves an unknown of the field.
 type Movers = BTreeMap<usize, Coefficient>;
 
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ enum Part {
         spline: BSpline,
         /// Along one axis and the other.
         coefficients: [Vec<Coefficient>; 2],
-        /// Nodes that it moves, with their places on 0…1.
+        /// The nodes that the edge moves, with their places on 0…1.
         nodes: Vec<(usize, f64)>,
     },
 }
@@ -57,9 +57,9 @@ pub struct EdgeMotion {
 }
 
 impl EdgeMotion {
-    /// The motion of segments under one condition each. Where segments meet, known displacements go before rigid ones and
-    /// these before unknown ones; at the nodes `singular` displacements may be singular, as beside a clamp. `spacing` is the distance of
-    /// the markers in mm.
+    /// The motion of segments under one condition each. Where segments meet, known displacements take precedence over
+    /// rigid ones and these over unknown ones; at the nodes `singular` displacements may be singular, as beside a
+    /// clamp. `spacing` is the distance of the markers in mm.
     pub fn new(
         mesh: &Mesh,
         segments: &[(&Segment, EdgeCondition)],
@@ -81,7 +81,7 @@ impl EdgeMotion {
             |(_, condition): &&(&Segment, EdgeCondition)| *condition == EdgeCondition::Rigid;
         let mut rigid: Vec<_> = segments.iter().filter(rigid).map(|pair| pair.0).collect();
         while let Some(first) = rigid.first().copied() {
-            // All sides of one name are one body.
+            // All sides with one name are one body.
             let is_one = |other: &&Segment| {
                 std::ptr::eq(*other, first)
                     || (first.condition.is_some() && other.condition == first.condition)
@@ -143,7 +143,7 @@ impl EdgeMotion {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
         let spans = (length / (SPACINGS * spacing)).round() as usize;
-        // Where they become shorter towards an end they are longer elsewhere.
+        // Spans that become shorter towards an end are longer elsewhere.
         let more = 1.0 + singular.map(f64::from).iter().sum::<f64>() / 4.0;
         let spans = spans.clamp(1, MOST_SPANS) as f64 * more;
         let spans = (spans.round() as usize).min(edges);
@@ -276,7 +276,7 @@ impl EdgeMotion {
     }
 }
 
-/// Notes that nodes are moved along an axis, by what came first.
+/// Records that nodes are moved along an axis by whatever came first.
 fn hold(nodes: &[usize], axis: usize, moved: &mut Movers) {
     for unknown in nodes.iter().map(|node| 2 * node + axis) {
         moved

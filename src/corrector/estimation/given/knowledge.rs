@@ -1,4 +1,4 @@
-//! What an estimate begins with: the specimen, and what is known besides the displacements.
+//! The input of an estimate: the specimen, and what is known besides the displacements.
 
 use std::sync::Arc;
 
@@ -26,34 +26,33 @@ pub struct Specimen<'a> {
 pub struct Knowledge {
     /// What is known of named parts of the boundary. Holes that are not named are free.
     pub edges: Vec<(String, EdgeCondition)>,
-    /// What is assumed of the outer boundary where no part is named.
+    /// The assumption on the outer boundary where no part is named.
     pub unnamed: Unnamed,
     /// Forces that were measured.
     pub forces: Vec<MeasuredForce>,
-    /// Whether the field does not know the measured forces, but is only compared with them. It does so too where no field near the
-    /// markers has such forces.
+    /// Whether the field is only compared with the measured forces, instead of including them. This is also done
+    /// where no field near the markers has such forces.
     pub forces_are_checks: bool,
-    /// Standard deviation of each component of the displacement of markers without one of their own, in mm; `None` where it
-    /// is to be estimated.
+    /// Standard deviation of each component of the displacement of markers without one of their own, in mm; `None` where it is to be estimated.
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
-    /// Whether equilibrium holds exactly.
+    /// Whether equilibrium is exact.
     pub physics: Physics,
-    /// How far outside of the mesh free edges may lie, in mm, where nothing but markers tells of the specimen's edge: the errors of displacement and stress
-    /// hold it.
+    /// How far outside of the mesh free edges may lie, in mm, where only markers show the specimen's edge: the errors
+    /// of displacement and stress include this.
     pub edge_gap: Option<f64>,
-    /// Relative standard deviation of the scale of the picture: a specimen that comes nearer to its camera seems to grow.
+    /// Relative standard deviation of the scale of the picture: a specimen that comes nearer to its camera appears to grow.
     pub scale_deviation: f64,
     /// Parameters of the law that are found with the field; the specimen's law is not used then.
     pub law: Option<RegressedLaw>,
 }
 
-/// What is assumed of the outer boundary, from corner to corner, where no part is named.
+/// The assumption on the outer boundary, from corner to corner, where no part is named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unnamed {
-    /// All parts begin as loaded. One after the other, the longest first, is taken as free where the data do not contradict:
-    /// where the misfit grows by no more than noise would let it in ninety-nine of a hundred cases (F test). One stays loaded.
+    /// All parts begin as loaded. One after the other, the longest first, is taken as free where the data do not contradict this:
+    /// where the misfit grows by no more than noise would cause in ninety-nine of a hundred cases (F test). One stays loaded.
     #[default]
     Tested,
     /// All parts are loaded: the mesh ends inside of the specimen.
@@ -71,14 +70,14 @@ impl Unnamed {
     ];
 }
 
-/// How far the equations hold.
+/// How exactly the equations are satisfied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Physics {
     /// F(u) = 0.
     #[default]
     Exact,
-    /// F(u) = f with smooth forces f on the interior, which stand for what law, thickness and equations lack: the weight of
-    /// ∫ f² beside the misfit follows by restricted maximum likelihood. Where the physics is right, f comes out as nothing.
+    /// F(u) = f with smooth forces f on the interior, which represent what law, thickness and equations lack: the weight of ∫ f²
+    /// relative to the misfit follows by restricted maximum likelihood. Where the physics is right, f tends to zero.
     Weighted,
 }
 
@@ -88,7 +87,7 @@ impl Physics {
         [("exact", Self::Exact), ("weighted", Self::Weighted)];
 }
 
-/// Standard deviation of a force over the force where none is stated: that of the class of a load cell, the same in all frames.
+/// Default standard deviation of a force relative to the force: the class of a load cell, the same in all frames.
 pub const FORCE_CLASS: f64 = 0.01;
 
 /// A force that was measured on an edge that is not free.
@@ -102,8 +101,8 @@ pub struct MeasuredForce {
     pub force: f64,
     /// Its standard deviation in N.
     pub standard_deviation: f64,
-    /// The relative standard deviation of a factor that all measured forces have in common, such as the gain of their load cell: parameters of a law
-    /// that is found from several frames are as uncertain by it in all of them together.
+    /// The relative standard deviation of a factor common to all measured forces, such as the gain of their load
+    /// cell: parameters of a law found from several frames are as uncertain as this factor in all frames together.
     #[serde(default)]
     pub common_deviation: f64,
 }
@@ -113,7 +112,7 @@ pub struct MeasuredForce {
 pub enum EdgeCondition {
     /// No traction.
     Free,
-    /// Displacements ux, uy in mm; along an axis without one the edge is free.
+    /// Displacements ux, uy in mm; the edge is free along an axis without one.
     Known([Option<f64>; 2]),
     /// A rigid body that moved and turned by unknown amounts.
     Rigid,
@@ -122,7 +121,7 @@ pub enum EdgeCondition {
 }
 
 impl Knowledge {
-    /// The measured forces that the field knows.
+    /// The measured forces that the field includes.
     pub(in crate::corrector::estimation) fn measured_forces(&self) -> &[MeasuredForce] {
         match self.forces_are_checks {
             true => &[],
@@ -130,7 +129,7 @@ impl Knowledge {
         }
     }
 
-    /// Looks at the measured forces and the noise.
+    /// Checks the measured forces and the noise.
     pub(in crate::corrector::estimation) fn check(&self) -> Result<(), Diagnostic> {
         let refuse = |fault: String, hint: &str| Err(Diagnostic::error("", fault).hint(hint));
         for force in &self.forces {

@@ -8,7 +8,7 @@ use crate::markers::Marker;
 use crate::mesh::Mesh;
 use crate::solve::SparseRows;
 
-/// A marker farther outside of the mesh than this share of a cell's size is left out.
+/// Distance outside of the mesh, relative to a cell's size, beyond which a marker is left out.
 const OUTSIDE: f64 = 0.25;
 
 /// The markers on the mesh.
@@ -22,13 +22,13 @@ pub struct Observations {
     pub places: Vec<[f64; 2]>,
     /// Their displacements in mm.
     pub displacements: Vec<[f64; 2]>,
-    /// The weights of their components, two numbers a marker: 1/variance in 1/mm² where the noise is known, else 1.
+    /// The weights of their components, two numbers per marker: 1/variance in 1/mm² where the noise is known, otherwise 1.
     pub weights: Vec<f64>,
     /// Whether the noise is known.
     pub known_noise: bool,
-    /// How often the weights have followed noise that differs from place to place.
+    /// How often the weights have been adapted to noise that differs from place to place.
     pub reweighted: usize,
-    /// H: two rows a marker.
+    /// H: two rows per marker.
     pub interpolation: SparseRows,
 }
 
@@ -125,7 +125,7 @@ impl Observations {
         (mesh.area() / self.chosen.len() as f64).sqrt()
     }
 
-    /// d − H u, two numbers a marker.
+    /// d − H u, two numbers per marker.
     pub fn residual(&self, field: &[f64]) -> DVector<f64> {
         let there = self.interpolation.multiply(field);
         let data = self.displacements.iter().flatten();

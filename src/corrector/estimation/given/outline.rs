@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 /// Turn of the boundary, in rad, from which on a node is a corner.
 const CORNER: f64 = 0.7;
 
-/// Share of a loop's length before and behind a node over which its turn is measured: steps of one cell are no corners.
+/// Share of a loop's length before and behind a node over which its turn is measured, so that steps of one cell are not corners.
 const REACH: f64 = 0.02;
 
 /// A part of the boundary that has one condition.
@@ -19,14 +19,14 @@ pub struct Segment {
     pub name: String,
     /// Number of its condition; `None` where no group names it.
     pub condition: Option<usize>,
-    /// Whether it is a part of the outer boundary, and not of a hole.
+    /// Whether it is a part of the outer boundary, rather than of a hole.
     pub outer: bool,
-    /// Whether it is no part of the boundary but a pad on the sheet, with all of its nodes in any order.
+    /// Whether it is a pad on the sheet instead of a part of the boundary, with all of its nodes in any order.
     pub inside: bool,
-    /// Its nodes in order, the specimen to the left, those in the middle of edges too; of a closed one the first node is the
-    /// last one again.
+    /// Its nodes in order, with the specimen to the left, including those in the middle of edges; in a closed one the
+    /// first node is repeated as the last.
     pub nodes: Vec<usize>,
-    /// Length along the boundary from the first node to each one in mm; zeros of a pad.
+    /// Length along the boundary from the first node to each one in mm; zeros for a pad.
     pub places: Vec<f64>,
 }
 
@@ -36,14 +36,13 @@ impl Segment {
         self.places[self.places.len() - 1]
     }
 
-    /// Both end nodes; of a closed one they are the same.
+    /// Both end nodes; they are the same for a closed one.
     pub fn ends(&self) -> [usize; 2] {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
 }
 
-/// The boundary in segments, and the pads on the sheet: groups, or parts of them, that are no part of the boundary and are held as one
-/// body.
+/// The boundary in segments, and the pads on the sheet: groups, or parts of them, that are not on the boundary and are held as one body.
 ///
 /// # Errors
 /// As [`segments`]; a [`Diagnostic`] when a group inside of the sheet is neither rigid nor of known displacement.
@@ -252,7 +251,7 @@ fn corners(mesh: &Mesh, chain: &[&Vec<usize>]) -> Vec<bool> {
         let near =
             |other: &usize| *other != edge && distance(node(*other), node(edge)) < REACH * length;
         let mut others = (0..count).filter(near);
-        // The first one of equals.
+        // The first of several equal ones.
         others.all(|other| (turns[other], edge) < (turns[edge], other))
     };
     (0..count)

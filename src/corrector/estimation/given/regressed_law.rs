@@ -1,4 +1,4 @@
-//! A law some of whose parameters are found with the field.
+//! A law with some parameters that are found with the field.
 
 use std::sync::Arc;
 
@@ -11,8 +11,8 @@ use crate::material::volume::{self, bulk_modulus};
 use crate::material::{Card, HyperelasticLaw, PlaneState, Volume};
 use crate::units::Dimension;
 
-/// The law of a card with parameters to be found. What resists a change of volume is one of them where the card has it: its bulk
-/// modulus or its Poisson's ratio, whichever it states; the other one follows.
+/// The law of a card with parameters to be found. The resistance to a change of volume is one of them where the card
+/// has it: its bulk modulus or its Poisson's ratio, whichever the card states; the other one follows.
 #[derive(Clone, Debug)]
 pub struct RegressedLaw {
     law: &'static Law,
@@ -24,10 +24,10 @@ pub struct RegressedLaw {
     places: Vec<usize>,
 }
 
-/// What stands for all parameters of a card.
+/// The key that stands for all parameters of a card.
 const ALL: &str = "all";
 
-/// The keys of what resists a change of volume.
+/// The keys of the resistance to a change of volume.
 const BULK_MODULUS: &str = "bulk_modulus";
 const POISSON_RATIO: &str = "poisson_ratio";
 
@@ -105,7 +105,7 @@ impl RegressedLaw {
             .collect()
     }
 
-    /// What the law asks for, in its order.
+    /// The parameters that the law asks for, in its order.
     fn law_parameters(&self) -> Vec<Parameter> {
         let values: Vec<f64> = self.all.iter().map(|one| one.value).collect();
         self.law
@@ -114,7 +114,7 @@ impl RegressedLaw {
             .parameters
     }
 
-    /// Whether the values make the card's law, at one state.
+    /// Whether the values give the card's law, checked at one state.
     fn is_law_of(&self, card: &Card) -> bool {
         let state = Kinematics::new(&PlaneTensor::new(0.11, 0.03, -0.02, 0.05));
         let stress = |law: &dyn HyperelasticLaw| state.map(|state| law.stress(&state).1);
@@ -137,14 +137,14 @@ impl RegressedLaw {
             .collect()
     }
 
-    /// The same with a search that begins at multiples of the card's values.
+    /// The same law with a search that begins at multiples of the card's values.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let values: Vec<f64> = self.start().iter().map(|value| factor * value).collect();
         self.beginning_at(&values)
     }
 
-    /// The same with a search that begins at other values.
+    /// The same law with a search that begins at other values.
     #[must_use]
     pub fn beginning_at(&self, values: &[f64]) -> Self {
         let mut other = self.clone();
@@ -154,7 +154,7 @@ impl RegressedLaw {
         other
     }
 
-    /// The same with stresses that are so many times as large; `None` where not all parameters that are stresses are to be found.
+    /// The same law with stresses that are so many times as large; `None` unless all parameters that are stresses are to be found.
     pub fn with_stress_times(&self, factor: f64) -> Option<Self> {
         let mut stresses = self
             .law_parameters()
@@ -200,7 +200,7 @@ impl RegressedLaw {
     }
 }
 
-/// What resists a change of volume, as the card states it.
+/// The resistance to a change of volume, as the card states it.
 fn resistance(card: &Card) -> Option<Parameter> {
     let volume = card.volume?;
     Some(match card.poisson_ratio {

@@ -1,4 +1,4 @@
-//! Where the estimate begins: a polynomial through the markers that gross errors do not move.
+//! The start of the estimate: a polynomial through the markers that gross errors do not affect.
 
 use nalgebra::{DMatrix, DVector};
 use rand::seq::index::sample;
@@ -34,8 +34,8 @@ impl Polynomial {
         Self::through(points, degree, &all)
     }
 
-    /// The polynomial whose nearest half of all markers is nearest: least trimmed squares, from small samples of the markers
-    /// by concentration. `None` where they do not determine it.
+    /// The polynomial with the smallest distance to its nearest half of the markers: least trimmed squares, from
+    /// small samples of the markers by concentration. `None` where they do not determine it.
     ///
     /// # References
     /// P. J. Rousseeuw, K. Van Driessen, Data Min. Knowl. Disc. 12, 29 (2006), doi:10.1007/s10618-005-0024-4
@@ -74,7 +74,7 @@ impl Polynomial {
         Self::through(points, degree, &chosen)
     }
 
-    /// Fits the nearest `half` again and again; the sum of their squared distances, and the last fit.
+    /// Fits the nearest `half` repeatedly; returns the sum of their squared distances, and the last fit.
     fn concentrated(
         self,
         points: &Points,

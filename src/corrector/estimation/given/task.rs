@@ -1,4 +1,4 @@
-//! What the search is for.
+//! The task of a search: mesh, edges and data.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,15 +13,15 @@ pub struct Edge<'a> {
     pub condition: EdgeCondition,
     /// Whether the data choose between loaded and free.
     pub tested: bool,
-    /// Where they have chosen: how probable the misfit of the free edge was.
+    /// Where the data have chosen: the probability of the misfit of the free edge.
     pub probability: Option<f64>,
-    /// Whether it is an edge of the body, at whose corners fields may be singular: where a mesh ends inside of it there are none, and as long
-    /// as the data choose it is taken so.
+    /// Whether it is an edge of the body, at whose corners fields may be singular. Where a mesh ends inside of the
+    /// body it is not; as long as the data choose, it is taken as one.
     pub of_body: bool,
 }
 
 impl<'a> Edge<'a> {
-    /// A part of the boundary of which this is known.
+    /// A part of the boundary with what is known of it.
     pub fn new(segment: &'a Segment, knowledge: &Knowledge) -> Self {
         let open = segment.outer && segment.condition.is_none();
         let condition = match segment.condition {
@@ -39,7 +39,7 @@ impl<'a> Edge<'a> {
     }
 }
 
-/// The nodes in which edges of the body meet that are not free.
+/// The nodes at which edges of the body meet that are not free.
 pub fn singular_corners(edges: &[Edge]) -> BTreeSet<usize> {
     let mut ends: BTreeMap<usize, (usize, bool)> = BTreeMap::new();
     for edge in edges.iter().filter(|edge| edge.is_loaded()) {
@@ -54,7 +54,7 @@ pub fn singular_corners(edges: &[Edge]) -> BTreeSet<usize> {
     singular.map(|(node, _)| node).collect()
 }
 
-/// What the search is for.
+/// The task of a search.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     pub specimen: &'a Specimen<'a>,
@@ -63,12 +63,12 @@ pub struct Task<'a> {
 }
 
 impl Edge<'_> {
-    /// Whether it is not free.
+    /// Whether the edge is not free.
     pub fn is_loaded(&self) -> bool {
         self.condition != EdgeCondition::Free
     }
 
-    /// Whether it is free, so that a strip of the sheet may lie outside of it.
+    /// Whether the edge is free, so that a strip of the sheet may lie outside of it.
     pub fn has_strip(&self) -> bool {
         !self.is_loaded() && !self.segment.inside
     }

@@ -1,4 +1,4 @@
-//! The search for the parameters that all frames agree on.
+//! The search for the parameters on which all frames agree.
 
 use std::ops::Range;
 
@@ -15,13 +15,13 @@ use crate::error::{Error, SolveFault};
 /// Steps allowed.
 const MOST_STEPS: usize = 40;
 
-/// Steps after which smoothness and noise of the frames stay as they are, so that the misfit has a minimum.
+/// Steps after which smoothness and noise of the frames are fixed, so that the misfit has a minimum.
 const JOINT_VARIANCE_STEPS: usize = 4;
 
-/// Length of a step in standard errors that does not matter.
+/// Length of a step in standard errors that is negligible.
 const CLOSE: f64 = 0.02;
 
-/// The largest change of a parameter in one step: by so much of what it is measured by, and of the way to the end of its bound.
+/// The largest change of a parameter in one step, relative to its scale, and to the distance to the end of its bound.
 const WITHIN: f64 = 0.5;
 
 /// The shortest share of a step.
@@ -31,22 +31,22 @@ const SHORTEST: f64 = 1.0 / 64.0;
 pub struct Descent<'a> {
     pub frames: Vec<&'a Judged<'a>>,
     pub law: RegressedLaw,
-    /// What every parameter is measured by, where it is known which combinations are determined; else it follows the search.
+    /// The scale of every parameter, once the determined combinations are known; before, it follows the search.
     scales: Option<Vec<f64>>,
 }
 
-/// Where the search is.
+/// The state of the search.
 #[derive(Clone)]
 pub struct Course {
     pub values: Vec<f64>,
     pub states: Vec<State>,
     pub steps: usize,
-    /// Why it ended before the least misfit: no frame's equilibrium was found farther on.
+    /// Why it ended before the least misfit: frames have no equilibrium farther on.
     pub ended: Option<String>,
 }
 
 impl Course {
-    /// Nothing but first values.
+    /// First values only.
     pub fn of_start(values: Vec<f64>) -> Self {
         Self {
             values,
@@ -80,13 +80,13 @@ impl Course {
 }
 
 impl<'a> Descent<'a> {
-    /// How many forces were measured.
+    /// The number of measured forces.
     pub fn measured(&self) -> f64 {
         let measured = self.frames.iter().map(|frame| frame.measured().len());
         measured.sum::<usize>() as f64
     }
 
-    /// Of frames, with a law that begins at its first values.
+    /// The search over frames, with a law that begins at its first values.
     pub fn new(frames: Vec<&'a Judged<'a>>, law: &RegressedLaw) -> Self {
         Self {
             frames,
@@ -95,8 +95,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Finds the parameters, and what each is measured by: all that the data determine at all, then, where some combinations came out as vague, the others alone, those
-    /// staying at their first values.
+    /// Finds the parameters, and their scales: first all that the data determine at all, then, where some
+    /// combinations are vague, the others alone, with the vague ones at their first values.
     ///
     /// # Errors
     /// As [`Self::descend`].
@@ -124,7 +124,7 @@ impl<'a> Descent<'a> {
         Ok((self.descend(begin, None, told)?, scales))
     }
 
-    /// Takes the stiffness at which the search begins from the measured forces, where the law can be scaled.
+    /// Takes the initial stiffness from the measured forces, where the law can be scaled.
     ///
     /// # Errors
     /// As the search of a frame.
@@ -153,8 +153,7 @@ impl<'a> Descent<'a> {
         Ok(())
     }
 
-    /// Goes down to the least misfit, with one parameter that stays where it is `held`; from a course with states smoothness and
-    /// noise stay as they are.
+    /// Descends to the least misfit, with one parameter that may be `held` fixed; from a course with states, smoothness and noise are fixed.
     ///
     /// # Errors
     /// As the search of a frame at the first values; [`SolveFault::Stalled`] when [`MOST_STEPS`] do not reach it.
@@ -189,7 +188,7 @@ impl<'a> Descent<'a> {
         }))
     }
 
-    /// The values that all frames but some agree on, from those of all; `None` where no force is left.
+    /// The values on which all frames but some agree, beginning with those of all; `None` where no force remains.
     ///
     /// # Errors
     /// As [`Self::descend`].
@@ -237,7 +236,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// The step to the least misfit of the linearised frames, over what they determine.
+    /// The step to the least misfit of the linearised frames, over the combinations that they determine.
     fn step(&self, course: &Course, held: Option<usize>) -> Step {
         let mut information = course.information();
         let mut score = course.score();
@@ -268,7 +267,7 @@ impl<'a> Descent<'a> {
         most.collect()
     }
 
-    /// What every parameter is measured by: the larger of its value and its first value.
+    /// The scale of every parameter: the larger of its value and its first value.
     fn scales_at(&self, values: &[f64]) -> Vec<f64> {
         let first = self.law.start();
         let pairs = values.iter().zip(&first);
@@ -277,16 +276,16 @@ impl<'a> Descent<'a> {
             .collect()
     }
 
-    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise stay, makes the misfit or the next
-    /// step less. Where much is left that the model does not explain, steps of the linearised frames end where the score vanishes,
-    /// which is close to the least misfit but not there: near it the misfit rises with steps that become shorter.
+    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise are fixed, reduces the misfit or
+    /// the next step. Where the model leaves large residuals, steps of the linearised frames end where the score vanishes, which
+    /// is close to the least misfit but not there: near it the misfit rises with steps that become shorter.
     fn advance(
         &self,
         course: &Course,
         change: &Step,
         (settled, held): (bool, Option<usize>),
     ) -> Result<Course, Error> {
-        // What rounding and the searches of the frames leave of the misfit.
+        // The part of the misfit that is due to rounding and to the searches of the frames.
         const ROUGH: f64 = 1e-3;
         let length = course.standard_errors(change);
         let mut share = 1.0;

@@ -2,17 +2,16 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Relative standard error of a combination of parameters from which on it is not determined: within two standard errors it is
-/// nothing, or double.
+/// Relative standard error of a combination of parameters from which on it is not determined: within two standard errors it may be zero, or double.
 pub const VAGUE: f64 = 0.5;
 
 /// Relative standard error up to which a combination takes part in the first search.
 pub const LOOSE: f64 = 3.0;
 
-/// A combination of parameters that the data determine by itself.
+/// A combination of parameters that the data determine independently of the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// The share of every parameter, each over the larger of its value and its first value: a unit vector whose largest entry is positive.
+    /// The share of every parameter, relative to the larger of its value and its first value: a unit vector whose largest entry is positive.
     pub weights: Vec<f64>,
     /// The standard error of the combination by white noise, relative to the parameters: 1/√eigenvalue.
     pub relative_error: f64,
@@ -25,7 +24,7 @@ impl Direction {
     }
 }
 
-/// The eigenvectors of the information, every parameter over its scale; the best determined first.
+/// The eigenvectors of the information, with every parameter relative to its scale; the best determined first.
 pub fn directions(information: &DMatrix<f64>, scales: &[f64]) -> Vec<Direction> {
     let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
         scales[i] * information[(i, j)] * scales[j]

@@ -1,4 +1,4 @@
-//! What a joint search begins with, and what it finds.
+//! The input and the result of a joint search.
 
 use nalgebra::DVector;
 
@@ -9,7 +9,7 @@ use crate::material::parameters::Parameter;
 use crate::mesh::Mesh;
 use crate::statistics::{Estimate, chi_squared_limit};
 
-/// One frame of one specimen. The law of what is known is not used.
+/// One frame of one specimen. The law in `knowledge` is not used.
 #[derive(Clone, Debug)]
 pub struct JointFrame<'a> {
     /// The specimen's mesh.
@@ -18,16 +18,16 @@ pub struct JointFrame<'a> {
     pub thickness: f64,
     /// The markers.
     pub markers: &'a [Marker],
-    /// What is known besides.
+    /// What is known besides the displacements.
     pub knowledge: Knowledge,
 }
 
-/// What is to be found, and how.
+/// The settings of a joint search.
 #[derive(Clone, Copy, Debug)]
 pub struct JointSettings {
-    /// Into how many groups of frames, one after the other, the frames are split to leave out one after the other.
+    /// The number of groups of consecutive frames, each of which is left out in turn.
     pub groups: usize,
-    /// Whether intervals follow the likelihood rather than standard errors.
+    /// Whether intervals follow from the likelihood instead of standard errors.
     pub profiles: bool,
 }
 
@@ -41,44 +41,44 @@ impl Default for JointSettings {
     }
 }
 
-/// What all frames say of the parameters together.
+/// The parameters according to all frames together.
 #[derive(Clone, Debug)]
 pub struct JointEstimate {
-    /// The law; its search would begin at the values found.
+    /// The law; a new search would begin at the values found.
     pub law: RegressedLaw,
-    /// The parameters with their intervals, in the order of [`RegressedLaw::parameters`]; without uncertainty those that are not
-    /// determined, given which are those of the others.
+    /// The parameters with their intervals, in the order of [`RegressedLaw::parameters`]; those that are not
+    /// determined have no uncertainty, and the intervals of the others are conditional on them.
     pub parameters: Vec<Estimate>,
     /// Combinations of parameters, the best determined first.
     pub directions: Vec<Direction>,
-    /// Whether the parameters' errors hold those of the meshes: not where a mesh is too large to be refined.
+    /// Whether the parameters' errors include those of the meshes, which they do not where a mesh is too large to be refined.
     pub holds_mesh_error: bool,
-    /// What was found of each frame.
+    /// The results of each frame.
     pub frames: Vec<FrameOutcome>,
-    /// The correlation ρ of what is left in one frame and the next of its specimen.
+    /// The correlation ρ of the residuals in one frame and the next of its specimen.
     pub common: f64,
     /// Σ Qₖ at its minimum.
     pub misfit: f64,
-    /// How far the measured forces are from those of the fields.
+    /// The scatter of the measured forces about those of the fields.
     pub force_scatter: ForceScatter,
-    /// −2 ln L of markers and forces with as many values as are independent, but for a constant of the data.
+    /// −2 ln L of markers and forces with the number of independent values, up to a constant of the data.
     pub deviance: f64,
-    /// Parameters that the data determined: of edges and law.
+    /// Number of parameters of edges and law that the data determined.
     pub effective_parameters: f64,
-    /// Values that are independent: of markers and forces.
+    /// Number of independent values of markers and forces.
     pub independent: f64,
     /// Steps of the search.
     pub steps: usize,
-    /// Why the search ended before the least misfit, if it did: frames have no equilibrium with the parameters beyond.
+    /// Why the search ended before the least misfit, if it did: beyond it, frames have no equilibrium.
     pub ended: Option<String>,
 }
 
-/// How far measured forces are from those of the fields with the law found, over what noise leaves of both.
+/// The scatter of measured forces about those of the fields with the law found, relative to both noises.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceScatter {
     /// χ² = Σ (F − f)²/(σ² + s²).
     pub misfit: f64,
-    /// Its degrees of freedom: forces less parameters that the data determine.
+    /// Its degrees of freedom: the number of forces less the parameters that the data determine.
     pub freedom: f64,
 }
 
@@ -87,7 +87,7 @@ impl ForceScatter {
         Self { misfit, freedom }
     }
 
-    /// By how much variances are larger than the noises let expect, never smaller: χ² over its degrees of freedom (Birge's ratio squared).
+    /// The factor by which variances exceed those expected from the noises, at least 1: χ² over its degrees of freedom (Birge's ratio squared).
     ///
     /// # References
     /// R. T. Birge, Phys. Rev. 40, 207 (1932), doi:10.1103/PhysRev.40.207
@@ -98,35 +98,35 @@ impl ForceScatter {
         }
     }
 
-    /// Whether chance leaves so much in less than one case of a thousand.
+    /// Whether chance causes so large a χ² in less than one case of a thousand.
     pub fn is_too_large(&self) -> bool {
         const CHANCE: f64 = 1e-3;
         self.freedom >= 1.0 && self.misfit > chi_squared_limit(self.freedom, CHANCE)
     }
 }
 
-/// What was found of one frame.
+/// The results of one frame.
 #[derive(Clone, Debug)]
 pub struct FrameOutcome {
-    /// Its share of what is known of the parameters: tr(S⁻¹ Sₖ) over the number of parameters.
+    /// Its share of the information on the parameters: tr(S⁻¹ Sₖ) over the number of parameters.
     pub share: f64,
     /// Each measured force.
     pub forces: Vec<ForcePrediction>,
-    /// Root mean square of what is left of each component of the sound markers in mm, with the law of the other frames.
+    /// Root mean square of each component of the sound markers' residuals in mm, with the law of the other frames.
     pub left: f64,
 }
 
 /// A measured force, and that of the field with the law of the other groups of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForcePrediction {
-    /// What was measured.
+    /// The measured force.
     pub measured: MeasuredForce,
-    /// In N; `None` where no other group has a measured force.
+    /// The predicted force in N; `None` where no other group has a measured force.
     pub predicted: Option<f64>,
 }
 
 impl JointEstimate {
-    /// The corrected Akaike information criterion, with as many values as are independent; infinite where there are too few.
+    /// The corrected Akaike information criterion with the number of independent values; infinite where there are too few.
     ///
     /// # References
     /// C. M. Hurvich, C.-L. Tsai, Biometrika 76, 297 (1989), doi:10.1093/biomet/76.2.297
@@ -138,7 +138,7 @@ impl JointEstimate {
         }
     }
 
-    /// Root mean square of the errors of predicted forces over that of the measured ones; `None` where none was predicted.
+    /// Root mean square of the errors of predicted forces relative to that of the measured ones; `None` where none was predicted.
     pub fn prediction_error(&self) -> Option<f64> {
         let all = self.frames.iter().flat_map(|frame| &frame.forces);
         let pairs = all.filter_map(|force| Some((force.measured.force, force.predicted?)));
@@ -157,7 +157,7 @@ impl JointEstimate {
     }
 }
 
-/// What is done next, for somebody who waits.
+/// Called with the next action, for a waiting user.
 pub type Told<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// A step in θ, or the score behind it.

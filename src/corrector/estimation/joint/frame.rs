@@ -19,7 +19,7 @@ use crate::corrector::estimation::uncertainty::MeshDifference;
 use crate::error::{Diagnostic, Error};
 use crate::statistics::{CorrelatedNoise, Sites};
 
-/// What does not change with the law.
+/// The part of a frame that does not change with the law.
 pub struct FrameSetup<'a> {
     frame: &'a JointFrame<'a>,
     outline: Vec<Segment>,
@@ -33,7 +33,7 @@ pub struct Judged<'a> {
     observations: Observations,
 }
 
-/// Where the search of a frame is.
+/// The state of a frame's search.
 #[derive(Clone)]
 pub struct State {
     place: Place,
@@ -46,46 +46,46 @@ pub struct State {
     pub misfit: f64,
 }
 
-/// What a frame says at the end.
+/// The information of a frame at the end.
 pub struct FrameInformation {
     /// Sₖ.
     pub information: DMatrix<f64>,
     /// Jₖ.
     pub spread: DMatrix<f64>,
-    /// The part of it that is the markers'.
+    /// The markers' part of Jₖ.
     pub spread_of_markers: DMatrix<f64>,
     /// −2 ln L of its independent values.
     pub deviance: f64,
-    /// What its mesh's own error adds to the score; `None` where that is not known.
+    /// The contribution of its mesh's own error to the score; `None` where that is not known.
     pub mesh: Option<Step>,
-    /// What a standard deviation of what all forces, or all pictures, have in common adds to it.
+    /// The contributions to the score of one standard deviation of the common error of all forces, and of all pictures.
     pub common: [Step; 2],
     /// Σ (F − f)²/(σ² + s²) of its forces.
     pub force_misfit: f64,
-    /// Parameters of its edges that the data determine.
+    /// Number of parameters of its edges that the data determine.
     pub effective: f64,
-    /// Independent values of its markers.
+    /// Number of independent values of its markers.
     pub independent: f64,
-    /// What is left of its markers by their numbers.
+    /// The residuals of its markers by their numbers.
     left: HashMap<usize, [f64; 2]>,
 }
 
 /// A frame with the law of others.
 pub struct CrossPrediction {
-    /// Each measured force as the field has it, in N.
+    /// The force of the field for each measured force, in N.
     pub forces: Vec<f64>,
-    /// Root mean square of what is left of the components of trusted markers in mm.
+    /// Root mean square of the components of the trusted markers' residuals in mm.
     pub left: f64,
 }
 
-/// What follows from the equations linearised about a field, the law's parameters behind all others.
+/// Results of the equations linearised about a field, with the law's parameters after all others.
 struct AboutField {
     normal: Ordered,
     /// The derivatives of the markers.
     design: DMatrix<f64>,
-    /// What the mesh's own error makes of the right-hand side.
+    /// The effect of the mesh's own error on the right-hand side.
     mesh: Option<DVector<f64>>,
-    /// What forces, and what pictures, that are too large by what they have in common make of it.
+    /// The effects on it of the common errors of forces, and of pictures.
     common: [DVector<f64>; 2],
 }
 
@@ -104,7 +104,7 @@ impl<'a> FrameSetup<'a> {
         })
     }
 
-    /// With edges that the data have chosen where that is open, and noise that they do not contradict.
+    /// The frame with the edges that the data have chosen where that is open, and with noise that they do not contradict.
     pub fn judged(&'a self, law: &RegressedLaw) -> Result<Judged<'a>, Error> {
         let specimen = self.specimen(law, &law.start());
         let knowledge = self.knowledge(None, false);
@@ -167,12 +167,12 @@ impl Judged<'_> {
         &self.ground.frame.knowledge.forces
     }
 
-    /// Whether the noise is stated, and not contradicted.
+    /// Whether the noise is stated and not contradicted.
     pub fn knows_noise(&self) -> bool {
         self.observations.known_noise
     }
 
-    /// The frame's field at values of the law's parameters, from a state or from nothing; with variances that stay where `settled`.
+    /// The frame's field at values of the law's parameters, from a state or from the start; the variances are fixed where `settled`.
     ///
     /// # Errors
     /// As the search.
@@ -196,7 +196,7 @@ impl Judged<'_> {
         })
     }
 
-    /// What the frame says at the end.
+    /// The information of the frame at the end.
     ///
     /// # Errors
     /// As the search.
@@ -255,7 +255,7 @@ impl Judged<'_> {
         })
     }
 
-    /// The frame with the law of others: its measured forces beside those of its field, which it does not know.
+    /// The frame with the law of others: its measured forces beside those of its field, which does not include them.
     ///
     /// # Errors
     /// As the search.
@@ -284,8 +284,8 @@ impl Judged<'_> {
         })
     }
 
-    /// Works with the nearest field at given values, which does not know the forces: what they say of the law follows from the equations
-    /// linearised about it, so that a wrong force or thickness bends no edge.
+    /// Calls a function with the nearest field at given values, which does not include the forces: their information on the law
+    /// follows from the equations linearised about the field, so that a wrong force or thickness bends no edge.
     fn with_field<T>(
         &self,
         law: &RegressedLaw,
@@ -355,7 +355,7 @@ impl Judged<'_> {
         })
     }
 
-    /// What is left of the markers that are trusted, by their numbers.
+    /// The residuals of the trusted markers, by their numbers.
     fn left(&self, found: &NearestField) -> HashMap<usize, [f64; 2]> {
         const TRUSTED: f64 = 0.5;
         let rows = found.fit.residual.as_slice().chunks_exact(2);

@@ -1,10 +1,10 @@
-//! What the equations could lack, as small changes of the field that it would make.
+//! Possible defects of the equations, as the small changes of the field that they would cause.
 //!
 //! ```text
 //! ∂u/∂c = K⁻¹ f,   fᵢ = ∫ Nᵢ φ dA (a force),   −∫ φ P ∇Nᵢ dV (a stiffness that varies),   −∫ P* ∇Nᵢ dV (another law's P*)
 //! ```
 //!
-//! and as what the picture could lack: its scale ([`crate::corrector::estimation::uncertainty`]).
+//! and likewise possible defects of the picture: its scale ([`crate::corrector::estimation::uncertainty`]).
 
 use nalgebra::DMatrix;
 
@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
 use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 
-/// An alternative with the displacements of the markers that its parameters make: two rows a marker.
+/// An alternative with the displacements of the markers due to its parameters: two rows per marker.
 pub type Column = (Alternative, DMatrix<f64>);
 
 impl NearestField<'_> {
@@ -44,7 +44,7 @@ impl NearestField<'_> {
         Ok(columns)
     }
 
-    /// What the data may do without a word, as it is stated: a picture of another scale.
+    /// The change that is admitted as stated: a picture of another scale.
     pub(super) fn granted(&self) -> Vec<DMatrix<f64>> {
         let stated = self.equations.task.knowledge.scale_deviation > 0.0;
         stated.then(|| self.magnification()).into_iter().collect()

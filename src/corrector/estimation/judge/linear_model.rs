@@ -1,4 +1,4 @@
-//! Linear models of the sound markers, and how far one fits better than another under noise that may correlate.
+//! Linear models of the sound markers, and how much better one fits than another under noise that may correlate.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -31,7 +31,7 @@ pub struct Reference {
     variance: f64,
     /// Independent values.
     values: f64,
-    /// Variance that the mesh's own error adds.
+    /// Variance due to the mesh's own error.
     mesh: f64,
 }
 
@@ -65,7 +65,7 @@ impl Model {
         }
     }
 
-    /// With further columns that nothing holds down.
+    /// The model with further columns without penalty.
     pub fn with<'a>(&self, rows: &Rows, more: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Self {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         for design in more {
@@ -90,7 +90,7 @@ impl Model {
         }
     }
 
-    /// How the noise correlates, where the data speak for it.
+    /// The correlation of the noise, where the data show one.
     pub fn noise(&self, rows: &Rows) -> Option<CorrelatedNoise> {
         let some = rows.clusters();
         let entry = |row: usize| 2 * some.chosen[row / 2] + row % 2;
@@ -108,7 +108,7 @@ impl Model {
         (found.evidence > EVIDENCE).then_some(found)
     }
 
-    /// What is left of the markers in mm, after an ordinary regression.
+    /// The residuals of the markers in mm, after an ordinary regression.
     pub fn plain_left(&self, rows: &Rows, found: &NearestField) -> f64 {
         let white = WhiteRegression::new(&self.design, &self.residual, None);
         let left = white.left(&self.held, &self.slope, 1.0);
@@ -120,7 +120,7 @@ impl Model {
 }
 
 impl Reference {
-    /// The noise that is left by the equations with all alternatives.
+    /// The noise that remains with all alternatives in the equations.
     pub fn new(
         rows: &Rows,
         noise: Option<&CorrelatedNoise>,
@@ -158,7 +158,7 @@ impl Reference {
         Some(best[last] * model.design.column(last).norm() / own.norm())
     }
 
-    /// How much a model takes from the misfit of the equations.
+    /// The reduction of the misfit of the equations by a model.
     pub fn test(&self, alternative: Alternative, base: &Model, model: &Model) -> Trial {
         let left = |model: &Model| {
             let white =

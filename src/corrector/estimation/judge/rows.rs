@@ -7,10 +7,10 @@ use crate::corrector::estimation::search::NearestField;
 use crate::corrector::estimation::uncertainty::MeshError;
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
-/// Fewer markers tell nothing of each other.
+/// Fewer markers carry no information on each other.
 const FEWEST: usize = 30;
 
-/// Rows of sound markers: trusted by at least one half, and no outliers.
+/// Rows of sound markers: trusted by at least one half, and not outliers.
 pub struct Rows {
     /// Numbers of the markers among those on the mesh.
     pub chosen: Vec<usize>,
@@ -20,7 +20,7 @@ pub struct Rows {
     scales: Vec<f64>,
     /// r √(w ω)/s, of variance one where the noise is white.
     pub residual: DVector<f64>,
-    /// Largest and smallest coordinates differ by so much, in mm.
+    /// Difference of the largest and the smallest coordinates, in mm.
     pub extent: [f64; 2],
     /// √(area of the box over the number of markers), in mm.
     pub spacing: f64,
@@ -35,12 +35,12 @@ pub struct Clusters {
 }
 
 impl Rows {
-    /// The rows; `None` where there are few, or what is left is no more than the mesh's own error and the rounding of numbers.
+    /// The rows; `None` where there are few, or where the residuals are no more than the mesh's own error and the rounding of numbers.
     pub fn new(found: &NearestField, sound: &[f64], own: Option<&MeshError>) -> Option<Self> {
         let observations = found.observations();
         let count = observations.places.len();
         let mut chosen: Vec<usize> = (0..count).filter(|row| sound[*row] > 0.0).collect();
-        // Where most are outliers there is nothing sound to tell them from.
+        // Where most are outliers, sound markers cannot be distinguished.
         if 2 * chosen.len() < count {
             chosen = (0..count).collect();
         }
@@ -104,10 +104,10 @@ impl Rows {
     }
 }
 
-/// The trust of every marker on the mesh in a fit; nothing of those that are trusted by less than one half, or off by more than normal
-/// noise would be in one of a thousand.
+/// The trust of every marker on the mesh in a fit; zero for markers that are trusted by less than one half, or off by
+/// more than normal noise would be in one of a thousand.
 ///
-/// Of a fit that lets edges go it tells gross errors from markers that a wrong condition leaves far off.
+/// For a fit with released edges it distinguishes gross errors from markers that a wrong condition leaves far off.
 pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> Vec<f64> {
     const TRUSTED: f64 = 0.5;
     const FALSE_ALARMS: f64 = 1e-3;
@@ -122,7 +122,7 @@ pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> 
     rows.map(trust).collect()
 }
 
-/// Whether what is left is no more than twice the mesh's own error, or a millionth of the displacement.
+/// Whether the residuals are no more than twice the mesh's own error, or a millionth of the displacement.
 fn leaves_nothing(found: &NearestField, rows: &[usize], own: Option<&MeshError>) -> bool {
     const ROUNDING: f64 = 1e-6;
     let sum = |values: &dyn Fn(usize) -> f64| -> f64 {

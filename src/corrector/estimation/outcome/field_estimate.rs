@@ -1,4 +1,4 @@
-//! An estimated field with what the data say about its uncertainty.
+//! An estimated field with its uncertainty from the data.
 
 use std::borrow::Cow;
 
@@ -13,10 +13,10 @@ use crate::statistics::Estimate;
 
 /// The field nearest to the markers.
 ///
-/// Standard errors come from the noise of the markers, to first order, and from the mesh's own error: √(s² + e²). Of
-/// all of them e comes from the same equations on cells half as large; of a large mesh, that of stress and thickness alone from the
-/// recovered gradient. They hold where the verdict is that the data are explained.
-/// `± reach · standard error` is the 95 % interval.
+/// Standard errors come from the noise of the markers, to first order, and from the mesh's own error e: √(s² + e²).
+/// For all quantities e follows from the same equations on cells half as large; for a large mesh only stress and
+/// thickness have it, from the recovered gradient. Standard errors are valid where the verdict is that the data are
+/// explained. `± reach · standard error` is the 95 % interval.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct FieldEstimate {
     /// ux, uy of node after node in mm.
@@ -25,39 +25,38 @@ pub struct FieldEstimate {
     pub displacement_error: Vec<f64>,
     /// Stress and thickness in the middle of each cell.
     pub cells: Vec<StressEstimate>,
-    /// ∂Π/∂u in N of node after node: reactions at loaded edges, nothing elsewhere.
+    /// ∂Π/∂u in N of node after node: reactions at loaded edges, zero elsewhere.
     pub reactions: Vec<f64>,
     /// The total force on each edge that is not free; edges of one name are one body, and a node where two meet counts once.
     pub forces: Vec<EdgeForce>,
-    /// ζ of the equilibrium of node after node in mm²/N: less the derivative of ½ ‖H u − d‖²_W by a force there, the weights
-    /// relative to their mean; zero where the edges are not free.
+    /// ζ of the equilibrium of node after node in mm²/N: minus the derivative of ½ ‖H u − d‖²_W with respect to a
+    /// force there, with weights relative to their mean; zero where the edges are not free.
     pub multipliers: Vec<f64>,
-    /// What is left of each marker; `None` for markers that do not lie on the mesh.
+    /// The residual of each marker; `None` for markers that do not lie on the mesh.
     pub markers: Vec<Option<MarkerEstimate>>,
     /// Standard deviation of each component of a marker of mean weight in mm.
     pub noise: f64,
     /// The weights of markers that are far off.
     pub robust: Robust,
-    /// Whether the noise was given; else it is estimated from what is left of the markers.
+    /// Whether the noise was given; otherwise it is estimated from the residuals of the markers.
     pub known_noise: bool,
-    /// The scatter of the markers over their stated noise, where they contradict it by its size or by how it differs from place to place: its
-    /// size is estimated then.
+    /// The ratio of the markers' scatter to their stated noise, where they contradict it by its size or by its
+    /// variation from place to place: the size of the noise is then estimated.
     pub noise_ratio: Option<f64>,
-    /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where it was found to differ
-    /// from place to place or from component to component, and the data are explained: markers are weighted by it then.
+    /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where it was found to
+    /// differ from place to place or between components, and the data are explained: markers are then weighted accordingly.
     pub noise_range: Option<[[f64; 2]; 2]>,
-    /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
-    /// measured ones.
+    /// The number of parameters that the data have determined: the trace of the matrix that maps the measured displacements to the fitted ones.
     pub effective_parameters: f64,
     /// Twice the number of markers less the effective parameters.
     pub degrees_of_freedom: f64,
     /// Half the width of a 95 % interval over the standard error.
     pub reach: f64,
-    /// Forces on the interior in N on node after node that stand for what the physics lacks; zero where it is exact.
+    /// Forces on the interior in N on node after node that represent what the physics lacks; zero where it is exact.
     pub interior_forces: Vec<f64>,
-    /// The rule by which data, smoothness and physics were traded.
+    /// The rule by which data, smoothness and physics were balanced.
     pub rule: Cow<'static, str>,
-    /// How smooth the edges of unknown motion came out by the rule, and how large the forces on the interior.
+    /// The smoothness of the edges of unknown motion, and the size of the forces on the interior, as chosen by the rule.
     pub smoothing: Vec<Smoothing>,
     /// The condition of each part of the boundary.
     pub edges: Vec<EdgeOutcome>,
@@ -65,21 +64,21 @@ pub struct FieldEstimate {
     pub parameters: Vec<FoundParameter>,
     /// Steps of the search.
     pub steps: usize,
-    /// What an error of the picture's scale would change.
+    /// The change due to an error of the picture's scale.
     pub scale_change: ScaleChange,
-    /// Whether the standard errors of displacements, forces and parameters hold the mesh's own error: of meshes with too many
-    /// cells it is not known.
+    /// Whether the standard errors of displacements, forces and parameters include the mesh's own error, which is not
+    /// known for meshes with too many cells.
     pub holds_mesh_error: bool,
-    /// By how much, relative to itself, the force grows with the distance in mm that all free edges lie farther out:
-    /// ∮ Ψ ds/∫ Ψ dA over free edges and sheet, the derivative of its energy by that distance, in 1/mm.
+    /// The relative growth of the force in 1/mm with the distance that all free edges lie farther out: ∮ Ψ ds/∫ Ψ dA
+    /// over free edges and sheet, the derivative of its energy with respect to that distance.
     pub growth: f64,
-    /// How far the forces of all edges and on the interior are from balance, over the largest of them.
+    /// The sum of the forces of all edges and on the interior, relative to the largest of them.
     pub imbalance: f64,
     /// The measured forces beside those of the field.
     pub force_checks: Vec<ForceCheck>,
-    /// What the data contradict of what is said of the edges.
+    /// The statements on the edges that the data contradict.
     pub contradiction: Option<Contradiction>,
-    /// How what is left of neighbouring markers correlates, where there is enough of it to tell.
+    /// The correlation of the residuals of neighbouring markers, where there are enough of them.
     pub whiteness: Option<Whiteness>,
     /// Whether law, thickness and conditions explain the data.
     pub verdict: Verdict,
@@ -88,18 +87,18 @@ pub struct FieldEstimate {
 /// A measured force and that of the field.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ForceCheck {
-    /// What was measured.
+    /// The measured force.
     pub measured: MeasuredForce,
     /// The force of the field in N.
     pub found: f64,
-    /// The difference in units of its own standard deviation, √(σ² − s² + e²), or √(σ² + s² + e²) where the field does not know the
-    /// measured force: σ of the measured force, s of the field's by the noise, e by the mesh.
+    /// The difference in units of its own standard deviation, √(σ² − s² + e²), or √(σ² + s² + e²) where the field does not
+    /// include the measured force: σ for the measured force, s for that of the field due to noise, e due to the mesh.
     pub standardised: f64,
 }
 
 impl ForceCheck {
-    /// Whether the measured force is farther from the field's than four standard deviations: noise alone does so in six of a
-    /// hundred thousand cases.
+    /// Whether the measured force differs from the field's by more than four standard deviations, which noise alone
+    /// causes in six of a hundred thousand cases.
     pub fn contradicts(&self) -> bool {
         const CONTRADICTS: f64 = 4.0;
         self.standardised.abs() > CONTRADICTS
@@ -107,13 +106,13 @@ impl ForceCheck {
 }
 
 impl FieldEstimate {
-    /// Whether law, thickness and conditions explain the data, so that intervals mean something.
+    /// Whether law, thickness and conditions explain the data, so that intervals are valid.
     pub fn is_explained(&self) -> bool {
         self.verdict.answer != Answer::NotExplained
     }
 
-    /// The share of the area on which the mesh's own error is the larger part of the error of stress, and more than a hundredth
-    /// of the root mean square of the stress.
+    /// The share of the area on which the mesh's own error is the larger part of the error of stress, and more than a
+    /// hundredth of the root mean square of the stress.
     pub fn coarse_share(&self, mesh: &Mesh) -> f64 {
         const MATTERS: f64 = 0.01;
         let square = |stress: &[f64; 4]| stress.iter().map(|value| value * value).sum::<f64>();
@@ -134,7 +133,7 @@ impl FieldEstimate {
     }
 }
 
-/// The rule by which data and smoothness are traded.
+/// The rule by which data and smoothness are balanced.
 pub const RULE: &str = "equilibrium holds exactly; the roughness of each edge of unknown motion is weighted by restricted maximum likelihood";
 
 /// The rule where the physics is weighted.
@@ -145,11 +144,10 @@ pub const RULE_WITH_MODEL_ERROR: &str = "equilibrium holds up to smooth forces o
 pub struct StressEstimate {
     /// First Piola–Kirchhoff stress P₁₁, P₁₂, P₂₁, P₂₂ in MPa, the transpose of the nominal stress.
     pub first_piola_kirchhoff_stress: [f64; 4],
-    /// Their standard errors in MPa: √(s² + e²) with s of the noise and e = |P(G) − P(∇u)|, where G is the
-    /// gradient of the field on cells half as large, or the recovered gradient of the mesh's field u where the mesh is too large for
-    /// that.
+    /// Their standard errors in MPa: √(s² + e²) with s from the noise and e = |P(G) − P(∇u)|, where G is the gradient
+    /// of the field on cells half as large, or, for a mesh too large for that, the recovered gradient of its field u.
     pub stress_error: [f64; 4],
-    /// √(e : e), the mesh's own part of them in MPa.
+    /// √(e : e), the part of them due to the mesh itself, in MPa.
     pub mesh_error: f64,
     /// Thickness of the deformed sheet in mm.
     pub thickness: f64,
@@ -178,61 +176,60 @@ pub struct EdgeOutcome {
     pub length: f64,
     /// Its condition.
     pub condition: EdgeCondition,
-    /// Where the data have chosen between free and loaded: how probable the misfit is if the edge is free.
+    /// Where the data have chosen between free and loaded: the probability of the misfit if the edge is free.
     pub probability: Option<f64>,
-    /// Whether its force is nothing within an interval that is small beside the largest force, though the data have refused it as a free
-    /// edge: one that lies elsewhere is.
+    /// Whether its force is zero within an interval that is small compared with the largest force, though the data
+    /// have refused it as a free edge: such an edge lies elsewhere.
     pub idle: bool,
 }
 
-/// What is left of a marker.
+/// The residual of a marker.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MarkerEstimate {
     /// Measured less estimated displacement in mm.
     pub residual: [f64; 2],
     /// Length of the residual in units of its own standard deviation: √(rᵀ Cov(r)⁻¹ r).
     pub standardised_residual: f64,
-    /// Factor of its weight in 0…1.
+    /// Factor of its weight, from 0 to 1.
     pub trust: f64,
-    /// Whether normal noise would leave so much of less than one marker in a thousand.
+    /// Whether normal noise would leave so large a residual at less than one marker in a thousand.
     pub outlier: bool,
 }
 
-/// How smooth an edge came out along an axis.
+/// The smoothness of an edge along an axis.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Smoothing {
     /// The edge.
     pub edge: String,
     /// x or y: 0 or 1.
     pub axis: usize,
-    /// λ in 1/mm²: the inverse of the variance of the curvature over the edge; of forces on the interior, that of b over the
-    /// area in mm²/N².
+    /// λ in 1/mm²: the inverse of the variance of the curvature over the edge; for forces on the interior, that of b over the area in mm²/N².
     pub weight: f64,
     /// Parameters beyond a straight line that the data determine.
     pub freedom: f64,
 }
 
-/// What the data contradict.
+/// The statements that the data contradict.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contradiction {
-    /// How probable so large a fall of the misfit is if all that is said of the edges holds.
+    /// The probability of so large a fall of the misfit if all statements on the edges are true.
     pub probability: f64,
-    /// The edges that contradict on their own, with the same probability of each; empty where they do so together only.
+    /// The edges that contradict on their own, each with this probability; empty where they do so only together.
     pub edges: Vec<(String, f64)>,
 }
 
-/// The correlation of what is left of neighbouring markers.
+/// The correlation of the residuals of neighbouring markers.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Whiteness {
-    /// I of both components together.
+    /// Moran's I of both components together.
     pub correlation: f64,
-    /// What white noise would leave.
+    /// Its expected value for white noise.
     pub expected: f64,
-    /// Its standard deviation.
+    /// Its standard deviation for white noise.
     pub deviation: f64,
     /// I of ux and of uy.
     pub of_components: [f64; 2],
-    /// Half the mean squared difference of what is left over the noise, by distance: 1 everywhere where it is white.
+    /// Half the mean squared difference of residuals over the noise, by distance: 1 everywhere for white noise.
     pub variogram: Vec<VariogramBin>,
 }
 
@@ -241,14 +238,14 @@ pub struct Whiteness {
 pub struct VariogramBin {
     /// The mean distance in mm.
     pub distance: f64,
-    /// Pairs of markers.
+    /// The number of pairs of markers.
     pub pairs: usize,
-    /// Of ux and of uy.
+    /// The variogram of ux and of uy.
     pub of_components: [f64; 2],
 }
 
 impl Whiteness {
-    /// Whether what is left is white: its correlation is within four standard deviations of that of white noise, or hardly any.
+    /// Whether the residuals are white: their correlation is within four standard deviations of that of white noise, or hardly any.
     pub fn is_white(&self) -> bool {
         const SURE: f64 = 4.0;
         const LITTLE: f64 = 0.05;

@@ -7,12 +7,12 @@ use crate::statistics::small_probability;
 /// The answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 pub enum Answer {
-    /// What is left is white noise.
+    /// The residuals are white noise.
     #[default]
     Explained,
-    /// What is left is noise that correlates between neighbours; the intervals hold that.
+    /// The residuals are noise that is correlated between neighbours; the intervals include that.
     Correlated,
-    /// What is left is no noise: intervals say nothing.
+    /// The residuals are not noise: intervals are not valid.
     NotExplained,
 }
 
@@ -27,37 +27,37 @@ impl Answer {
     }
 }
 
-/// The answer with what it stands on.
+/// The answer with its evidence.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Verdict {
     /// The answer.
     pub answer: Answer,
-    /// How the noise correlates, where it does.
+    /// The correlation of the noise, where there is one.
     pub correlation: Option<NoiseCorrelation>,
     /// Why the data are not explained; empty where they are.
     pub reasons: Vec<Reason>,
     /// Alternatives that explain the data better, the best first, where the data are not explained.
     pub trials: Vec<Trial>,
-    /// Where it is worst, where the data are not explained.
+    /// The place with the largest misfit, where the data are not explained.
     pub worst: Option<Worst>,
 }
 
 impl Verdict {
-    /// Whether data are not explained because cells are too coarse for them: a finer mesh explains more than anything else.
+    /// Whether data are not explained because cells are too coarse for them: a finer mesh explains more than any other alternative.
     pub fn asks_for_finer_mesh(&self) -> bool {
         let first = self.trials.first().map(|trial| &trial.alternative);
         self.answer == Answer::NotExplained && first == Some(&Alternative::Mesh)
     }
 }
 
-/// How noise correlates with distance.
+/// The correlation of noise with distance.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct NoiseCorrelation {
     /// The distance in mm at which the correlation has fallen to 1/e.
     pub length: f64,
-    /// The share of the noise's variance that correlates.
+    /// The share of the noise's variance that is correlated.
     pub share: f64,
-    /// The number of markers that would tell as much if their noise were white.
+    /// The number of markers with white noise that would carry the same information.
     pub independent: f64,
     /// 2 ln of its likelihood over that of white noise.
     pub evidence: f64,
@@ -66,13 +66,13 @@ pub struct NoiseCorrelation {
 /// Why data are not explained.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Reason {
-    /// An alternative takes more from the misfit than noise would let it: the probability of that by noise.
+    /// An alternative reduces the misfit more than noise would: the probability of that under noise.
     Alternative(f64),
-    /// What is left correlates over so many mm that it cannot be told from a misfit.
+    /// The residuals are correlated over so many mm that noise cannot be distinguished from a misfit.
     Long(f64),
     /// A measured force is off by so many standard errors.
     Force(f64),
-    /// What is left correlates so much with what is left of the frame before or after.
+    /// The residuals are correlated so strongly with those of the frame before or after.
     Alike(f64),
 }
 
@@ -98,18 +98,18 @@ impl Reason {
     }
 }
 
-/// What would make the equations fit the data better.
+/// An alternative with which the equations would fit the data better.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Alternative {
     /// One edge moves in an unknown smooth way.
     Edge(String),
-    /// All edges of which something is said do so.
+    /// All edges with a stated condition do so.
     Edges,
     /// A free edge, or all of them, lies elsewhere.
     MovedEdge {
         /// Its name; `None` where all of them move together.
         edge: Option<String>,
-        /// How far outside of the mesh's edge, in mm.
+        /// The distance outside of the mesh's edge, in mm.
         outwards: f64,
     },
     /// A smooth force on the sheet, such as friction or weight.
@@ -131,7 +131,7 @@ pub enum Alternative {
 }
 
 impl Alternative {
-    /// What it is in words.
+    /// The alternative in words.
     pub fn words(&self) -> String {
         match self {
             Self::Edge(name) => format!("an unknown motion of `{name}`"),
@@ -169,16 +169,16 @@ fn roughly(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// What an alternative does, tried in one linearised step.
+/// The effect of an alternative, tried in one linearised step.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Trial {
     /// The alternative.
     pub alternative: Alternative,
-    /// Root mean square of what would be left of each component of the markers in mm.
+    /// Root mean square of each component of the markers' residuals that would remain, in mm.
     pub left: f64,
-    /// How probable it is that noise alone makes the misfit fall so much.
+    /// The probability that noise alone makes the misfit fall so much.
     pub probability: f64,
-    /// The misfit that it takes in units of the noise's variance, less twice its parameters.
+    /// The reduction of the misfit in units of the noise's variance, less twice the number of its parameters.
     pub gain: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The derivatives of the markers over their noise, and what the noise that was found makes of them.
+//! The derivatives of the markers over their noise, and their products with the noise that was found.
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,4 @@
-//! Linear least squares with penalties on roughness, each weighted as the data decide.
+//! Linear least squares with penalties on roughness, each weighted by the data.
 //!
 //! ```text
 //! data        r = A δ + noise,   variance v/wᵢ                                     n rows
@@ -10,9 +10,9 @@
 //! v  ← Σ w r²/(n − tr(M⁻¹AᵀWA)/v)
 //! ```
 //!
-//! The λⱼ maximise the restricted likelihood, found by the fixed point of Fellner and Schall; one whose data know
-//! nothing of roughness grows without bound, and what it holds down becomes as smooth as it can be. M⁻¹ is the covariance given
-//! the data, the bias of the smoothing included, so that its intervals cover (Nychka).
+//! The λⱼ maximise the restricted likelihood and are found by the fixed point of Fellner and Schall; where the data
+//! carry no information on roughness λ grows without bound, and its term becomes as smooth as possible. M⁻¹ is the
+//! covariance given the data, including the bias of the smoothing, so that its intervals cover (Nychka).
 //!
 //! # References
 //! S. N. Wood, M. Fasiolo, Biometrics 73, 1071 (2017), doi:10.1111/biom.12666;
@@ -38,9 +38,9 @@ pub struct Roughness {
     pub rank: usize,
 }
 
-/// What is fitted.
+/// The data of a fit.
 pub struct Regression<'a> {
-    /// A, two rows a marker.
+    /// A, two rows per marker.
     pub design: &'a DMatrix<f64>,
     /// r in mm.
     pub residual: &'a DVector<f64>,
@@ -54,11 +54,11 @@ pub struct Regression<'a> {
     pub priors: &'a [Roughness],
     /// How markers that are far off are weighted.
     pub robust: Robust,
-    /// Whether the variances stay as they are.
+    /// Whether the variances are fixed.
     pub settled: bool,
 }
 
-/// What goes on from one linearisation to the next.
+/// The variances that are passed from one linearisation to the next.
 #[derive(Clone, Debug)]
 pub struct VarianceComponents {
     /// λ of each prior; empty before the first fit.
@@ -72,7 +72,7 @@ pub struct VarianceComponents {
 }
 
 impl VarianceComponents {
-    /// What a row of the markers, of which each has two, weighs with the trust in its marker.
+    /// The weight of one of a marker's two rows, including the trust in the marker.
     pub fn weight(&self, weights: &[f64], row: usize) -> f64 {
         weights[row] * self.trust[row / 2]
     }
@@ -88,15 +88,15 @@ pub struct Fit {
     pub residual: DVector<f64>,
     /// √(δᵀ M δ): the length of the step in standard errors.
     pub length: f64,
-    /// GᵀG + Σ λⱼ BⱼᵀBⱼ: M but for the data.
+    /// GᵀG + Σ λⱼ BⱼᵀBⱼ: M without the data.
     pub held: DMatrix<f64>,
     /// tr(M⁻¹AᵀWA)/v, the effective number of parameters.
     pub effective: f64,
-    /// qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ) of each prior: what is left of its freedom.
+    /// qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ) of each prior: its remaining freedom.
     pub freedom: Vec<f64>,
 }
 
-/// The equations of a step at variances that stay.
+/// The equations of a step at fixed variances.
 pub struct NormalEquations {
     /// M.
     pub matrix: DMatrix<f64>,
@@ -120,7 +120,7 @@ const LEAST_PIVOT: f64 = 3.162_277_660_168_379e-7;
 /// Change of the effective number of parameters, and relative change of the variance, at which the fixed point is reached.
 const CLOSE: f64 = 1e-4;
 
-/// λ beyond which a prior counts as exact, relative to what the data weigh.
+/// λ beyond which a prior counts as exact, relative to the weight of the data.
 const STIFFEST: f64 = 1e7;
 
 impl Regression<'_> {
@@ -170,7 +170,7 @@ impl Regression<'_> {
         (&weighted * self.design, weighted * self.residual)
     }
 
-    /// λ at which each prior weighs as much as the data.
+    /// λ with which each prior has the weight of the data.
     fn scales(&self, normal: &DMatrix<f64>, variances: &VarianceComponents) -> Vec<f64> {
         let data = normal.trace() / variances.variance;
         let rough = |prior: &Roughness| prior.slopes.norm_squared().max(f64::MIN_POSITIVE);
@@ -178,7 +178,7 @@ impl Regression<'_> {
         priors.map(|prior| data / rough(prior)).collect()
     }
 
-    /// M and Mδ at variances that stay, and the misfit at δ = 0.
+    /// M and Mδ at fixed variances, and the misfit at δ = 0.
     pub fn equations(&self, variances: &VarianceComponents) -> NormalEquations {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
         let (matrix, target, _) = self.system(&self.normal(variances), &forms, variances);
@@ -196,7 +196,7 @@ impl Regression<'_> {
         }
     }
 
-    /// M, Mδ, and M but for the data.
+    /// M, Mδ, and M without the data.
     fn system(
         &self,
         (normal, right): &(DMatrix<f64>, DVector<f64>),
@@ -238,7 +238,7 @@ impl Regression<'_> {
         })
     }
 
-    /// New λ, v and trust; whether the trust stayed.
+    /// New λ, v and trust; returns whether the trust is unchanged.
     fn update(&self, fit: &Fit, variances: &mut VarianceComponents, scales: &[f64]) -> bool {
         for (index, prior) in self.priors.iter().enumerate() {
             let values = DVector::from_column_slice(&prior.values);

@@ -24,23 +24,23 @@ use crate::statistics::robust_deviation;
 /// How markers that are far off are weighted.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 pub enum Robust {
-    /// As all others.
+    /// The same weight as all others.
     #[default]
     No,
-    /// Less the farther they are off (Huber).
+    /// A weight that falls with the distance (Huber).
     Huber,
-    /// Not at all from a distance on (Tukey's biweight).
+    /// A weight that is zero beyond a distance (Tukey's biweight).
     Tukey,
 }
 
 /// Where Huber's weight begins to fall.
 const HUBER: f64 = 1.5;
-/// Where Tukey's weight is nothing.
+/// The distance at which Tukey's weight is zero.
 const TUKEY: f64 = 5.1227;
-/// Known noise is not believed where the markers scatter by more than so many times as much.
+/// Known noise counts as contradicted where the markers scatter by more than this factor.
 const CONTRADICTED: f64 = 2.0;
 
-/// The level of the noise, and what follows from it.
+/// The level of the noise, and the trust that follows from it.
 pub struct Noise {
     /// v.
     pub variance: f64,
@@ -72,8 +72,8 @@ impl Robust {
         }
     }
 
-    /// v and ω from s d of all markers, where `effective` parameters were fitted; with known noise s is 1, unless the markers
-    /// scatter twice as much: then they are judged by their own level, as no marker would have a say else.
+    /// v and ω from s d of all markers, where `effective` parameters were fitted. With known noise s is 1, unless the markers
+    /// scatter twice as much: then they are judged by their own level, because no marker would have any weight otherwise.
     pub fn noise(self, distances: &[f64], effective: f64, known: bool) -> Noise {
         let count = distances.len() as f64;
         let freedom = (2.0 * count - effective).max(1.0);

@@ -7,9 +7,9 @@
 //! G = ∇u_{h/2} + ∇(S δp)                       in the middle of a cell                       [–]
 //! ```
 //!
-//! with A, W, v, G, M of [`crate::corrector::estimation::regression`], S = ∂u/∂p, d_F the same difference of the measured forces. The difference of two
-//! meshes is at least half of the coarser one's error where the order is one, as beside a singular corner, and more of it
-//! elsewhere: ± 1.96 e holds the error.
+//! with A, W, v, G, M of [`crate::corrector::estimation::regression`], S = ∂u/∂p, d_F the same difference of the
+//! measured forces. The difference of two meshes is at least half of the coarser one's error where the order is one,
+//! as beside a singular corner, and more of it elsewhere: ± 1.96 e covers the error.
 
 use std::collections::BTreeSet;
 
@@ -42,20 +42,20 @@ pub struct MeshError {
     pub displacement: Vec<f64>,
     /// δp.
     pub parameters: DVector<f64>,
-    /// H e, two numbers a marker.
+    /// H e, two numbers per marker.
     pub markers: Vec<f64>,
     /// G₁₁, G₁₂, G₂₁, G₂₂ of cell after cell.
     pub gradients: Vec<[f64; 4]>,
-    /// Of the force of each body in N, in the order of the bodies.
+    /// The error of the force of each body in N, in the order of the bodies.
     pub forces: Vec<[f64; 2]>,
 }
 
-/// What the refined mesh says otherwise at the same motion of the edges.
+/// The difference of the refined mesh's solution at the same motion of the edges.
 pub struct MeshDifference {
     fine: Fine,
-    /// H d, two numbers a marker.
+    /// H d, two numbers per marker.
     pub markers: Vec<f64>,
-    /// Of each body.
+    /// The difference of the force of each body.
     forces: Vec<[f64; 2]>,
 }
 
@@ -69,7 +69,7 @@ struct Fine {
 }
 
 impl Fine {
-    /// What a body holds of the refined mesh.
+    /// The nodes and sides of the refined mesh that a body holds.
     fn hold(&self, body: &Body) -> Hold {
         let nodes = [0, 1].map(|axis| -> BTreeSet<usize> {
             let own = body.edges.iter().flat_map(|edge| &self.held[*edge][axis]);
@@ -83,8 +83,7 @@ impl Fine {
         }
     }
 
-    /// ∇u_{h/2} in the middle of a cell of the mesh that was refined: of a quadrilateral the mean of its four parts, which meet
-    /// there.
+    /// ∇u_{h/2} in the middle of a cell of the mesh that was refined: for a quadrilateral the mean of its four parts, which meet there.
     fn gradient_amid(&self, coarse: usize) -> [f64; 4] {
         let first = 4 * coarse;
         let shape = self.mesh.shape(first);
@@ -98,8 +97,8 @@ impl Fine {
 }
 
 impl NearestField<'_> {
-    /// What a mesh of cells half as large says otherwise; `None` where the mesh is too large to be refined, or the refined one has
-    /// no equilibrium.
+    /// The difference of a solution on cells half as large; `None` where the mesh is too large to be refined, or the
+    /// refined one has no equilibrium.
     pub fn mesh_difference(&self, edges: &[Edge]) -> Option<MeshDifference> {
         let mesh = self.equations.task.specimen.mesh;
         if mesh.cell_count() > MOST_REFINED_CELLS {
@@ -264,7 +263,7 @@ impl Equations<'_> {
     }
 }
 
-/// The unknowns of a refined mesh that an edge holds: those between nodes of the edge whose unknowns are held.
+/// The unknowns of a refined mesh held by an edge: those between nodes of the edge whose unknowns are held.
 fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<usize>; 2] {
     if edge.segment.inside {
         return [0, 1].map(|axis| held_inside(mesh, fine, edge, (axis, held)));
@@ -302,8 +301,7 @@ fn is_near(place: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     dot(&off, &off) <= NEAR * NEAR * square
 }
 
-/// The unknowns of a refined mesh along an axis that a pad on the sheet holds: those in cells and on sides of cells all of whose nodes
-/// are held.
+/// The unknowns of a refined mesh along an axis held by a pad on the sheet: those in cells and on sides of cells all of whose nodes are held.
 fn held_inside(
     mesh: &Mesh,
     fine: &Mesh,

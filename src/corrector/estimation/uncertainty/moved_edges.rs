@@ -1,11 +1,11 @@
-//! Free edges that lie elsewhere than those of the mesh, as small changes of the field that this would make.
+//! The small changes of the field due to free edges that lie elsewhere than those of the mesh.
 //!
 //! ```text
 //! ∂u/∂d = −K⁻¹ f,   fᵢ = h ∫ P t (t·∇Nᵢ) ds                    d the distance of the edge outside of the mesh's, t its tangent
 //! ```
 //!
-//! The strip between both is so narrow that it only carries tension along the edge: h d P t is the force in it. One step about a field
-//! that was found with wrong edges tells distances of a fiftieth of the width to a third.
+//! The strip between both is so narrow that it only carries tension along the edge: h d P t is the force in it. One
+//! step about a field that was found with wrong edges determines distances of a fiftieth of the width to a third.
 
 use nalgebra::DMatrix;
 
@@ -14,7 +14,7 @@ use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 
-/// A free edge, or all of them, with the displacements of the markers per mm that it lies farther out: two rows a marker.
+/// A free edge, or all of them, with the displacements of the markers per mm that it lies farther out: two rows per marker.
 pub type MovedEdge = (Option<String>, DMatrix<f64>);
 
 impl NearestField<'_> {

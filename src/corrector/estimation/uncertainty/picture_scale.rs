@@ -1,5 +1,5 @@
-//! The scale of the picture of the deformed specimen, which is not quite that of the specimen at rest: a sheet that comes nearer to its camera, by a
-//! thousandth of the distance, seems to have grown by a thousandth.
+//! The scale of the picture of the deformed specimen, which differs from that of the specimen at rest: a sheet that
+//! comes nearer to its camera by a thousandth of the distance appears to have grown by a thousandth.
 //!
 //! ```text
 //! d = H u + e q,   q = X + H u − c                e the relative error of the scale, c the middle of the markers
@@ -7,7 +7,8 @@
 //! Cov(p) = C + σₑ² (∂p/∂e)(∂p/∂e)ᵀ
 //! ```
 //!
-//! with A, W, v, M of [`crate::corrector::estimation::regression`]. Much of it looks like an even stretch, so that data which are explained do not tell it.
+//! with A, W, v, M of [`crate::corrector::estimation::regression`]. A scale error resembles a uniform stretch, so that data which are explained do
+//! not show it.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -17,7 +18,7 @@ use crate::corrector::estimation::search::NearestField;
 use crate::error::Error;
 use crate::solve::vector::dot;
 
-/// What an error of the scale changes, per relative error.
+/// The changes due to an error of the scale, per relative error.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct ScaleChange {
     /// The force of each body along x and y in N, in the order of the forces.
@@ -25,7 +26,7 @@ pub struct ScaleChange {
 }
 
 impl Equations<'_> {
-    /// q of a field, two numbers a marker, in mm.
+    /// q of a field, two numbers per marker, in mm.
     pub fn magnified(&self, field: &[f64]) -> Vec<f64> {
         let observations = self.task.observations;
         let moved = observations.interpolation.multiply(field);
@@ -46,7 +47,7 @@ impl NearestField<'_> {
         DMatrix::from_vec(column.len(), 1, column)
     }
 
-    /// ∂p/∂e; before the covariance takes the noise found, as it has to be M⁻¹.
+    /// ∂p/∂e; must be called before the covariance includes the noise found, because it has to be M⁻¹.
     pub(in crate::corrector::estimation) fn scale_answer(&self) -> DVector<f64> {
         let column = self.equations.magnified(&self.field);
         let target = self
@@ -55,7 +56,7 @@ impl NearestField<'_> {
         -(&self.fit.covariance * target)
     }
 
-    /// What follows from ∂p/∂e.
+    /// The changes that follow from ∂p/∂e.
     pub(in crate::corrector::estimation) fn scale_change(
         &self,
         answer: &DVector<f64>,
@@ -72,7 +73,7 @@ impl NearestField<'_> {
         })
     }
 
-    /// Adds the variance of the scale.
+    /// Adds the variance of the scale to the covariance.
     pub(in crate::corrector::estimation) fn take_scale(&mut self, answer: &DVector<f64>) {
         let deviation = self.equations.task.knowledge.scale_deviation;
         self.fit.covariance += answer * answer.transpose() * (deviation * deviation);

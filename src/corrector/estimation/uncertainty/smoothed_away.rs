@@ -1,12 +1,12 @@
-//! What the smoothness that the data choose may take away from single places.
+//! The features that the smoothness chosen by the data may remove at single places.
 //!
 //! ```text
 //! dⱼ = (M − (1 − ε) λⱼ BⱼᵀBⱼ)⁻¹ (1 − ε) λⱼ Bⱼᵀρⱼ,   Cov(p) ← Cov(p) + Σ dⱼ dⱼᵀ
 //! ```
 //!
-//! with M, λ, B, ρ of [`crate::corrector::estimation::regression`]: dⱼ is what the parameters would change by if prior j had the share ε of its weight. M⁻¹
-//! holds the bias of smoothing on the average over an edge alone: where an edge bends in one place and is straight elsewhere, its
-//! intervals are too narrow in that place and too wide elsewhere. Less smoothing shows such places.
+//! with M, λ, B, ρ of [`crate::corrector::estimation::regression`]: dⱼ is the change of the parameters if prior j lost the share
+//! ε of its weight. M⁻¹ includes the bias of smoothing only on the average over an edge: where an edge bends in one place and is
+//! straight elsewhere, its intervals are too narrow in that place and too wide elsewhere. Less smoothing reveals such places.
 //!
 //! # References
 //! G. Wahba, J. R. Stat. Soc. B 45, 133 (1983), doi:10.1111/j.2517-6161.1983.tb01239.x (intervals across the function);

@@ -1,4 +1,4 @@
-//! What it does to the errors of a field that nobody but the markers tells where its free edges lie.
+//! The errors of a field where only the markers show the position of its free edges.
 //!
 //! ```text
 //! sₖ = ∂u/∂dₖ                                    d the distance of edge k outside of the mesh's ([`super::moved_edges`])
@@ -8,8 +8,8 @@
 //! Cov(p, d) = [C + DΣDᵀ, DΣ; ΣDᵀ, Σ],   ∂u/∂(p, d) = [S, s]
 //! ```
 //!
-//! with A, W, v, G, M of [`crate::corrector::estimation::regression`]. The field stays that through the edges of the mesh: the distances are parameters that are
-//! considered, not found (Schmidt), so that data which hardly tell of them do not move it.
+//! with A, W, v, G, M of [`crate::corrector::estimation::regression`]. The field remains the one through the edges of the mesh: the distances are
+//! considered parameters that are not estimated (Schmidt), so that data with little information on them do not move the field.
 //!
 //! # References
 //! S. F. Schmidt, Adv. Control Syst. 3, 293 (1966), doi:10.1016/B978-1-4831-6716-9.50011-4
@@ -34,7 +34,7 @@ pub struct UnknownPlaces {
 }
 
 impl NearestField<'_> {
-    /// The free edges whose place is not known; before the covariance takes the noise found, as it has to be M⁻¹.
+    /// The free edges at unknown positions; must be called before the covariance includes the noise found, because it has to be M⁻¹.
     pub(in crate::corrector::estimation) fn unknown_places(
         &mut self,
         edges: &[Edge],
@@ -90,7 +90,7 @@ impl NearestField<'_> {
         Ok(target)
     }
 
-    /// Makes the distances parameters of the field, behind the others.
+    /// Appends the distances to the parameters of the field.
     pub(in crate::corrector::estimation) fn consider(&mut self, places: UnknownPlaces) {
         let UnknownPlaces {
             changes,
