@@ -242,7 +242,7 @@ fn steps_that_do_not_follow_a_swing_are_refused_and_what_does_nothing_is_told() 
     };
     let refused = told(&format!("{start}{swing}{time}"));
     assert!(
-        refused.contains("time.step") && refused.contains("of the grip's period"),
+        refused.contains("time.step") && refused.contains("times the grip's period"),
         "{refused}"
     );
     let fine = told(&format!(

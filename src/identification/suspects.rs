@@ -78,7 +78,11 @@ impl Suspect {
                 "a force that is recorded {} later than the motion",
                 around(1e3, "ms")
             ),
-            Self::Mass => format!("a mass that is larger by {}", around(1e6, "g")),
+            Self::Mass => {
+                let relation = if amount < 0.0 { "smaller" } else { "larger" };
+                let words = format!("{:.3} ± {:.3} g", 1e6 * amount.abs(), 1e6 * error);
+                format!("a mass that is {relation} by {words}")
+            }
             Self::StepOfK => format!("a step of K(·) at rest by {}", around(1.0, "N/mm")),
             Self::Friction => format!("a dry friction of {}", around(1.0, "N")),
         }
@@ -168,7 +172,11 @@ pub fn suspects(
         })
     };
     let tests = tried.iter().copied().enumerate().filter_map(test);
-    let mut sure: Vec<Suspected> = tests.filter(|own| own.size() > LIMIT).collect();
+    // Friction never drives a motion.
+    let possible = |own: &Suspected| own.suspect != Suspect::Friction || own.amount > 0.0;
+    let mut sure: Vec<Suspected> = tests
+        .filter(|own| own.size() > LIMIT && possible(own))
+        .collect();
     sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
     sure
 }

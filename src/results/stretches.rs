@@ -12,6 +12,9 @@ pub const BESIDE_CORNERS: f64 = 0.01;
 /// Stretches are outside of the range from so much, relative, on.
 const ROUNDING: f64 = 1e-3;
 
+/// Stretches are far outside of the range beyond this multiple of its limit.
+const FAR: f64 = 1.1;
+
 /// The principal stretches in the plane at the centres of the cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretches {
@@ -23,6 +26,8 @@ pub struct Stretches {
     pub excess: f64,
     /// The share of the area at rest outside of the range.
     pub share: f64,
+    /// The share of the area at rest that is more than a tenth outside of the range.
+    pub far_share: f64,
 }
 
 impl Stretches {
@@ -39,8 +44,9 @@ impl Stretches {
             largest: 0.0,
             excess: 0.0,
             share: 0.0,
+            far_share: 0.0,
         };
-        let (mut outside, mut whole) = (0.0, 0.0);
+        let (mut outside, mut far, mut whole) = (0.0, 0.0, 0.0);
         for cell in 0..mesh.cell_count() {
             let centre = mesh.shape(cell).centre();
             let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, centre);
@@ -51,11 +57,15 @@ impl Stretches {
             if excess > 1.0 + ROUNDING {
                 outside += area;
             }
+            if excess > FAR {
+                far += area;
+            }
             all.smallest = all.smallest.min(stretches.min());
             all.largest = all.largest.max(stretches.max());
             all.excess = all.excess.max(excess);
         }
         all.share = outside / whole;
+        all.far_share = far / whole;
         all
     }
 

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::budget::Budget;
+use crate::document::write_records;
 use crate::error::Error;
-use crate::results::{Material, Outcome};
+use crate::results::{Content, Material, Outcome};
 use crate::statistics::larger;
 use crate::studies::{PreparedStudy, Progress};
 
@@ -20,7 +21,7 @@ mod warnings;
 
 pub use problem::{OutputSettings, Study};
 pub use read::{DEFAULT, keys};
-use results::{Results, run};
+use results::{MODELS, Results, run};
 
 /// The `kind` of these studies.
 pub const KIND: &str = "plate";
@@ -86,8 +87,38 @@ fn outcome(study: &Study, results: &Results) -> Outcome {
         style: study.pictures.style.clone(),
         grids,
         explored,
+        files: vec![("forces.csv".to_owned(), Content::Text(forces(results)))],
         ..Outcome::default()
     };
     outcome.blocks = report::blocks(study, results, &outcome);
     outcome
+}
+
+/// Force, width and energy of all models at all stretches as a table for other programs.
+fn forces(results: &Results) -> String {
+    let head = [
+        "stretch",
+        "model",
+        "grip_displacement_mm",
+        "force_N",
+        "mid_width_mm",
+        "strain_energy_mJ",
+    ];
+    let mut records = vec![head.map(str::to_owned).to_vec()];
+    for (step, compared) in results.comparison.iter().enumerate() {
+        let length = results.meshes()[0].grid().size[0];
+        for (name, measures) in MODELS.into_iter().zip(results.measures(step)) {
+            let Some(own) = measures else { continue };
+            let stretch = compared.stretch;
+            let values = [stretch * length, own.force, own.mid_width, own.energy];
+            let names = [stretch.to_string(), name.to_owned()];
+            records.push(
+                names
+                    .into_iter()
+                    .chain(values.map(|value| value.to_string()))
+                    .collect(),
+            );
+        }
+    }
+    write_records(records)
 }

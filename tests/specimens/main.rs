@@ -92,6 +92,22 @@ fn specimens_of_every_shape_run_in_all_three_models() {
         );
         let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
         assert!(report.contains("corrected: displacement [%]"), "{shape}");
+        let machine = machine_report(&folder.path().join("out"));
+        let forces = fs::read_to_string(folder.path().join("out/forces.csv")).unwrap();
+        let last = forces.lines().last().unwrap();
+        let (names, numbers) = last.split_at(last.match_indices(',').nth(2).unwrap().0 + 1);
+        let [_, group, "finite elements", _] = names.split(',').collect::<Vec<_>>()[..] else {
+            panic!("{last}");
+        };
+        let own = &machine["steps"][1]["finite_element"]["groups"][group]["force_N"];
+        let found: Vec<f64> = numbers
+            .split(',')
+            .map(|word| word.parse().unwrap())
+            .collect();
+        assert_eq!(
+            [own[0].as_f64(), own[1].as_f64()],
+            [Some(found[0]), Some(found[1])]
+        );
         for file in [
             "mass_spring_002.vtu",
             "corrected.pvd",

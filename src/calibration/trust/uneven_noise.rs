@@ -12,27 +12,26 @@ const CLEARLY: f64 = 3.29;
 /// Fewer rows tell nothing of either.
 const FEWEST: usize = 10;
 
-/// The warnings of a fit whose residuals are noise; none of others.
+/// The warnings of a fit whose residuals are judged: noise that grows where they are noise, and specimens that differ in any case.
 pub fn noise_warnings(
     quality: &Quality,
     law: &dyn HyperelasticLaw,
     tests: &[TestData],
     weighting: Weighting,
 ) -> Vec<String> {
-    if !quality.has_intervals() || quality.verdict.is_none() {
+    if quality.verdict.is_none() {
         return Vec::new();
     }
+    let has_intervals = quality.has_intervals();
     let independent = quality.effective_points() / quality.points as f64;
     let residuals = WeightedResiduals {
         law,
         weighting,
         independent: independent.min(1.0),
     };
-    let uneven = residuals.uneven(tests);
-    uneven
-        .into_iter()
-        .chain(residuals.specimens(tests))
-        .collect()
+    let uneven = has_intervals.then(|| residuals.uneven(tests)).flatten();
+    let specimens = residuals.specimens(tests, has_intervals);
+    uneven.into_iter().chain(specimens).collect()
 }
 
 struct WeightedResiduals<'a> {
@@ -104,7 +103,7 @@ impl WeightedResiduals<'_> {
     }
 
     /// Whether specimens of one kind of test differ by more than their noise.
-    fn specimens(&self, tests: &[TestData]) -> Option<String> {
+    fn specimens(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
         let alike = |test: &&TestData| (test.test, &test.axes) == (tests[0].test, &tests[0].axes);
         if tests.len() < 2 || !tests.iter().all(|test| alike(&test)) {
             return None;
@@ -130,9 +129,13 @@ impl WeightedResiduals<'_> {
             let spread = factors.iter().map(|[factor, _]| (factor - plain).powi(2)).sum::<f64>();
             let of_mean = 100.0 * (spread / freedom / factors.len() as f64).sqrt();
             let told: Vec<String> = factors.iter().map(|[factor, _]| format!("{factor:.3}")).collect();
+            let then = match has_intervals {
+                true => "The intervals apply to these specimens only",
+                false => "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law",
+            };
             format!(
-                "the specimens differ by more than the noise of each: they are {} times as stiff as the law. The intervals apply to these specimens \
-                 only; their mean gives the material's stiffness to ± {of_mean:.2} % (standard error)",
+                "the specimens differ by more than the noise of each: they are {} times as stiff as the law. {then}; their mean gives the \
+                 material's stiffness to ± {of_mean:.2} % (standard error)",
                 told.join(", "),
             )
         })
@@ -209,6 +212,8 @@ mod tests {
             warned(&tests.collect::<Vec<_>>(), Weighting::Absolute, differ)
         };
         assert!(of([0.0502, 0.0518, 0.0509]));
+        // So different that all residuals together are systematic.
+        assert!(of([0.045, 0.055, 0.05]));
         assert!(!of([0.05; 3]));
     }
 }

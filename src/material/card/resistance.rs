@@ -5,15 +5,13 @@ use std::sync::Arc;
 use super::Card;
 use crate::document::{Bound, Section};
 use crate::material::curve::Mode;
+use crate::material::registry::SWELLING;
 use crate::material::sheet::PlaneState;
 use crate::material::volume::{POISSON_RATIO, Volume, VolumeEnergy, bulk_modulus};
 use crate::units::Dimension;
 
 /// Stretches at which tension is compared.
 const POINTS: u32 = 100;
-
-/// The law of gels in contact with their solvent.
-const SWELLING: &str = "flory-rehner";
 
 impl Card {
     /// Reads the resistance to a change of volume.

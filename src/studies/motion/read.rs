@@ -15,6 +15,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
+use crate::material::registry::SWELLING;
 use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
@@ -138,6 +139,14 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         (false, Some(card)) => card.viscosity.clone(),
         (false, None) => ViscousMaterial::default(),
     };
+    if card.as_ref().is_some_and(|card| card.law_name == SWELLING) {
+        section.warning(
+            "card",
+            "this gel is in equilibrium with its solvent at every instant, which takes a time of about h²/D (hours for a millimetre): in a motion it \
+             is too soft, because fast deformation leaves no time for exchange",
+            "take an incompressible card with the modulus of the swollen gel, as `gelbench materials show` reports it",
+        );
+    }
     if !viscosity.is_none()
         && card
             .as_ref()

@@ -34,10 +34,11 @@ fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
     };
     let told = |key: &str, length: f64| {
         let message = format!(
-            "is {:.3} of the grip's period of {period} s",
+            "is {:.3} times the grip's period of {period} s",
             length / period
         );
-        let hint = format!("take a {key} of {} s or less", period / FEW);
+        let article = if key.starts_with('i') { "an" } else { "a" };
+        let hint = format!("take {article} {key} of {} s or less", period / FEW);
         (message, hint)
     };
     if let Step::AtMost(step) = time.step {

@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::problem::Specimen;
 use super::results::models::Models;
+use crate::document::write_records;
 use crate::problem::{GroupState, Solution};
 use crate::results::Block;
 use crate::results::number;
@@ -51,6 +52,37 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
         Block::table(&head, rows),
         Block::Paragraph(balance(models)),
     ]
+}
+
+/// The same as a table for other programs, with all digits: a force-displacement curve is two of its columns.
+pub fn csv(specimen: &Specimen, models: &Models) -> String {
+    let head = [
+        "load_factor",
+        "group",
+        "model",
+        "force_x_N",
+        "force_y_N",
+        "moment_Nmm",
+        "displacement_x_mm",
+        "displacement_y_mm",
+    ];
+    let mut records = vec![head.map(str::to_owned).to_vec()];
+    for (step, factor) in specimen.factors.iter().enumerate() {
+        for model in models.named() {
+            let states = model.solution.groups(step).unwrap_or_default();
+            for (group, state) in specimen.groups().iter().zip(states) {
+                let ([fx, fy], [ux, uy]) = (state.force, state.displacement);
+                let names = [
+                    factor.to_string(),
+                    (*group).to_owned(),
+                    model.name.to_owned(),
+                ];
+                let values = [fx, fy, state.moment, ux, uy].map(|value| value.to_string());
+                records.push(names.into_iter().chain(values).collect());
+            }
+        }
+    }
+    write_records(records)
 }
 
 /// Balances above this are worth a warning.

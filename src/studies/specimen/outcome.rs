@@ -12,7 +12,7 @@ use super::{forces, statement, work};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
 use crate::problem::Solution;
-use crate::results::{Block, Check, Material, Outcome, Step, decimals, number};
+use crate::results::{Block, Check, Content, Material, Outcome, Step, decimals, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
@@ -45,6 +45,10 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         blocks,
         figures: figures(specimen, models, &expected),
         grids: grids(specimen, models, &expected),
+        files: vec![(
+            "forces.csv".to_owned(),
+            Content::Text(forces::csv(specimen, models)),
+        )],
         warnings,
         balance: forces::worst_balance(models),
         balances: forces::balances(models),

@@ -42,7 +42,7 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(strained::warnings(
         &specimen.card,
         (FINITE_ELEMENTS.name, mesh),
-        0.0,
+        |stretches| stretches.share > 0.0,
         loads(),
     ));
     all
