@@ -55,7 +55,7 @@ use warnings::{FEWEST_CORNERS, warnings};
 mod tests;
 
 /// Gauss–Newton steps allowed, and the number of first steps in which the penalties are still chosen.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 300;
 const CHOICES: usize = 6;
 
 /// The iteration ends when the penalised sum of squares falls by less than this, relative to the misfit; a change of one is a standard error.

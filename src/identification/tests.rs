@@ -239,8 +239,8 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
             own.force[0] = own.force[1];
         }),
         (
-            "a mass that is larger by ",
-            -0.1 / 1.1 * 1.1e6 * sound.mass,
+            "a mass that is smaller by ",
+            0.1 / 1.1 * 1.1e6 * sound.mass,
             &|own| own.mass *= 1.1,
         ),
     ];
