@@ -85,8 +85,8 @@ fn the_same_study_gives_the_same_bytes() {
     }
     assert_eq!(
         compared,
-        9 + 8 + 1 + 1,
-        "pictures, VTK files, a view of them and the manifest"
+        9 + 8 + 1 + 1 + 1,
+        "pictures, VTK files, a view of them, forces and the manifest"
     );
     let without_times = |output: &str| {
         let report = fs::read_to_string(folder.path().join(output).join("report.md")).unwrap();

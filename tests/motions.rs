@@ -58,10 +58,10 @@ fn the_longitudinal_frequency_of_a_slender_plate_is_none_of_bending() {
     let slender = motion(rest)
         .replace(
             "length = \"30 mm\"\nwidth = \"10 mm\"",
-            "length = \"60 mm\"\nwidth = \"1 mm\"",
+            "length = \"60 mm\"\nwidth = \"2 mm\"",
         )
-        .replace("cells = [6, 2]", "cells = [60, 1]")
-        .replace("cells = [8, 4]", "cells = [30, 1]")
+        .replace("cells = [6, 2]", "cells = [60, 2]")
+        .replace("cells = [8, 4]", "cells = [30, 2]")
         .replace("[\"30 mm\", \"5 mm\"]", "[\"60 mm\", \"0 mm\"]");
     let folder = folder_with(&slender);
     gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
