@@ -325,7 +325,7 @@ fn a_volume_that_changes_tension_is_warned_of() {
     let card = card.unwrap();
     let shear = card.law.shear_modulus();
     let [stretch, change] = card.tension_by_volume().unwrap();
-    assert!((1.0..=2.0).contains(&stretch) && change < 1.4 / 1.5 - 1.0);
+    assert!((0.5..=3.0).contains(&stretch) && change < 1.4 / 1.5 - 1.0);
     let plane = card.in_plane_strain().unwrap();
     assert!((plane.youngs_modulus() / (2.8 * shear) - 1.0).abs() < 1e-9);
 }

@@ -104,10 +104,12 @@ fn specimens_of_every_shape_run_in_all_three_models() {
             .split(',')
             .map(|word| word.parse().unwrap())
             .collect();
-        assert_eq!(
-            [own[0].as_f64(), own[1].as_f64()],
-            [Some(found[0]), Some(found[1])]
-        );
+        for (axis, found) in found[..2].iter().enumerate() {
+            assert!(
+                (own[axis].as_f64().unwrap() - found).abs() < 1e-12,
+                "{last}"
+            );
+        }
         for file in [
             "mass_spring_002.vtu",
             "corrected.pvd",

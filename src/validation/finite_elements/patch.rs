@@ -53,7 +53,7 @@ fn element_checks(
     let found = error(&what, simple_shear(shape, cells, shear)?);
     checks.push(found.at_most(1e-12, "closed form"));
     let turn = error("rigid rotation by 90°, field", turn(shape, cells)?);
-    checks.push(turn.at_most(1e-12, "rigid turn"));
+    checks.push(turn.at_most(1e-12, "rigid rotation"));
     let [residual, tangent] = derivatives(shape, cells);
     checks.extend([
         error("residual compared with differences of the energy", residual)
