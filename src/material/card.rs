@@ -32,7 +32,7 @@ pub struct Card {
     /// The law with its parameters, including the resistance to a change of volume.
     pub law: Arc<dyn HyperelasticLaw>,
     /// The law without the card's change of volume; `None` where the card states none.
-    isochoric: Option<Arc<dyn HyperelasticLaw>>,
+    pub isochoric: Option<Arc<dyn HyperelasticLaw>>,
     /// How the material resists a change of volume; `None` where it keeps its volume.
     pub volume: Option<Volume>,
     /// Poisson's ratio, where the card states it and the bulk modulus follows from it.
