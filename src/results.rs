@@ -204,6 +204,12 @@ impl Results {
     }
 }
 
+/// A value as `write` has it; a dash where there is none, or NaN.
+pub fn or_dash(value: Option<f64>, write: impl FnOnce(f64) -> String) -> String {
+    let value = value.filter(|value| !value.is_nan());
+    value.map_or("–".to_owned(), write)
+}
+
 /// A number with so many decimals; where these would leave fewer than three digits, as [`number`] writes it.
 pub fn decimals(value: f64, decimals: usize) -> String {
     const ROUNDING: f64 = 1e-12;

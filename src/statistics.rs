@@ -114,6 +114,19 @@ pub fn chi_squared_limit(freedom: f64, probability: f64) -> f64 {
     ChiSquared::new(freedom).map_or(f64::NAN, |law| law.inverse_cdf(1.0 - probability))
 }
 
+/// Cochran's Q of values with their variances, Σ (p − p̄)²/s² about their weighted mean p̄: χ² with one degree of freedom fewer than
+/// values where all are the same but for their errors.
+pub fn cochran(values: &[[f64; 2]]) -> f64 {
+    let weight: f64 = values.iter().map(|[_, variance]| 1.0 / variance).sum();
+    let mean = values
+        .iter()
+        .map(|[value, variance]| value / variance)
+        .sum::<f64>()
+        / weight;
+    let square = |[value, variance]: &[f64; 2]| (value - mean).powi(2) / variance;
+    values.iter().map(square).sum()
+}
+
 /// The probability that χ² with so many degrees of freedom exceeds a value; NaN where there are none.
 pub fn chi_squared_tail(freedom: f64, value: f64) -> f64 {
     ChiSquared::new(freedom).map_or(f64::NAN, |law| law.sf(value))

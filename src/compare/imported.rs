@@ -52,6 +52,31 @@ pub struct ModelFields {
     pub own_percent: Option<f64>,
 }
 
+impl ModelFields {
+    /// The fields of finite elements, springs and corrected springs, as far as they have a solution, and why the others have none.
+    ///
+    /// # Errors
+    /// The first of `ends` where the finite elements have no solution.
+    ///
+    /// # Panics
+    /// Where they have none and no end says why.
+    pub fn of(
+        fields: [Option<ModelField>; 3],
+        mut ends: Vec<Error>,
+        own_percent: Option<f64>,
+    ) -> Result<Self, Error> {
+        if fields[0].is_none() {
+            assert!(!ends.is_empty(), "a model that ends says why");
+            return Err(ends.swap_remove(0));
+        }
+        Ok(Self {
+            fields: fields.into_iter().flatten().collect(),
+            ends,
+            own_percent,
+        })
+    }
+}
+
 /// The places at which fields are compared, and the imported field there.
 #[derive(Clone, Debug)]
 pub struct Sites {

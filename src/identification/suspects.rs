@@ -62,9 +62,10 @@ impl Suspect {
 
     /// The suspect in words, with its amount.
     fn words(self, amount: f64, error: f64) -> String {
-        let around = |factor: f64, unit: &str| {
+        let of = |amount: f64, factor: f64, unit: &str| {
             format!("{:.3} ± {:.3} {unit}", factor * amount, factor * error)
         };
+        let around = |factor: f64, unit: &str| of(amount, factor, unit);
         match self {
             Self::ForceZero => format!("a zero error of the force of {}", around(1.0, "N")),
             Self::ExtensionZero => {
@@ -80,8 +81,10 @@ impl Suspect {
             ),
             Self::Mass => {
                 let relation = if amount < 0.0 { "smaller" } else { "larger" };
-                let words = format!("{:.3} ± {:.3} g", 1e6 * amount.abs(), 1e6 * error);
-                format!("a mass that is {relation} by {words}")
+                format!(
+                    "a mass that is {relation} by {}",
+                    of(amount.abs(), 1e6, "g")
+                )
             }
             Self::StepOfK => format!("a step of K(·) at rest by {}", around(1.0, "N/mm")),
             Self::Friction => format!("a dry friction of {}", around(1.0, "N")),

@@ -21,7 +21,7 @@ use super::cell_shape::CellShape;
 use super::cells::Mesh;
 use super::geometry::{check_size, distance, polygon_area};
 use super::triangulate::fill;
-use crate::statistics::median;
+use crate::statistics::{extremes, median};
 use crate::units::SIZES;
 
 mod alpha_shape;
@@ -242,6 +242,14 @@ impl Outline {
     /// The area inside the outer line in mm², holes included.
     pub fn outer_area(&self) -> f64 {
         polygon_area(&self.outer)
+    }
+
+    /// Length along x and along y in mm.
+    pub fn extents(&self) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let [low, high] = extremes(self.outer.iter().map(|point| point[axis]));
+            high - low
+        })
     }
 
     /// A mesh of cells of about the size `size` in mm (the length of their edges); `shape` is their kind, of three,

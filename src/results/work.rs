@@ -1,6 +1,6 @@
 //! What is stored in a sheet that softens, and what was dissipated.
 
-use super::{Block, decimals};
+use super::{Block, decimals, or_dash};
 use crate::problem::Work;
 
 /// A table of the work on the material in some models at all steps, with a heading; a dash where a model has none.
@@ -15,10 +15,7 @@ pub fn work_blocks(
     };
     let own = [along.to_owned()].into_iter();
     let head = own.chain(columns("stored")).chain(columns("dissipated"));
-    let figure = |value: Option<f64>| {
-        let value = value.filter(|value| !value.is_nan());
-        value.map_or("–".to_owned(), |value| decimals(value, 4))
-    };
+    let figure = |value: Option<f64>| or_dash(value, |value| decimals(value, 4));
     let row = |(at, works): (String, Vec<Option<Work>>)| {
         let stored = works.iter().map(|work| work.map(|work| work.stored));
         let dissipated = works.iter().map(|work| work.map(|work| work.dissipated));

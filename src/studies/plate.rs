@@ -105,8 +105,8 @@ fn forces(results: &Results) -> String {
         "strain_energy_mJ",
     ];
     let mut records = vec![head.map(str::to_owned).to_vec()];
+    let length = results.springs.mesh.grid().size[0];
     for (step, compared) in results.comparison.iter().enumerate() {
-        let length = results.meshes()[0].grid().size[0];
         for (name, measures) in MODELS.into_iter().zip(results.measures(step)) {
             let Some(own) = measures else { continue };
             let stretch = compared.stretch;

@@ -119,19 +119,11 @@ pub fn fields(
             displacement: solution.displacement(last)?.to_vec(),
         })
     };
-    let mut ends = ends.iter().map(End::error);
-    let Some(elements) = field(FINITE_ELEMENTS.name, &models.reference.finest) else {
-        return Err(ends.next().expect("a model that ends says why"));
-    };
-    let others = [
+    let fields = [
+        field(FINITE_ELEMENTS.name, &models.reference.finest),
         field(MASS_SPRING.name, &models.on_lattice.uncorrected),
         field(CORRECTED.name, &models.on_lattice.corrected),
     ];
-    Ok(ModelFields {
-        fields: std::iter::once(elements)
-            .chain(others.into_iter().flatten())
-            .collect(),
-        ends: ends.collect(),
-        own_percent: models.reference.field_percent(last),
-    })
+    let ends = ends.iter().map(End::error).collect();
+    ModelFields::of(fields, ends, models.reference.field_percent(last))
 }

@@ -4,7 +4,7 @@ use super::quality::Quality;
 use crate::calibration::data::{Observation, TestData};
 use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
-use crate::statistics::rank_correlation;
+use crate::statistics::{cochran, rank_correlation};
 
 /// Standard normal deviates beyond which something is no chance: one in a thousand, on both sides.
 const CLEARLY: f64 = 3.29;
@@ -110,16 +110,7 @@ impl WeightedResiduals<'_> {
         }
         let factors: Option<Vec<[f64; 2]>> = tests.iter().map(|test| self.factor(test)).collect();
         let factors = factors?;
-        let weight: f64 = factors.iter().map(|[_, variance]| 1.0 / variance).sum();
-        let mean = factors
-            .iter()
-            .map(|[factor, variance]| factor / variance)
-            .sum::<f64>()
-            / weight;
-        let squares: f64 = factors
-            .iter()
-            .map(|[factor, variance]| (factor - mean).powi(2) / variance)
-            .sum();
+        let squares = cochran(&factors);
         let freedom = factors.len() as f64 - 1.0;
         // χ² by Wilson's and Hilferty's cube root.
         let deviate = ((squares / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))

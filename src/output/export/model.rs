@@ -81,8 +81,8 @@ pub struct Model<'a> {
     pub nodes: Vec<usize>,
     /// Node sets by name.
     pub sets: Vec<(String, Vec<usize>)>,
-    /// The groups of the mesh with the names of their sets.
-    groups: Vec<(&'a str, String)>,
+    /// The groups of the mesh: the first sets are theirs, one each.
+    groups: Vec<&'a str>,
     /// Parts of the boundary by name: cell and side within it.
     pub surfaces: Vec<(String, Vec<Side>)>,
     pub held: Vec<Constraint>,
@@ -179,7 +179,7 @@ impl<'a> Model<'a> {
                 let edges = edges.map(|edge| sides[&[edge[0], edge[1]]]).collect();
                 surfaces.push((names.give(&format!("{name}_EDGES")), edges));
             }
-            groups.push((group.as_str(), name.clone()));
+            groups.push(group.as_str());
             sets.push((name, own.copied().collect()));
         }
         let mut model = Self {
@@ -206,8 +206,7 @@ impl<'a> Model<'a> {
     fn hold(&mut self, names: &mut Names) -> Result<(), Diagnostic> {
         let held = self.given.problem.held_by(self.given.mesh)?;
         for (number, (group, support)) in self.given.problem.supports.iter().enumerate() {
-            let own_set = self.groups.iter().find(|(known, _)| known == group);
-            let own_set = own_set.map(|(_, set)| set.clone());
+            let own_set = self.groups.iter().position(|known| known == group);
             for axis in [0, 1] {
                 let own = self.nodes.iter().copied();
                 let own = own.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
@@ -215,12 +214,9 @@ impl<'a> Model<'a> {
                 if own.is_empty() {
                     continue;
                 }
-                let of_group = |(name, _): &(String, Vec<usize>)| Some(name) == own_set.as_ref();
-                let all = self.sets.iter().enumerate();
-                let same = all.filter(|(_, (_, nodes))| *nodes == own);
-                let known = same
-                    .max_by_key(|(_, set)| of_group(set))
-                    .map(|(place, _)| place);
+                let known = own_set.filter(|set| self.sets[*set].1 == own);
+                let known =
+                    known.or_else(|| self.sets.iter().rposition(|(_, nodes)| *nodes == own));
                 let set = known.unwrap_or_else(|| {
                     self.sets.push((names.give("HELD"), own));
                     self.sets.len() - 1

@@ -4,14 +4,11 @@ use super::request::Request;
 use crate::error::Diagnostic;
 use crate::markers::Understood;
 use crate::mesh::{Outline, OutlineFault};
-use crate::statistics::extremes;
 
 /// What is known of the edge.
 pub(super) enum EdgePlace {
-    /// So far outside, as the user says, in mm.
-    Given(f64),
-    /// The same of the nearest rows of a grid beside edges that are not along it, where rows end up to a step of the grid farther inside.
-    GivenBesideGrid { gap: f64, step: f64 },
+    /// So far outside, as the user says, in mm; beside a grid, edges that are not along it may lie up to a step farther out.
+    Given { gap: f64, step: Option<f64> },
     /// At least half a subset outside, as subsets lie inside of the specimen, and less than a step farther.
     Subset {
         half: f64,
@@ -28,8 +25,10 @@ impl EdgePlace {
     /// along their grid or not.
     pub fn of(request: &Request, understood: &Understood, spacing: f64, beside_grid: bool) -> Self {
         match (request.conditions.edge_gap, &understood.subset) {
-            (Some(gap), _) if beside_grid => Self::GivenBesideGrid { gap, step: spacing },
-            (Some(gap), _) => Self::Given(gap),
+            (Some(gap), _) => Self::Given {
+                gap,
+                step: beside_grid.then_some(spacing),
+            },
             (None, Some(subset)) => {
                 let pixel = understood.pixel.unwrap_or(spacing / subset.step);
                 Self::Subset {
@@ -51,9 +50,7 @@ impl EdgePlace {
     /// An [`OutlineFault`] of a gap that the user gives.
     pub fn outline(self, markers: Outline, spacing: f64) -> Result<(Outline, Self), OutlineFault> {
         match self {
-            Self::Given(gap) | Self::GivenBesideGrid { gap, .. } => {
-                Ok((markers.widened(gap)?, self))
-            }
+            Self::Given { gap, .. } => Ok((markers.widened(gap)?, self)),
             Self::Subset { half, .. } => Ok(match markers.widened(half) {
                 Ok(wider) => (wider, self),
                 Err(_) => (markers, Self::Unknown(spacing)),
@@ -65,8 +62,8 @@ impl EdgePlace {
     /// How far outside of the outline the edge may lie all the same, in mm.
     pub fn unknown(&self) -> Option<f64> {
         match self {
-            Self::Given(_) => None,
-            Self::Subset { step, .. } | Self::GivenBesideGrid { step, .. } => Some(*step),
+            Self::Given { step, .. } => *step,
+            Self::Subset { step, .. } => Some(*step),
             Self::Unknown(spacing) => Some(*spacing),
         }
     }
@@ -74,9 +71,7 @@ impl EdgePlace {
     /// How a mesh's origin says it.
     pub fn origin(&self) -> String {
         match self {
-            Self::Given(gap) | Self::GivenBesideGrid { gap, .. } if *gap > 0.0 => {
-                format!(", widened by {gap} mm")
-            }
+            Self::Given { gap, .. } if *gap > 0.0 => format!(", widened by {gap} mm"),
             Self::Subset { half, words, .. } => {
                 format!(", widened by {half:.4} mm, half a subset ({words})")
             }
@@ -87,8 +82,11 @@ impl EdgePlace {
     /// What the user should know of it.
     pub fn warning(&self) -> Option<Diagnostic> {
         let (message, hint) = match self {
-            Self::Given(_) => return None,
-            Self::GivenBesideGrid { gap, step } => (
+            Self::Given { step: None, .. } => return None,
+            Self::Given {
+                gap,
+                step: Some(step),
+            } => (
                 format!(
                     "the edge is assumed to lie {gap} mm outside the outermost markers, but the markers form a grid and the specimen is not a \
                      rectangle along it: beside curved or inclined edges rows end up to {step:.4} mm farther inside"
@@ -133,12 +131,8 @@ pub(super) fn is_beside_grid(places: &[[f64; 2]], outline: &Outline, spacing: f6
             .filter(|pair| pair[1] - pair[0] > 0.05 * spacing)
             .count()
     };
-    let extent = |axis: usize| {
-        let [low, high] = extremes(outline.outer.iter().map(|point| point[axis]));
-        high - low
-    };
-    lines(0) * lines(1) <= SPARSE * places.len()
-        && outline.outer_area() < FULL * extent(0) * extent(1)
+    let [along_x, along_y] = outline.extents();
+    lines(0) * lines(1) <= SPARSE * places.len() && outline.outer_area() < FULL * along_x * along_y
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@
 use crate::corrector::estimation::{FieldEstimate, FoundParameter};
 use crate::error::Diagnostic;
 use crate::results::number;
-use crate::statistics::{Estimate, chi_squared_tail, extremes, small_probability};
+use crate::statistics::{Estimate, chi_squared_tail, cochran, extremes, small_probability};
 
 /// The probability by noise below which parameters of frames exclude one another.
 const LEVEL: f64 = 1e-3;
@@ -49,22 +49,11 @@ pub fn doubts(estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
 
 /// The probability by noise of such differences; `None` for fewer than two values.
 fn agreement(found: &[&Estimate]) -> Option<f64> {
-    let weighted = found
-        .iter()
-        .map(|own| (own.value, own.standard_error.powi(-2)));
-    let weighted: Vec<(f64, f64)> = weighted.filter(|(_, weight)| weight.is_finite()).collect();
-    if weighted.len() < 2 {
-        return None;
-    }
-    let weights: f64 = weighted.iter().map(|(_, weight)| weight).sum();
-    let mean = weighted
-        .iter()
-        .map(|(value, weight)| value * weight)
-        .sum::<f64>()
-        / weights;
-    let square = |(value, weight): &(f64, f64)| weight * (value - mean).powi(2);
-    let misfit = weighted.iter().map(square).sum::<f64>();
-    Some(chi_squared_tail((weighted.len() - 1) as f64, misfit))
+    let known = found.iter().filter(|own| own.standard_error > 0.0);
+    let known: Vec<[f64; 2]> = known
+        .map(|own| [own.value, own.standard_error.powi(2)])
+        .collect();
+    (known.len() > 1).then(|| chi_squared_tail((known.len() - 1) as f64, cochran(&known)))
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
-use crate::statistics::extremes;
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -201,11 +200,8 @@ fn made(
     // Of a triangle with edges of length 1.
     let cell_area = 3f64.sqrt() / 4.0;
     let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
-    let extent = |axis: usize| {
-        let [low, high] = extremes(outline.outer.iter().map(|point| point[axis]));
-        high - low
-    };
-    let across = extent(0).min(extent(1));
+    let [along_x, along_y] = outline.extents();
+    let across = along_x.min(along_y);
     let size = request
         .cell_size
         .unwrap_or(spacing.min(across / LEAST_ACROSS).max(smallest(MOST_CELLS)));

@@ -72,8 +72,9 @@ impl Model<'_> {
             format!("units: mm, N, MPa = N/mm^2, mJ; {}", self.time()),
             format!("material: card {}, law {}", card.name, card.law_name),
         ];
-        let renamed = self.groups.iter();
-        let renamed = renamed.filter(|(group, set)| group.to_ascii_uppercase() != *set);
+        let sets = self.sets.iter().map(|(set, _)| set);
+        let groups = self.groups.iter().zip(sets);
+        let renamed = groups.filter(|(group, set)| group.to_ascii_uppercase() != **set);
         lines.extend(renamed.map(|(group, set)| format!("set {set}: the group `{group}`")));
         lines.extend(
             self.remarks()

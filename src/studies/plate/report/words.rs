@@ -1,18 +1,16 @@
 //! Numbers and stretches as a report writes them.
 
 use crate::problem::ClampedPlate;
-use crate::results::decimals;
+use crate::results::{decimals, or_dash};
 
 /// A figure with so many decimals; a dash where there is none.
 pub fn figure(value: Option<f64>, decimals: usize) -> String {
-    let value = value.filter(|value| !value.is_nan());
-    value.map_or("–".into(), |value| format!("{value:.decimals$}"))
+    or_dash(value, |value| format!("{value:.decimals$}"))
 }
 
 /// A force, a length or an energy with some decimals, of small ones their first digits; a dash where it is none.
 pub fn quantity(value: Option<f64>, places: usize) -> String {
-    let value = value.filter(|value| !value.is_nan());
-    value.map_or("–".into(), |value| decimals(value, places))
+    or_dash(value, |value| decimals(value, places))
 }
 
 /// A figure as a power of ten; a dash where it is none.

@@ -312,7 +312,7 @@ pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<Mode
     stretches.push(stretch);
     let last = stretches.len() - 1;
     let mut results = run(&study, progress)?;
-    let mut ends = std::mem::take(&mut results.ends);
+    let ends = std::mem::take(&mut results.ends);
     let field = |model, mesh: &Mesh, state: Option<&State>| {
         Some(ModelField {
             model,
@@ -324,21 +324,13 @@ pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<Mode
     let [lattice, cells, finest] = results.meshes();
     // Between its nodes the corrected field is what its differences take it for.
     let cells = study.corrector.scheme.mesh(cells);
-    let Some(elements) = field(FINITE_ELEMENTS.name, finest, elements) else {
-        return Err(ends.swap_remove(0));
-    };
-    let others = [
+    let fields = [
+        field(FINITE_ELEMENTS.name, finest, elements),
         field(MASS_SPRING.name, lattice, springs),
         field(CORRECTED.name, &cells, corrected),
     ];
     let own = results.comparison[last].reference;
-    Ok(ModelFields {
-        fields: std::iter::once(elements)
-            .chain(others.into_iter().flatten())
-            .collect(),
-        ends,
-        own_percent: own.map(|own| own.displacement_percent),
-    })
+    ModelFields::of(fields, ends, own.map(|own| own.displacement_percent))
 }
 
 #[cfg(test)]

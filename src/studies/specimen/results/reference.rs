@@ -11,7 +11,7 @@ use crate::finite_element::convergence::{
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::{Block, Check, Wanted};
+use crate::results::{Block, Check, Wanted, or_dash};
 use crate::statistics::larger;
 use crate::studies::specimen::problem::Specimen;
 
@@ -365,10 +365,8 @@ fn unknown_energy() -> Judgement {
 
 /// A figure with some decimals; a dash for one that is not known.
 fn figure(value: f64, decimals: usize) -> String {
-    match value.is_finite() {
-        true => format!("{value:.decimals$}"),
-        false => "–".to_owned(),
-    }
+    let known = value.is_finite().then_some(value);
+    or_dash(known, |value| format!("{value:.decimals$}"))
 }
 
 /// The displacement of a solution at the nodes of a mesh; `None` where it has not reached a load factor.
