@@ -65,6 +65,11 @@ kinds! {
     "own-error", "validation/cases/own_error.toml", slow, finite_elements::own_error::prepare;
 }
 
+/// The kind of a name.
+pub fn named(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| kind.name == name)
+}
+
 /// The cases with the given names; without names, all cases, or with `quick` all but the slow ones.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use gelbench::budget::Budget;
 use gelbench::document::with_files;
 use gelbench::error::{Diagnostic, Error};
-use gelbench::kinds::{self, KINDS};
+use gelbench::kinds;
 use gelbench::material::softened_law::check_memory;
 use gelbench::mesh::{CellShape, MeshData};
 use gelbench::studies::plate::results::run::one_model;
@@ -223,9 +223,7 @@ fn shape(kind: u8) -> Result<CellShape, Error> {
 }
 
 fn specimen_kind() -> &'static Kind {
-    let mut kinds = KINDS.iter();
-    let found = kinds.find(|kind| kind.name == specimen::KIND);
-    found.expect("specimens are a kind of studies")
+    kinds::named(specimen::KIND).expect("specimens are a kind of study")
 }
 
 /// Solves one model of a specimen whose study has the text `study`, on the mesh given if there is one.

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use super::terminal::{Outcome, print};
 use crate::document::{Bound, FoundKey, Key, Presence, Takes, comments, explore};
 use crate::error::Error;
-use crate::kinds::{self, KINDS};
+use crate::kinds;
 use crate::material::Card;
 use crate::output;
 use crate::results::limit;
@@ -41,12 +41,7 @@ impl FileKind {
     ];
 
     fn case(self) -> Option<&'static Kind> {
-        let kind = match self {
-            Self::Specimen => "specimen",
-            Self::Motion => "motion",
-            _ => return None,
-        };
-        KINDS.iter().find(|case| case.name == kind)
+        kinds::named(self.name())
     }
 
     /// The file that comes along, with remarks.

@@ -9,6 +9,10 @@ use crate::mesh::Mesh;
 /// The share of the area that may lie beyond the range of a card, or be unlike the rest: beside a clamped corner stretches have no bound.
 pub const BESIDE_CORNERS: f64 = 0.01;
 
+/// The share of the area whose stretches may lie far beyond the range of a card where the nominal stretch of a plate is told when its study
+/// is read.
+pub const FAR_BESIDE_CORNERS: f64 = 0.05;
+
 /// Stretches are outside of the range from so much, relative, on.
 const ROUNDING: f64 = 1e-3;
 

@@ -25,6 +25,7 @@ mod read;
 mod solution;
 mod statement;
 mod timing;
+mod warnings;
 
 use deviations::OwnError;
 pub use problem::MovingPlate;

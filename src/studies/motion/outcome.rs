@@ -5,10 +5,11 @@ use serde_json::json;
 use super::corrected::CorrectedInstants;
 use super::deviations::{Deviations, OwnError, displacements_on};
 use super::files::{animation, figures, grids, tables};
-use super::plates::{compression, shown, times};
+use super::plates::{shown, times};
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use super::statement;
+use super::warnings::warnings;
 use crate::compare::judgement::{judge_by_margin, percent};
 use crate::dynamics::Instant;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
@@ -56,7 +57,7 @@ pub fn outcome(
         figures: figures(plate, models, (corrected, &plates)),
         style: plate.pictures.style.clone(),
         grids: grids(plate, &instants, &plates, &expected),
-        warnings: compression(plate, &instants, &plates).into_iter().collect(),
+        warnings: warnings(plate, &instants, &plates),
         files,
         times: seconds.collect(),
         ..Outcome::default()

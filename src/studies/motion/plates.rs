@@ -4,8 +4,7 @@ use super::corrected::CorrectedInstants;
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use crate::mesh::Mesh;
-use crate::results::wrinkling::{Wrinkling, of_parts};
-use crate::results::{ViscousStress, cell_states, number};
+use crate::results::ViscousStress;
 
 /// A plate whose motion is shown.
 pub struct PlateMotion<'a> {
@@ -66,19 +65,4 @@ pub fn shown<'a>(
     let mut all = vec![model(springs), between, reference];
     all.retain(|plate| !plate.motion.is_empty());
     all
-}
-
-/// The warning of a thin sheet under compression: the instant at which the largest part of it is.
-pub fn compression(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> Option<String> {
-    let law = &*plate.problem.law;
-    let own = plates.iter().find(|own| own.is_reference)?;
-    let shares = own.motion.iter().zip(&own.viscous).zip(times);
-    let shares = shares.map(|(([u, _], viscous), time)| {
-        let states = cell_states(law, own.mesh, &[u], &viscous.in_cells);
-        let share = Wrinkling::of_cells(law, own.mesh, &states).area_percent;
-        (share, *time)
-    });
-    let (share, time) = shares.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    let most = || format!("up to {share:.1} % of the area, at {} s", number(time));
-    (share > 0.0).then(|| of_parts(&most()))
 }

@@ -8,11 +8,8 @@ use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 use crate::results::{
-    Stretches, is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
+    FAR_BESIDE_CORNERS, Stretches, is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
 };
-
-/// The share of the area whose stretches may lie far beyond the range of the card: beside the clamped corners they have no bound.
-const MOST_FAR: f64 = 0.05;
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;
@@ -66,7 +63,7 @@ fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
     let strains = small_strain::warning(law, mesh, states.iter().cloned());
     let named = (MODELS[model], mesh);
     // The nominal stretches are compared with the range where the study is read.
-    let is_worth = |own: &Stretches| own.far_share > MOST_FAR;
+    let is_worth = |own: &Stretches| own.far_share > FAR_BESIDE_CORNERS;
     let beyond = strained::warnings(&study.card, named, is_worth, states.into_iter());
     let all = compression.into_iter().chain(strains).chain(beyond);
     all.collect()

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use gelbench::budget::Budget;
 use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
-use gelbench::kinds::KINDS;
+use gelbench::kinds;
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
 use gelbench::material::softened_law::check_memory;
 use gelbench::material::{Card, HyperelasticLaw};
@@ -82,8 +82,7 @@ pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
         let [_, _, elements] = study.finite_elements();
         return Ok([lattice, elements.mesh]);
     }
-    let kind = KINDS.iter().find(|case| case.name == specimen::KIND);
-    let kind = kind.expect("specimens are a kind of study");
+    let kind = kinds::named(specimen::KIND).expect("specimens are a kind of study");
     let read = specimen::load(kind, file, &text, Budget::USUAL)?.made;
     // Quadratic cells as many as the lattice has: twice as fine as its equations.
     Ok([read.outline.lattice(), read.outline.reference_mesh(1)])

@@ -1,0 +1,65 @@
+//! What a reader of a motion's figures must know about them.
+
+use super::plates::PlateMotion;
+use super::problem::MovingPlate;
+use crate::finite_element::Element;
+use crate::mass_spring::{self, SpringLaw};
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS};
+use crate::results::wrinkling::{Wrinkling, of_parts};
+use crate::results::{
+    FAR_BESIDE_CORNERS, Stretches, cell_states, locking, number, small_strain, strained,
+};
+
+/// The warnings about plates that move, at the given instants in s: a lattice of another ν, compression, a law of small strains, locking, and a
+/// material beyond the range of its card or not stable.
+pub fn warnings(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> Vec<String> {
+    let law = &*plate.problem.law;
+    let follows_card = matches!(plate.springs, SpringLaw::Material);
+    let is_alike = plate.lattice.area_term || !follows_card;
+    let lattice = (!is_alike).then(|| mass_spring::warning(law)).flatten();
+    let lattice = lattice.map(|told| {
+        format!("{told}; an area term (`mass_spring.area_term`) gives them the sheet's ν")
+    });
+    let mut all: Vec<String> = lattice.into_iter().collect();
+    all.extend(compression(plate, times, plates));
+    let Some(own) = plates.iter().find(|own| own.is_reference) else {
+        return all;
+    };
+    let states = own.motion.iter().zip(times);
+    let states = states.map(|([u, _], time)| (format!("{} s", number(*time)), *u));
+    all.extend(small_strain::warning(law, own.mesh, states.clone()));
+    all.extend(locking(plate, plates));
+    // The stretches of the grip are compared with the range where the study is read.
+    let is_worth = |stretches: &Stretches| stretches.far_share > FAR_BESIDE_CORNERS;
+    let named = (own.name, own.mesh);
+    all.extend(strained::warnings(&plate.card, named, is_worth, states));
+    all
+}
+
+/// The warning about bilinear cells that lock.
+fn locking(plate: &MovingPlate, plates: &[PlateMotion]) -> Option<String> {
+    let corrected = plates.iter().any(|own| own.name == CORRECTED.name);
+    let corrected = corrected.then_some((
+        CORRECTED.name,
+        "The corrected motion has bilinear cells alone: rely on the finite elements",
+    ));
+    let elements = (plate.element.0 == Element::Q1)
+        .then_some((FINITE_ELEMENTS.name, locking::SECOND_DEGREE));
+    let found: Vec<_> = corrected.into_iter().chain(elements).collect();
+    locking::warning(&*plate.problem.law, &found)
+}
+
+/// The warning of a thin sheet under compression: the instant at which the largest part of it is.
+fn compression(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> Option<String> {
+    let law = &*plate.problem.law;
+    let own = plates.iter().find(|own| own.is_reference)?;
+    let shares = own.motion.iter().zip(&own.viscous).zip(times);
+    let shares = shares.map(|(([u, _], viscous), time)| {
+        let states = cell_states(law, own.mesh, &[u], &viscous.in_cells);
+        let share = Wrinkling::of_cells(law, own.mesh, &states).area_percent;
+        (share, *time)
+    });
+    let (share, time) = shares.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let most = || format!("up to {share:.1} % of the area, at {} s", number(time));
+    (share > 0.0).then(|| of_parts(&most()))
+}
