@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::functions::{
-    GripMotion, STRETCHES, reached_stretches, read_damping, read_grip, read_stiffness,
+    GripMotion, STRETCHES, rates, reached_stretches, read_damping, read_grip, read_stiffness,
 };
 use super::problem::{MovingPlate, PointForce, Probe, Tolerances};
 use super::timing::check_times;
@@ -61,7 +61,10 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     section.unknown_keys();
     let element = read_element(&root.section("finite_element"));
     let probes = read_probes(root, &problem);
-    let tolerances = read_tolerances(&root.section("tolerances"));
+    let is_driven = grip
+        .as_ref()
+        .is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
+    let tolerances = read_tolerances(&root.section("tolerances"), is_driven);
     let times = ("times", Dimension::Time);
     let pictures = Pictures::read(&root.section("pictures"), times, &[]);
     let (grip, card) = (grip?, material.card?);
@@ -217,12 +220,17 @@ fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
     lattice
 }
 
-fn read_tolerances(section: &Section) -> Tolerances {
+/// The tolerances of a study. A grip that is driven imposes most of the displacement, so that the force is judged too.
+fn read_tolerances(section: &Section, is_driven: bool) -> Tolerances {
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
+    let deviation_percent = percent("deviation");
     let tolerances = Tolerances {
         energy_percent: percent("energy"),
-        deviation_percent: percent("deviation"),
-        force_percent: section.has("force").then(|| percent("force")),
+        deviation_percent,
+        force_percent: match section.has("force") {
+            true => Some(percent("force")),
+            false => is_driven.then_some(deviation_percent),
+        },
     };
     section.unknown_keys();
     tolerances

@@ -43,8 +43,8 @@ fn locking(plate: &MovingPlate, plates: &[PlateMotion]) -> Option<String> {
         CORRECTED.name,
         "The corrected motion has bilinear cells alone: rely on the finite elements",
     ));
-    let elements = (plate.element.0 == Element::Q1)
-        .then_some((FINITE_ELEMENTS.name, locking::SECOND_DEGREE));
+    let elements =
+        (plate.element.0 == Element::Q1).then_some((FINITE_ELEMENTS.name, locking::SECOND_DEGREE));
     let found: Vec<_> = corrected.into_iter().chain(elements).collect();
     locking::warning(&*plate.problem.law, &found)
 }

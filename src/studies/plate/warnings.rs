@@ -8,7 +8,8 @@ use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 use crate::results::{
-    FAR_BESIDE_CORNERS, Stretches, is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
+    FAR_BESIDE_CORNERS, Stretches, is_one_of_several, locking, one_of_several, small_strain,
+    strained, wrinkling,
 };
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
