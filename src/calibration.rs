@@ -20,7 +20,9 @@ mod tests;
 mod trust;
 
 pub use card_text::{Provenance, card_text};
-pub use data::{Conversion, FoundZero, KEYS, Observation, StrainColumn, Test, TestData, Times};
+pub use data::{
+    Conversion, FoundZero, KEYS, Observation, PRECONDITIONED, StrainColumn, Test, TestData, Times,
+};
 pub use fit::{Fit, Relaxed, fit};
 pub use ranking::{best, rank};
 pub use regression::MovedZero;

@@ -34,6 +34,18 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     })
 }
 
+/// The value that is farthest from zero, with its sign; zero where there are none. NaN does not count.
+pub fn farthest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let farther = |most: f64, value: f64| {
+        if value.abs() > most.abs() {
+            value
+        } else {
+            most
+        }
+    };
+    values.into_iter().fold(0.0, farther)
+}
+
 /// A small probability as text; one that is too small for a normal number is given as an upper bound.
 pub fn small_probability(probability: f64) -> String {
     match probability < f64::MIN_POSITIVE {

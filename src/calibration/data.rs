@@ -12,6 +12,6 @@ mod test_data;
 mod zero;
 
 pub use conversion::Conversion;
-pub use cycles::Branches;
+pub use cycles::{Branches, PRECONDITIONED};
 pub use reading::KEYS;
 pub use test_data::{FoundZero, Observation, StrainColumn, Test, TestData, Times};

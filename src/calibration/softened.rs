@@ -2,6 +2,7 @@
 
 use super::data::{Branches, Observation, Test, TestData};
 use crate::material::{HyperelasticLaw, Softening};
+use crate::statistics::farthest;
 
 /// The softening of a fit.
 #[derive(Clone, Debug)]
@@ -43,7 +44,7 @@ pub fn cycles(
     predicted: &[f64],
 ) -> Vec<SofteningCycle> {
     let record = Record::of(data, law, predicted);
-    let mut most = 0.0_f64;
+    let mut most = data.energy_before(law);
     let ends = record.ends();
     let of_cycle = |pair: &[usize]| {
         let own = &record.rows[pair[0]..=pair[1]];
@@ -51,11 +52,7 @@ pub fn cycles(
         let before = most.max(first);
         most = own.iter().fold(before, |most, row| most.max(row.energy));
         let [measured, fitted] = record.work(own);
-        let far = own.iter().map(|row| row.strain);
-        let far = far.fold(
-            0.0,
-            |most: f64, x| if x.abs() > most.abs() { x } else { most },
-        );
+        let far = farthest(own.iter().map(|row| row.strain));
         SofteningCycle {
             test: data.name.clone(),
             stretch: 1.0 + far,

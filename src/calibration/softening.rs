@@ -20,13 +20,16 @@ use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::{Card, HyperelasticLaw, SoftenedLaw};
+use crate::statistics::farthest;
 
+mod earlier;
 mod misfit;
 #[cfg(test)]
 mod tests;
 
 pub use misfit::Base;
 
+use earlier::Search;
 use misfit::{SOFTENING, SofteningMisfit, softening_parameters};
 
 /// Fits a law that softens to some tests together.
@@ -56,6 +59,15 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         let message = format!("{}: no softening describes the data", first.law.name);
         Error::input(message, "look at the strains, or choose another law")
     })?;
+    let search = Search {
+        base,
+        tests,
+        start: &start,
+        bounds: &bounds,
+        largest,
+        weighting: settings.weighting,
+    };
+    let doubts = search.doubts(&misfit, &values);
     let is_noise = |misfit: &SofteningMisfit, values: &[f64]| {
         judged(misfit, tests, values, &bounds, settings.weighting).is_noise()
     };
@@ -66,7 +78,9 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         settings,
         bounds: &bounds,
     };
-    Ok(whole.finished(first, parameters, &values))
+    let mut fit = whole.finished(first, parameters, &values);
+    fit.quality.warnings.extend(doubts);
+    Ok(fit)
 }
 
 /// Checks that the tests unload somewhere: softening does not show in a first loading.
@@ -145,9 +159,14 @@ fn of_card(card: &Card) -> Result<First, Error> {
     })
 }
 
-/// The rows of a test that no earlier one exceeds by more than a hundredth.
+/// The rows of a test that no earlier state exceeds by more than a hundredth; all of them where the specimen was stretched further before.
 fn rising(data: &TestData) -> TestData {
-    let mut most = 0.0_f64;
+    let far = farthest(data.observations.iter().map(|one| data.drawn_strain(one)));
+    let before = data.preconditioned.unwrap_or_default().abs();
+    if before >= far.abs() {
+        return data.clone();
+    }
+    let mut most = before;
     let mut rows = Vec::new();
     for one in &data.observations {
         let strain = data.drawn_strain(one).abs();
@@ -164,13 +183,24 @@ fn rising(data: &TestData) -> TestData {
     }
 }
 
-/// The best values from several softenings, that of the start among them.
+/// The best values from several softenings.
 fn minimum(
     misfit: &SofteningMisfit,
     start: &[f64],
     bounds: &[[f64; 2]],
     largest: f64,
 ) -> Option<Vec<f64>> {
+    let (_, best) = rough_minimum(misfit, start, bounds, largest)?;
+    Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
+}
+
+/// The sum of squares and the values of the best of several rough searches.
+fn rough_minimum(
+    misfit: &SofteningMisfit,
+    start: &[f64],
+    bounds: &[[f64; 2]],
+    largest: f64,
+) -> Option<(f64, Vec<f64>)> {
     let of_law = start.len() - SOFTENING.len();
     let mut starts = Vec::new();
     for r in [1.3, 2.0, 4.0] {
@@ -190,8 +220,7 @@ fn minimum(
         Some((sum_of_squares(misfit, &found), found))
     };
     let rough: Vec<(f64, Vec<f64>)> = starts.par_iter().filter_map(improved).collect();
-    let (_, best) = rough.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
+    rough.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The residuals at some values.

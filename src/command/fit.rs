@@ -12,8 +12,8 @@ use super::terminal::{Outcome, Printed, print, print_report, save, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
-    self, Base, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, Terms, TestData,
-    Weighting,
+    self, Base, Bounds, Conversion, Fit, FitSettings, PRECONDITIONED, Provenance, StrainColumn,
+    Terms, TestData, Weighting,
 };
 use crate::document::Statements;
 use crate::error::{Diagnostic, Error};
@@ -118,6 +118,13 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     if terms.is_some() || arguments.softening {
         // What relaxes or softens is the whole record.
         reading.entry("cycle".into()).or_insert("all".into());
+    }
+    if reading.contains_key(PRECONDITIONED) && !arguments.softening {
+        let message = "an earlier stretch only matters for the softening of a specimen";
+        return Err(Error::input(
+            message,
+            "add --softening, or leave out --preconditioned",
+        ));
     }
     let files = arguments.data.iter();
     let tests = together(files.map(|path| TestData::read(path, &reading)))?;

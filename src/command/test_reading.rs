@@ -54,6 +54,9 @@ pub struct ReadingArguments {
     /// Duration of the ramp before the first row, if a relaxation file begins already stretched
     #[arg(long, value_name = "TIME")]
     ramp: Option<String>,
+    /// Largest stretch λ before the record, of a specimen that was preconditioned; for `--softening`
+    #[arg(long, value_name = "STRETCH", allow_hyphen_values = true)]
+    preconditioned: Option<String>,
 }
 
 impl ReadingArguments {
@@ -75,6 +78,7 @@ impl ReadingArguments {
             self.cycle,
             self.zero,
             self.ramp,
+            self.preconditioned,
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs

@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
+use super::test_data::Test;
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
+use crate::statistics::{extremes, farthest};
+use crate::units::Dimension;
 
 /// The part of a record that is fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +45,31 @@ impl Cycle {
     }
 }
 
+/// The key of the stretch to which a specimen was stretched before its record.
+pub const PRECONDITIONED: &str = "preconditioned";
+
+/// The strain to which a specimen was stretched before a record that goes to the strain `far`, where it is stated.
+pub fn preconditioned(head: &Head, test: Test, far: f64) -> Faulty<Option<f64>> {
+    let Some(stretch) = head.quantity(PRECONDITIONED, Dimension::Ratio)? else {
+        return Ok(None);
+    };
+    let fault = |message: &str, hint| Err(head.fault(head.place(PRECONDITIONED), message, hint));
+    if test == Test::Biaxial {
+        let message = "one earlier stretch does not state the earlier state of a biaxial test";
+        let hint = "state it for uniaxial, planar and equibiaxial tests; or give the record from the first loading on";
+        return fault(message, hint);
+    }
+    if (stretch > 1.0) != (far > 0.0) {
+        let message = format!(
+            "the record goes to λ = {}, and the earlier stretch is {stretch}",
+            1.0 + far
+        );
+        let hint = "state the stretch λ = l/L, such as 1.5 for 50 %, with a strain of the sign of the record's";
+        return fault(&message, hint);
+    }
+    Ok(Some(stretch - 1.0))
+}
+
 /// A swing of the strain smaller than this share of its whole range does not count.
 const SMALLEST_SWING: f64 = 0.05;
 /// Strains within this share of a branch's end belong to a hold there.
@@ -65,11 +93,7 @@ impl Branches {
     /// Splits the strains of a record; away from the first one is loading.
     pub fn of(strains: &[f64]) -> Self {
         let first = strains.first().copied().unwrap_or(0.0);
-        let far = strains.iter().map(|x| x - first);
-        let far = far.fold(
-            0.0,
-            |most: f64, x| if x.abs() > most.abs() { x } else { most },
-        );
+        let far = farthest(strains.iter().map(|x| x - first));
         let away: Vec<f64> = strains.iter().map(|x| (x - first) * far.signum()).collect();
         let turns = turns(&away);
         let pairs = turns
@@ -101,7 +125,7 @@ impl Branches {
 
 /// The rows at which values turn back by more than a small swing, with both ends.
 fn turns(values: &[f64]) -> Vec<usize> {
-    let [low, high] = crate::statistics::extremes(values.iter().copied());
+    let [low, high] = extremes(values.iter().copied());
     let swing = SMALLEST_SWING * (high - low);
     let mut turns = Vec::new();
     let (mut lowest, mut highest) = (0, 0);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cycles::Turns;
+use super::cycles::{Turns, preconditioned};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
@@ -11,6 +11,7 @@ use super::test_data::{Observation, StrainColumn, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};
 use crate::error::{Diagnostic, Error};
 use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::statistics::farthest;
 use crate::units::Dimension;
 
 /// The meaning of the columns.
@@ -113,12 +114,11 @@ impl Layout {
         let stresses = observations.iter().map(|one| one.stress.abs());
         let largest_stress = stresses.fold(0.0, f64::max);
         check_signs(head, &observations, self.test)?;
-        let sizes = |axis: usize| observations.iter().map(move |one| one.strains[axis].abs());
-        let widest = [0, 1].map(|axis| sizes(axis).fold(0.0, f64::max));
+        let widest = [0, 1].map(|axis| farthest(observations.iter().map(|one| one.strains[axis])));
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
         let warnings = [
             turns.warning(head),
-            implausible(head, self.strain, widest[0].max(widest[1])),
+            implausible(head, self.strain, widest[0].abs().max(widest[1].abs())),
             at_rest,
         ];
         Ok(TestData {
@@ -126,12 +126,13 @@ impl Layout {
             test: self.test,
             stress_measure: self.stress_measure,
             axes: self.stresses.iter().map(|(.., axis)| *axis).collect(),
-            drawn_axis: usize::from(widest[1] > widest[0]),
+            drawn_axis: usize::from(widest[1].abs() > widest[0].abs()),
             observations,
             largest_stress,
             rounding: self.rounding(table, &part.rows),
             times: self.times(table, &part),
             rise: head.quantity("ramp", Dimension::Time)?.unwrap_or(0.0),
+            preconditioned: preconditioned(head, self.test, farthest(widest))?,
             left_out,
             found_zero: part.found_zero,
             remarks: part.remarks,

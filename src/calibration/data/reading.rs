@@ -3,13 +3,14 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use super::cycles::PRECONDITIONED;
 use super::layout::Layout;
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// The statements about test data that a file or the command line must make.
-pub const KEYS: [&str; 15] = [
+pub const KEYS: [&str; 16] = [
     "test",
     "stress measure",
     "strain measure",
@@ -25,6 +26,7 @@ pub const KEYS: [&str; 15] = [
     "cycle",
     "zero",
     "ramp",
+    PRECONDITIONED,
 ];
 
 impl TestData {

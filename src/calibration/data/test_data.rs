@@ -131,6 +131,8 @@ pub struct TestData {
     pub times: Times,
     /// The time that the strain took to the first row, where the file begins stretched, in s.
     pub rise: f64,
+    /// λ − 1 along the drawn axis to which the specimen was stretched before the record; `None` where that is not stated.
+    pub preconditioned: Option<f64>,
     /// The part of the record that is not fitted: slack, holds, other cycles.
     pub left_out: Vec<Observation>,
     /// The zero that was found in the record, if one was.
@@ -176,6 +178,28 @@ impl TestData {
                 })
             }
         }
+    }
+
+    /// The largest energy of a law in mJ/mm³ before the record: at the strain to which the specimen was stretched, zero where none is stated.
+    pub fn energy_before(&self, law: &dyn HyperelasticLaw) -> f64 {
+        self.preconditioned.map_or(0.0, |x| {
+            let across = match self.test {
+                Test::Planar => 0.0,
+                _ => x,
+            };
+            let axis = match self.test {
+                Test::Uniaxial => self.axes[0],
+                _ => self.drawn_axis,
+            };
+            let mut strains = [across; 2];
+            strains[axis] = x;
+            let observation = Observation {
+                strains,
+                axis,
+                stress: 0.0,
+            };
+            self.state_of(law, &observation)[0]
+        })
     }
 
     /// An observation with the zero that was found moved: strain, or stress in MPa, larger by so much.

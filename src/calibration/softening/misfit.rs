@@ -104,7 +104,8 @@ impl<'a> SofteningMisfit<'a> {
     pub fn largest_energy(&self, law: &dyn HyperelasticLaw) -> f64 {
         let all = self.tests.iter().flat_map(|data| {
             let rows = data.observations.iter();
-            rows.map(|one| data.state_of(law, one)[0])
+            let before = data.energy_before(law);
+            rows.map(|one| data.state_of(law, one)[0]).chain([before])
         });
         all.fold(0.0, f64::max)
     }
@@ -113,7 +114,7 @@ impl<'a> SofteningMisfit<'a> {
     pub fn stresses(&self, values: &[f64]) -> Vec<Vec<f64>> {
         let (law, softening) = (self.law(values), self.softening(values));
         let of_test = |data: &TestData| {
-            let mut most = 0.0_f64;
+            let mut most = data.energy_before(&*law);
             let stress = |one: &Observation| {
                 let [energy, nominal] = data.state_of(&*law, one);
                 most = most.max(energy);
@@ -142,6 +143,21 @@ impl<'a> SofteningMisfit<'a> {
             first += data.observations.len();
         }
         curves
+    }
+}
+
+/// The residuals of the same law without softening.
+pub struct WithoutSoftening<'a>(pub &'a SofteningMisfit<'a>);
+
+impl Residuals for WithoutSoftening<'_> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool {
+        // η = 1 − erf(…)/r
+        let none = [f64::INFINITY, 1.0, 0.0];
+        self.0.evaluate(&[parameters, &none].concat(), residuals)
     }
 }
 

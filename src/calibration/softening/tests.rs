@@ -31,25 +31,30 @@ fn strains(rows: i32) -> Vec<f64> {
 
 /// A file of such cycles of neo-Hooke with the true softening, and white noise.
 fn record(test: &str, noise: f64, seed: u64) -> TestData {
+    record_after(0.0, test, noise, seed)
+}
+
+/// The same of a specimen that was stretched before, to a strain that the file does not state.
+fn record_after(earlier: f64, test: &str, noise: f64, seed: u64) -> TestData {
     let law = NeoHooke { c10: C10 };
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let normal = Normal::new(0.0, noise.max(f64::MIN_POSITIVE)).unwrap();
-    let mut most = 0.0_f64;
+    let state = |x: f64| match test {
+        "uniaxial" => {
+            let found = law.tension([1.0, 0.0], x);
+            [found.nominal_stress, found.energy]
+        }
+        // Both stretches alike: 2 P dλ is the work.
+        _ => {
+            let l: f64 = 1.0 + x;
+            let energy = C10 * (2.0 * l * l + l.powi(-4) - 3.0);
+            [2.0 * C10 * (l - l.powi(-5)), energy]
+        }
+    };
+    let [_, mut most] = state(earlier);
     let mut text = format!("# test: {test}\nstretch [-],nominal_stress [MPa]\n");
     for x in strains(30) {
-        let state = |stress: f64, energy: f64| [stress, energy];
-        let [stress, energy] = match test {
-            "uniaxial" => {
-                let found = law.tension([1.0, 0.0], x);
-                state(found.nominal_stress, found.energy)
-            }
-            // Both stretches alike: 2 P dλ is the work.
-            _ => {
-                let l: f64 = 1.0 + x;
-                let energy = C10 * (2.0 * l * l + l.powi(-4) - 3.0);
-                state(2.0 * C10 * (l - l.powi(-5)), energy)
-            }
-        };
+        let [stress, energy] = state(x);
         most = most.max(energy);
         let [factor, _] = TRUTH.factor(energy, most);
         let error = if noise > 0.0 {
@@ -192,4 +197,67 @@ fn a_first_loading_alone_tells_nothing_of_softening() {
     let law = Base::Law(Law::named("neo-hooke").unwrap());
     let fault = fit_softening(law, &[data], &FitSettings::default()).unwrap_err();
     assert!(fault.to_string().contains("no test unloads"), "{fault}");
+}
+
+/// The records go to strains of 0.4, 0.8, 1.2 and 0.8.
+#[test]
+fn an_earlier_stretch_is_told_and_once_stated_gives_the_parameters_back() {
+    for test in ["uniaxial", "equibiaxial"] {
+        let mut data = record_after(0.6, test, 0.0, 0);
+        let told = |data: &TestData| {
+            fitted(std::slice::from_ref(data))
+                .quality
+                .warnings
+                .join("; ")
+        };
+        let silent = told(&data);
+        assert!(
+            silent.contains("earlier stretch to about λ = 1.60"),
+            "{silent}"
+        );
+        data.preconditioned = Some(0.6);
+        let fit = fitted(std::slice::from_ref(&data));
+        for (parameter, expected) in fit.parameters.iter().zip(VALUES) {
+            let error = (parameter.value / expected - 1.0).abs();
+            assert!(error < 1e-6, "{test}: {} {error:.1e}", parameter.key);
+        }
+        let cycles = &fit.softened.as_ref().unwrap().cycles;
+        assert!(cycles[0].dissipated == 0.0 && cycles[1].dissipated > 0.0);
+        assert!(!told(&data).contains("earlier stretch"));
+    }
+}
+
+#[test]
+fn records_below_an_earlier_stretch_show_no_softening_and_sound_ones_do() {
+    let told = |data: TestData| fitted(&[data]).quality.warnings.join("; ");
+    for seed in 0..6 {
+        let sound = told(record("uniaxial", 0.004, seed));
+        assert!(
+            !sound.contains("earlier") && !sound.contains("no softening"),
+            "{sound}"
+        );
+        let softened = told(record_after(1.4, "uniaxial", 0.004, seed));
+        assert!(softened.contains("show no softening"), "{softened}");
+        let partly = told(record_after(0.6, "uniaxial", 0.004, seed));
+        assert!(
+            partly.contains("earlier stretch to about λ = 1.60"),
+            "{partly}"
+        );
+    }
+}
+
+#[test]
+fn an_earlier_stretch_is_read_and_must_be_possible() {
+    let read = |stated: &str, columns: &str| {
+        let text = format!("# test: uniaxial; cycle: all; preconditioned: {stated}\n{columns}");
+        TestData::parse("cycles.csv", &text, &Statements::new()).map(|data| data.preconditioned)
+    };
+    let tension = "stretch [-],nominal_stress [MPa]\n1,0\n1.2,0.1\n1.1,0.04\n";
+    let pressed = "stretch [-],nominal_stress [MPa]\n1,0\n0.8,-0.1\n0.9,-0.04\n";
+    assert_eq!(read("1.5", tension).unwrap(), Some(0.5));
+    assert_eq!(read("0.75", pressed).unwrap(), Some(-0.25));
+    for (stated, columns) in [("50 %", tension), ("1.5", pressed)] {
+        let fault = read(stated, columns).unwrap_err().to_string();
+        assert!(fault.contains("earlier stretch"), "{fault}");
+    }
 }

@@ -258,6 +258,7 @@ fn hint(key: &str) -> &'static str {
         "area" => "10 mm^2",
         "width" | "thickness" => "2 mm",
         "ramp" => "0.5 s",
+        "preconditioned" => "1.5",
         "time unit" => "s, min …",
         "cycle" => "first, last, all",
         "zero" => "automatic, none, 0.4 mm",
