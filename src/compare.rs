@@ -105,7 +105,8 @@ impl<'a> Reference<'a> {
     pub fn deviation(
         &self,
         mesh: &Mesh,
-        (state, past): (&State, &[&[f64]]),
+        state: &State,
+        past: &[&[f64]],
         measures: Measures,
         step: usize,
     ) -> Option<Deviation> {
@@ -122,7 +123,7 @@ impl<'a> Reference<'a> {
             max_difference: field.largest_distance(&expected).0,
             force_percent: beyond(measures.force, expected_measures.force),
             width_percent: beyond(measures.mid_width, expected_measures.mid_width),
-            nominal_stress_percent: self.stress_deviation(mesh, (field, past), step),
+            nominal_stress_percent: self.stress_deviation(mesh, field, past, step),
         })
     }
 
@@ -164,7 +165,8 @@ impl<'a> Reference<'a> {
     fn stress_deviation(
         &self,
         mesh: &Mesh,
-        (displacement, past): (&[f64], &[&[f64]]),
+        displacement: &[f64],
+        past: &[&[f64]],
         step: usize,
     ) -> f64 {
         let (fine, solutions) = self.meshes[2];
@@ -291,7 +293,7 @@ mod tests {
         };
         let measures = Measures::of(&fine.0.mesh, &fine.1[0]);
         let zero = reference
-            .deviation(&lattice, (&same, &[]), measures, 0)
+            .deviation(&lattice, &same, &[], measures, 0)
             .unwrap();
         assert_eq!(zero.displacement_percent, 0.0);
         assert_eq!((zero.max_difference, zero.force_percent), (0.0, 0.0));
@@ -306,7 +308,7 @@ mod tests {
             ..measures
         };
         let found = reference
-            .deviation(&lattice, (&larger, &[]), increased, 0)
+            .deviation(&lattice, &larger, &[], increased, 0)
             .unwrap();
         assert!((found.displacement_percent - 1.0).abs() < 1e-10);
         assert!((found.force_percent - 1.0).abs() < 1e-10);

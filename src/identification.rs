@@ -284,8 +284,14 @@ impl Fit<'_> {
         identification.warnings = warnings(&identification, joint.recording, signals, corners);
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
         if !signals.0.coarse && !signals.1.coarse && corners < FEWEST_CORNERS {
-            let at = (&self.state, &identification.motion);
-            let suspects = suspects::suspects(joint, at, (found, [misfit, freedom]));
+            let suspects = suspects::suspects(
+                joint,
+                &self.state,
+                &identification.motion,
+                found,
+                misfit,
+                freedom,
+            );
             identification.warnings.extend(suspects::warning(&suspects));
         }
         Some(identification)

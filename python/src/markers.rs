@@ -165,7 +165,7 @@ pub fn correct(
         let told = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
         let estimates = study.estimate(&told)?;
         let seconds = start.elapsed().as_secs_f64();
-        let results = written::results(&study, &estimates, (name, known), seconds);
+        let results = written::results(&study, &estimates, name, known, seconds);
         let mut of_frames = OfFrames {
             series: SERIES
                 .map(|name| GridSeries {

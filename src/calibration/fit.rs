@@ -200,7 +200,9 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         law,
         tests,
         settings,
-        (begun, &parameters, minimum.rival),
+        begun,
+        &parameters,
+        minimum.rival,
     ))
 }
 
@@ -209,7 +211,9 @@ fn finished(
     law: &'static Law,
     tests: &[TestData],
     settings: &FitSettings,
-    (begun, parameters, rival): (Found, &[Parameter], Option<Rival>),
+    begun: Found,
+    parameters: &[Parameter],
+    rival: Option<Rival>,
 ) -> Fit {
     let stiffness = begun.misfit.stiffness();
     let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();

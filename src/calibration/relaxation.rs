@@ -50,7 +50,7 @@ pub fn fit_relaxation(
     let elastic = elastic(law, tests, settings)?;
     let law_parameters = elastic.parameters.clone();
     let of_law = law_parameters.len();
-    let misfit = ViscousMisfit::new((law, of_law), tests, histories, settings.weighting);
+    let misfit = ViscousMisfit::new(law, of_law, tests, histories, settings.weighting);
     let resolved = resolved(&misfit.histories)?;
     let start: Vec<f64> = law_parameters.iter().map(|one| one.value).collect();
     let mut laws = vec![start];
@@ -162,18 +162,19 @@ impl Whole<'_> {
         let best = candidates
             .into_iter()
             .min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
-        let Some((terms, (sum, values))) = best else {
+        let Some((terms, found)) = best else {
             return Ok(elastic);
         };
         let points = [rows, effective];
-        self.finished(elastic, (terms, (sum, values)), tried, points)
+        self.finished(elastic, terms, found, tried, points)
     }
 
     /// The fit with so many terms, whose AICc counts rows and effective points as given.
     fn finished(
         &self,
         elastic: Fit,
-        (terms, (sum, values)): (usize, Found),
+        terms: usize,
+        (sum, values): Found,
         tried: Vec<(usize, f64)>,
         counted: [f64; 2],
     ) -> Result<Fit, Error> {
@@ -197,7 +198,7 @@ impl Whole<'_> {
         let predicted = |test: usize, row: usize| relaxed.predicted[test][row];
         let deviations = Deviations::of(self.tests, self.settings.weighting, &predicted);
         let aicc = aicc(sum, counted, self.count(terms));
-        let mut quality = judged.quality((&*fitted, self.tests), &deviations, estimated, aicc);
+        let mut quality = judged.quality(&*fitted, self.tests, &deviations, estimated, aicc);
         quality.warnings = warnings(&quality, &parameters, None);
         quality
             .warnings
@@ -253,8 +254,12 @@ impl Whole<'_> {
         let at_bound = at_bound(values, limits, AT_BOUND);
         let law = misfit.law(values);
         let rounded = rounded(self.tests, &*law, self.settings.weighting);
-        let left = (misfit as &dyn Residuals, misfit.curves());
-        Judged::of(left, Values::held(values, at_bound), rounded)
+        Judged::of(
+            misfit,
+            misfit.curves(),
+            Values::held(values, at_bound),
+            rounded,
+        )
     }
 
     fn law(&self) -> &'static Law {

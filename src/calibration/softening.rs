@@ -232,9 +232,13 @@ fn judged(
     weighting: Weighting,
 ) -> Judged {
     let at_bound = at_bound(values, bounds, AT_BOUND);
-    let left = (misfit as &dyn Residuals, misfit.curves());
     let rounded = rounded(tests, &*misfit.law(values), weighting);
-    Judged::of(left, Values::held(values, at_bound), rounded)
+    Judged::of(
+        misfit,
+        misfit.curves(),
+        Values::held(values, at_bound),
+        rounded,
+    )
 }
 
 /// The data by which the values found are judged.
@@ -295,6 +299,6 @@ impl Whole<'_> {
         let n = self.misfit.count() as f64;
         let counted = [n, judged.effective(n)];
         let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
-        judged.quality((law, self.tests), &deviations, estimates, aicc)
+        judged.quality(law, self.tests, &deviations, estimates, aicc)
     }
 }

@@ -93,14 +93,19 @@ pub fn run(options: Options) -> Outcome {
     print(&summary(&compared, &differences))?;
     let doubts = doubts(&differences, compared.factor);
     warn(&doubts);
-    print_report(|| json((&compared, &differences), &doubts, &options.field))?;
+    print_report(|| json(&compared, &differences, &doubts, &options.field))?;
     if let Some(folder) = &options.output {
         let inputs = [&*options.study, &*options.field];
         let mut results = ResultFolder::open(folder, "compare", &inputs)?;
-        let judged = (&*differences, &*doubts);
         interrupt::guard(&results);
         warn(results.replaces().as_slice());
-        warn(&write(&compared, judged, &options.field, &mut results)?);
+        warn(&write(
+            &compared,
+            &differences,
+            &doubts,
+            &options.field,
+            &mut results,
+        )?);
         tell_files(&results.finish()?);
         print(&format!("report: {}\n", folder.join("report.md").display()))?;
     }
@@ -276,7 +281,8 @@ fn own_error(compared: &Comparison) -> String {
 
 fn write(
     compared: &Comparison,
-    (differences, doubts): (&[Difference], &[Diagnostic]),
+    differences: &[Difference],
+    doubts: &[Diagnostic],
     file: &Path,
     folder: &mut ResultFolder,
 ) -> Result<Vec<Diagnostic>, Error> {
@@ -302,7 +308,7 @@ fn write(
         let name = field.model.replace([' ', '-'], "_");
         output::write_grids(folder, &GridSeries::single(&name, grid))?;
     }
-    let figures = json((compared, differences), doubts, file);
+    let figures = json(compared, differences, doubts, file);
     folder.add("comparison.json", format!("{figures:#}\n").as_bytes())?;
     let mut blocks = report(compared, differences, file);
     blocks.extend(
@@ -315,7 +321,8 @@ fn write(
 
 /// The comparison for machines.
 fn json(
-    (compared, differences): (&Comparison, &[Difference]),
+    compared: &Comparison,
+    differences: &[Difference],
     doubts: &[Diagnostic],
     file: &Path,
 ) -> Value {

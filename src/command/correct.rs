@@ -48,7 +48,7 @@ pub fn run(options: Options) -> Outcome {
         identity: identity::of(&said),
         pictures,
     };
-    let (estimates, results) = correct(&mut field, (told, &inputs), &folder)?;
+    let (estimates, results) = correct(&mut field, told, &inputs, &folder)?;
     print_report(|| results.json())?;
     Ok(exit_code(worst_answer(&estimates), results.passed()))
 }

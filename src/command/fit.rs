@@ -139,7 +139,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         false => terms.map_or(InTime::Nothing, InTime::Relaxation),
     };
     let base = arguments.card.as_deref().map(load).transpose()?;
-    let fit = found((arguments.law, base), &tests, &settings, wanted)?;
+    let fit = found(arguments.law, base, &tests, &settings, wanted)?;
     let tests = fit.fitted_tests(&tests);
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let more = match (&fit.relaxed, &fit.softened) {
@@ -179,7 +179,8 @@ pub fn fit(arguments: FitArguments) -> Outcome {
 
 /// The fit of a law, on top of a card, or of the best law where neither is named.
 fn found(
-    (law, base): (Option<&'static Law>, Option<Card>),
+    law: Option<&'static Law>,
+    base: Option<Card>,
     tests: &[TestData],
     settings: &FitSettings,
     wanted: InTime,

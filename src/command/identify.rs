@@ -164,7 +164,7 @@ pub fn run(options: Options) -> Outcome {
     let found = identify(&recording, settings, &|what| progress.tell(what))?;
     progress.tell("files");
     let json = identification_json(&found, &recording, &file_name(&path));
-    let warnings = write(&found, &recording, (&json, &path, &stem), &mut results)?;
+    let warnings = write(&found, &recording, &json, &path, &stem, &mut results)?;
     let files = results.finish()?;
     drop(progress);
     tell_files(&files);
@@ -185,7 +185,9 @@ pub fn run(options: Options) -> Outcome {
 fn write(
     found: &Identification,
     recording: &Recording,
-    (json, path, stem): (&Value, &Path, &str),
+    json: &Value,
+    path: &Path,
+    stem: &str,
     results: &mut ResultFolder,
 ) -> Result<Option<Diagnostic>, Error> {
     let law = law_text(found, recording, &file_name(path));

@@ -125,7 +125,7 @@ fn result_of(
     }
     let own = found.mesh_error(&edges);
     let judged = judge::judge(task, &mut found, &edges, own.as_ref())?;
-    let found = found.into_estimate(&edges, own.as_ref(), (markers, judged))?;
+    let found = found.into_estimate(&edges, own.as_ref(), markers, judged)?;
     Ok((found, other))
 }
 

@@ -100,6 +100,6 @@ pub fn correct_without_multipliers(
 ) -> Result<State, SolveFault> {
     let potential = model.potential(stage.factor, stage.history);
     let mut newton = Newton::with_solver(&*potential, &model.held(), model.linear_solver())?;
-    let from = (&mut newton, start.to_vec());
-    equilibrium(model, &*potential, stage, from, settings)
+    let start = start.to_vec();
+    equilibrium(model, &*potential, stage, &mut newton, start, settings)
 }

@@ -88,14 +88,15 @@ fn set(table: &mut Table, path: &[&str], value: &NewValue) -> Result<(), String>
             let inner = table
                 .entry(*key)
                 .or_insert_with(|| Value::Table(Table::new()));
-            set_within(inner, (key, rest), value)
+            set_within(inner, key, rest, value)
         }
     }
 }
 
 fn set_within(
     inner: &mut Value,
-    (name, rest): (&str, &[&str]),
+    name: &str,
+    rest: &[&str],
     value: &NewValue,
 ) -> Result<(), String> {
     match inner {
@@ -114,7 +115,7 @@ fn set_within(
                     *place = value.value();
                     Ok(())
                 }
-                _ => set_within(place, (rest[0], &rest[1..]), value),
+                _ => set_within(place, rest[0], &rest[1..], value),
             }
         }
         _ => Err(format!("`{name}` is a value, not a section")),

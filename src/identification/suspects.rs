@@ -135,8 +135,11 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
 /// The suspects that are surely present, the surest first.
 pub fn suspects(
     joint: &Joint,
-    (state, motion): (&State, &FittedMotion),
-    (found, [misfit, freedom]): (&PenalisedFit, [f64; 2]),
+    state: &State,
+    motion: &FittedMotion,
+    found: &PenalisedFit,
+    misfit: f64,
+    freedom: f64,
 ) -> Vec<Suspected> {
     let beyond = (misfit - 1.0).max(0.0) * freedom;
     // A form that is wrong looks like a body of another kind.

@@ -283,7 +283,8 @@ pub fn check_flat(
     table: &Table,
     places: [usize; 2],
     displacements: [usize; 2],
-    (names, ignored): ([Names; 2], &[String]),
+    names: [Names; 2],
+    ignored: &[String],
 ) -> Result<(), Error> {
     const FLAT: f64 = 0.01;
     let range = |column: usize| {

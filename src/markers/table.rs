@@ -190,7 +190,8 @@ impl<'a> Reader<'a> {
             table,
             columns(self.places),
             columns(self.displacements),
-            (layout.out_of_plane, ignored),
+            layout.out_of_plane,
+            ignored,
         )?;
         Ok(self)
     }

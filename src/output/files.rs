@@ -90,7 +90,8 @@ pub fn write(
             folder,
             "report",
             &results.report(),
-            (&pictures, explorer.as_ref()),
+            &pictures,
+            explorer.as_ref(),
         )?;
     }
     warnings.extend(missing);
@@ -212,7 +213,7 @@ pub fn write_document(
     figures: &[Figure],
 ) -> Result<Vec<Diagnostic>, Error> {
     let pictures = write_pictures(folder, figures, &PictureStyle::default())?;
-    add_document(folder, name, blocks, (&pictures, None))?;
+    add_document(folder, name, blocks, &pictures, None)?;
     let mut warnings = faults(&pictures);
     warnings.extend(folder.in_the_way());
     Ok(warnings)
@@ -222,7 +223,8 @@ fn add_document(
     folder: &mut dyn TakesFiles,
     name: &str,
     blocks: &[Block],
-    (pictures, explorer): (&[ReportPicture], Option<&Explorer>),
+    pictures: &[ReportPicture],
+    explorer: Option<&Explorer>,
 ) -> Result<(), Error> {
     let title = blocks.iter().find_map(|block| match block {
         Block::Heading(1, title) => Some(title.as_str()),

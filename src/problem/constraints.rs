@@ -108,12 +108,7 @@ struct Holder {
 impl Holder {
     /// The nodes of a group at which the support holds the group itself along an axis, rather than another part that
     /// ends there; `is_supported` states whether the group has a support of its own.
-    fn on(
-        &self,
-        mesh: &Mesh,
-        (group, is_supported): (&Group, bool),
-        axis: usize,
-    ) -> BTreeSet<usize> {
+    fn on(&self, mesh: &Mesh, group: &Group, is_supported: bool, axis: usize) -> BTreeSet<usize> {
         let own = &self.hold.nodes[axis];
         if is_supported && self.has_parts != group.has_parts() {
             // A point with a support of its own is not part of the edge around it.
@@ -201,7 +196,7 @@ impl Constraints {
         let nodes: BTreeSet<usize> = group.nodes.iter().copied().collect();
         let is_supported = self.holders.iter().any(|holder| holder.nodes == nodes);
         let on_group = |(holder, parts): (&Holder, Vec<Part>)| {
-            let own = holder.on(mesh, (group, is_supported), axis);
+            let own = holder.on(mesh, group, is_supported, axis);
             let parts = parts.into_iter();
             parts.filter(move |part| own.contains(&part.at))
         };

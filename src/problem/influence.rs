@@ -76,8 +76,8 @@ impl Model<'_> {
             newton.shifts = false;
             let near = |(factor, field): &(f64, Vec<f64>)| {
                 let (potential, stage) = (self.potential(*factor, &[]), Stage::first(*factor));
-                let begin = (&mut newton, field.clone());
-                equilibrium(self, &*potential, stage, begin, settings)
+                let begin = field.clone();
+                equilibrium(self, &*potential, stage, &mut newton, begin, settings)
             };
             group.iter().map(near).collect::<Result<Vec<State>, _>>()
         });

@@ -36,7 +36,7 @@ impl SheetEnergy {
         self.in_blocks(u, make, |points, cells| {
             let mut place = 0;
             for cell in cells {
-                points.add_forces(self, cell, (place, 0), forces);
+                points.add_forces(self, cell, place, 0, forces);
                 place += self.cell_points(cell).len();
             }
         })
@@ -60,7 +60,7 @@ impl SheetEnergy {
                 let own = (place..).zip(self.cell_points(cell));
                 let terms = own.map(|(index, point)| point.volume * points.made[0][index]);
                 energy += terms.sum::<f64>();
-                points.add_forces(self, cell, (place, 1), forces);
+                points.add_forces(self, cell, place, 1, forces);
                 if let Some(take) = &mut take {
                     points.stiffness(self, cell, place, &mut stiffness);
                     take(cell, &stiffness);
@@ -146,7 +146,8 @@ impl<const N: usize> Points<N> {
         &mut self,
         energy: &SheetEnergy,
         cell: usize,
-        (place, first): (usize, usize),
+        place: usize,
+        first: usize,
         forces: &mut [f64],
     ) {
         let unknowns = energy.element_unknowns(cell);

@@ -12,7 +12,8 @@ use crate::mesh::Mesh;
 /// worth a warning, and the first state whose material is not stable.
 pub fn warnings<'a>(
     card: &Card,
-    (model, mesh): (&str, &Mesh),
+    model: &str,
+    mesh: &Mesh,
     is_worth: impl Fn(&Stretches) -> bool,
     states: impl Iterator<Item = (String, &'a [f64])> + Clone,
 ) -> Vec<String> {

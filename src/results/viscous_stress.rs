@@ -21,7 +21,8 @@ impl ViscousStress {
     /// At each of some times in s, from the displacements in mm and the velocities in mm/s then, of a sheet that had rested for long at
     /// the first. Between two of them the stress of long times changes evenly.
     pub fn over_time(
-        (law, material): (&dyn HyperelasticLaw, &ViscousMaterial),
+        law: &dyn HyperelasticLaw,
+        material: &ViscousMaterial,
         mesh: &Mesh,
         times: &[f64],
         motion: &[[&[f64]; 2]],
@@ -41,7 +42,7 @@ impl ViscousStress {
                 let pairs = now.iter().zip(&rate).zip(memory);
                 pairs
                     .map(|((now, rate), memory)| {
-                        stress((law, material), [now, rate], memory, elapsed)
+                        stress(law, material, [now, rate], memory, elapsed)
                     })
                     .collect()
             });
@@ -58,7 +59,8 @@ impl ViscousStress {
 /// The viscous stress at a place, of what it remembers of S∞ and Qᵢ some time in s ago; of nothing where it has rested for long. No numbers
 /// where the sheet is turned inside out.
 fn stress(
-    (law, material): (&dyn HyperelasticLaw, &ViscousMaterial),
+    law: &dyn HyperelasticLaw,
+    material: &ViscousMaterial,
     [gradient, rate]: [&[f64; 4]; 2],
     memory: &mut Vec<f64>,
     elapsed: f64,
@@ -114,7 +116,7 @@ mod tests {
         let motion: Vec<_> = [&rest, &held, &held, &held, &held]
             .map(|field| [&field[..], &still[..]])
             .into();
-        let found = ViscousStress::over_time((&LAW, &material), &mesh, &times, &motion);
+        let found = ViscousStress::over_time(&LAW, &material, &mesh, &times, &motion);
         let long = 2.0 * LAW.c10 * (1.4 - 1.4_f64.powi(-2));
         assert!(found[0].in_cells.iter().flatten().all(|part| *part == 0.0));
         for (time, own) in times.iter().zip(&found).skip(1) {
@@ -141,7 +143,7 @@ mod tests {
         let across = -0.5 * 1.2_f64.powf(-1.5) * rate;
         let nodes = mesh.nodes.iter();
         let v: Vec<f64> = nodes.flat_map(|[x, y]| [rate * x, across * y]).collect();
-        let found = ViscousStress::over_time((&LAW, &material), &mesh, &[0.0], &[[&u, &v]]);
+        let found = ViscousStress::over_time(&LAW, &material, &mesh, &[0.0], &[[&u, &v]]);
         let expected = material.newtonian_tension(1.2, rate)[0];
         assert!((found[0].in_cells[0][0] - expected).abs() < 1e-12);
     }

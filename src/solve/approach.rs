@@ -184,7 +184,8 @@ impl Newton {
     pub fn approach(
         &mut self,
         potential: &dyn Potential,
-        (u, residual): (&mut [f64], &mut [f64]),
+        u: &mut [f64],
+        residual: &mut [f64],
         nearness: Nearness,
         tangent: FirstTangent,
     ) -> Option<Approach> {

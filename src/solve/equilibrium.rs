@@ -13,7 +13,8 @@ pub fn equilibrium(
     loading: &dyn Loading,
     potential: &dyn Potential,
     stage: Stage<'_>,
-    (newton, mut displacement): (&mut Newton, Vec<f64>),
+    newton: &mut Newton,
+    mut displacement: Vec<f64>,
     settings: NewtonSettings,
 ) -> Result<State, SolveFault> {
     loading.impose(stage.factor, &mut displacement);

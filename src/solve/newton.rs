@@ -205,7 +205,7 @@ impl Newton {
                 continue;
             }
             let near = Iterate { energy, ..now };
-            if self.hold_tangent(potential, (u, residual), near, settings, &mut log) {
+            if self.hold_tangent(potential, u, residual, near, settings, &mut log) {
                 return Ok(log);
             }
         }
@@ -216,7 +216,8 @@ impl Newton {
     fn hold_tangent(
         &mut self,
         potential: &dyn Potential,
-        (u, residual): (&mut [f64], &mut [f64]),
+        u: &mut [f64],
+        residual: &mut [f64],
         near: Iterate,
         settings: NewtonSettings,
         log: &mut Convergence,

@@ -271,9 +271,14 @@ impl<'a> Path<'a> {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };
-        let (newton, stage) = (&mut self.newton, Stage { factor, history });
-        let begin = (newton, guess.clone());
-        let state = equilibrium(self.loading, &*potential, stage, begin, self.settings)?;
+        let state = equilibrium(
+            self.loading,
+            &*potential,
+            Stage { factor, history },
+            &mut self.newton,
+            guess.clone(),
+            self.settings,
+        )?;
         self.loading.impose(factor, &mut guess);
         let beyond = norm(&difference(&state.displacement, &guess));
         let step = match previous {

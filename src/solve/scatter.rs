@@ -51,7 +51,7 @@ impl Scatter {
                 seen[*row].1 = place;
             }
             for (element, local) in around.of_unknown(column) {
-                own.put(elements.of(*element), *element, (column, *local), &seen);
+                own.put(elements.of(*element), *element, column, *local, &seen);
             }
             starts.push(rows.len());
         }
@@ -63,7 +63,8 @@ impl Scatter {
         &mut self,
         unknowns: &[usize],
         element: usize,
-        (column, local): (usize, usize),
+        column: usize,
+        local: usize,
         seen: &[(usize, usize)],
     ) {
         let start = self.starts[element];

@@ -261,7 +261,7 @@ impl MarkerStudy {
             Some(coarse) => {
                 let markers = frame.markers.iter();
                 let field: Vec<f64> = markers.flat_map(|marker| marker.displacement).collect();
-                transfer(&specimen, (coarse, &field), &knowledge)
+                transfer(&specimen, coarse, &field, &knowledge)
             }
         };
         let found = found.map(|found| self.with_unknown_edge(found));

@@ -70,7 +70,7 @@ pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error
     let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
     let model = springs.model(&plate.problem);
     let told = |time: f64| progress.tell(&plate.at(MASS_SPRING.name, time));
-    let springs_moved = plate.moved(MASS_SPRING, (&model, dashpots), plate.time, &told)?;
+    let springs_moved = plate.moved(MASS_SPRING, &model, dashpots, plate.time, &told)?;
     let (_, cells) = plate.element;
     let elements_moved = plate.elements_moved(cells, plate.time, progress, FINITE_ELEMENTS.name)?;
     let own_error = OwnError::of(plate, &elements_moved, progress);
@@ -98,7 +98,7 @@ impl MovingPlate {
         let sheet = (!self.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
         let model = elements.model(&self.problem);
         let told = |now: f64| progress.tell(&self.at(what, now));
-        self.moved(FINITE_ELEMENTS, (&model, sheet), time, &told)
+        self.moved(FINITE_ELEMENTS, &model, sheet, time, &told)
     }
 
     /// The progress of a computation.

@@ -42,15 +42,11 @@ const CLOSE: f64 = 1e-6;
 impl Pictures {
     /// Reads `[pictures]`. The places along the path, of one dimension, are under `key`; `path` are those that there are, or
     /// none where any will do.
-    pub fn read(
-        section: &Section,
-        (key, dimension): (&'static str, Dimension),
-        path: &[f64],
-    ) -> Self {
+    pub fn read(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Self {
         let fields = section
             .choices("fields", &SheetField::NAMES)
             .unwrap_or_default();
-        let shown = read_shown(section, (key, dimension), path);
+        let shown = read_shown(section, key, dimension, path);
         let formats = section.choices("formats", &PictureFormat::NAMES);
         if formats.as_ref().is_some_and(Vec::is_empty) {
             section.fault("formats", "needs at least one format", "such as [\"png\"]");
@@ -73,11 +69,7 @@ impl Pictures {
     }
 }
 
-fn read_shown(
-    section: &Section,
-    (key, dimension): (&'static str, Dimension),
-    path: &[f64],
-) -> Shown {
+fn read_shown(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Shown {
     let words = [("last", Shown::Last), ("all", Shown::All)];
     let (word, wanted) = section.quantities_or(&["last", "all"], key, dimension, Bound::Any);
     if let Some((_, shown)) = words.into_iter().find(|(name, _)| Some(*name) == word) {

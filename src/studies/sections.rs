@@ -143,7 +143,7 @@ fn nearly_square_cells(size: [f64; 2], along: usize) -> [usize; 2] {
 pub fn check_range(section: &Section<'_>, key: &'static str, stretches: &[f64], card: &Card) {
     let stable = stable_range(&*card.law, Mode::Uniaxial);
     for stretch in stretches {
-        check_stretch(section, key, *stretch, (card, stable));
+        check_stretch(section, key, *stretch, card, stable);
     }
 }
 
@@ -151,7 +151,8 @@ fn check_stretch(
     section: &Section<'_>,
     key: &'static str,
     stretch: f64,
-    (card, [low, high]): (&Card, [f64; 2]),
+    card: &Card,
+    [low, high]: [f64; 2],
 ) {
     let end = if stretch > 0.0 {
         (1.0 + stretch > high && high < SEARCHED[1]).then_some(("tension", "up", high))

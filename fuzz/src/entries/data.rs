@@ -52,8 +52,7 @@ pub fn correct(bytes: &[u8]) -> Became {
         match found {
             Ok((estimates, field)) => {
                 let _ = field.all_doubts(&estimates);
-                let _ =
-                    written::results(&field, &estimates, ("markers".into(), String::new()), 0.0);
+                let _ = written::results(&field, &estimates, "markers".into(), String::new(), 0.0);
                 Became::Complete
             }
             Err(Error::Solve { .. }) => Became::Unsolved,

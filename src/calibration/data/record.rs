@@ -162,12 +162,12 @@ impl Part {
             Zero::Displacement(u) => {
                 let found = FoundZero::Stress { area: machine.area };
                 let place = either(x, u / machine.length);
-                self.take_stated((head, machine), [x, y], place, found)?;
+                self.take_stated(head, machine, [x, y], place, found)?;
             }
             Zero::Force(f) => {
                 let length = machine.length;
                 let place = either(y, f / machine.area);
-                self.take_stated((head, machine), [x, y], place, FoundZero::Strain { length })?;
+                self.take_stated(head, machine, [x, y], place, FoundZero::Strain { length })?;
             }
         }
         // Rows before the zero are not fitted.
@@ -186,7 +186,8 @@ impl Part {
     /// reading scatters, so that the `found` one is determined again with the law.
     fn take_stated(
         &mut self,
-        (head, machine): (&Head, Machine),
+        head: &Head,
+        machine: Machine,
         [x, y]: [&[f64]; 2],
         place: Option<(usize, f64)>,
         found: FoundZero,

@@ -47,7 +47,8 @@ pub type Found = (f64, Vec<f64>);
 impl<'a> ViscousMisfit<'a> {
     /// The residuals of a law with so many parameters, weighted by the measured stresses.
     pub fn new(
-        (law, of_law): (&'static Law, usize),
+        law: &'static Law,
+        of_law: usize,
         tests: &'a [TestData],
         histories: Vec<History>,
         weighting: Weighting,

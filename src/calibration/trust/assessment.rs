@@ -35,7 +35,7 @@ impl Assessment<'_> {
         let n = points as f64;
         let counted = [n, judged.effective(n)];
         let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
-        let quality = judged.quality((self.law, self.tests), &deviations, estimates, aicc);
+        let quality = judged.quality(self.law, self.tests, &deviations, estimates, aicc);
         quality.with_zeros(self.misfit.zeros())
     }
 
@@ -49,7 +49,6 @@ impl Assessment<'_> {
     fn judged(&self) -> Judged {
         let at_bound = at_bound(self.values, self.bounds, [1e-9, 1e-300]);
         let rounded = rounded(self.tests, self.law, self.weighting);
-        let left = (self.misfit as &dyn Residuals, self.misfit.curves());
         let mut least = self.least.to_vec();
         least.resize(self.values.len(), LEAST_SIZE);
         let found = Values {
@@ -58,7 +57,7 @@ impl Assessment<'_> {
             fixed: self.bounds.iter().map(|[low, high]| low == high).collect(),
             least,
         };
-        Judged::of(left, found, rounded)
+        Judged::of(self.misfit, self.misfit.curves(), found, rounded)
     }
 
     /// The same with all points counted, where they were gathered.

@@ -62,11 +62,7 @@ pub struct Judged {
 impl Judged {
     /// Of the residuals at some values, in the order of their curves; `rounded` are the mean squares that
     /// rounding alone leaves, see [`LeftOver`].
-    pub fn of(
-        (misfit, curves): (&dyn Residuals, Vec<Rows>),
-        found: Values,
-        rounded: [f64; 2],
-    ) -> Self {
+    pub fn of(misfit: &dyn Residuals, curves: Vec<Rows>, found: Values, rounded: [f64; 2]) -> Self {
         let Values {
             values,
             at_bound,
@@ -137,7 +133,8 @@ impl Judged {
     /// The figures of a fit of a law to tests, without warnings.
     pub fn quality(
         self,
-        (law, tests): (&dyn HyperelasticLaw, &[TestData]),
+        law: &dyn HyperelasticLaw,
+        tests: &[TestData],
         deviations: &Deviations,
         (estimates, correlation): (Vec<Estimate>, DMatrix<f64>),
         aicc: f64,

@@ -34,7 +34,8 @@ pub struct Told {
 /// Corrects all frames of a field, writes into a folder, and prints.
 pub fn correct(
     field: &mut MarkerStudy,
-    (told, inputs): (Told, &[PathBuf]),
+    told: Told,
+    inputs: &[PathBuf],
     folder: &Path,
 ) -> Result<(Vec<FieldEstimate>, Results), Error> {
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
@@ -56,7 +57,8 @@ pub fn correct(
         &told.pictures,
         field,
         &estimates,
-        (told.name, told.text),
+        told.name,
+        told.text,
         seconds,
     );
     let warnings = output::write(&results, true, &mut results_folder)?;

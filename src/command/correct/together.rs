@@ -51,7 +51,8 @@ pub fn run(options: Options) -> Outcome {
         };
         let (estimates, _) = correct(
             &mut own,
-            (told, &inputs),
+            told,
+            &inputs,
             &folder.join("specimens").join(name),
         )?;
         corrected.push(CorrectedSpecimen {

@@ -108,7 +108,7 @@ fn on_an_edge<'a>(
 }
 
 fn newtons(text: &str) -> Result<f64, Diagnostic> {
-    quantity(text, Dimension::Force, |_| true, ("", ""))
+    quantity(text, Dimension::Force, |_| true, "", "")
 }
 
 /// A length of zero or more in mm.
@@ -120,7 +120,7 @@ pub fn gap(text: &str) -> Result<f64, Diagnostic> {
 pub fn scale_error(text: &str) -> Result<f64, Diagnostic> {
     let holds = |ratio: f64| (0.0..=0.5).contains(&ratio);
     let wanted = "it must be from 0 to 50 %";
-    quantity(text, Dimension::Ratio, holds, (wanted, "0.1 %"))
+    quantity(text, Dimension::Ratio, holds, wanted, "0.1 %")
 }
 
 /// The size of a thing in mm.
@@ -136,14 +136,15 @@ pub fn length(text: &str) -> Result<f64, Diagnostic> {
 }
 
 fn within(text: &str, holds: impl Fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
-    quantity(text, Dimension::Length, holds, (wanted, "1.5 mm"))
+    quantity(text, Dimension::Length, holds, wanted, "1.5 mm")
 }
 
 fn quantity(
     text: &str,
     dimension: Dimension,
     holds: impl Fn(f64) -> bool,
-    (wanted, example): (&str, &str),
+    wanted: &str,
+    example: &str,
 ) -> Result<f64, Diagnostic> {
     let value = units::parse(text, dimension).map_err(|fault| {
         let hint = fault.remedy(text, dimension);

@@ -34,7 +34,8 @@ pub(super) struct Ascent {
 impl Ascent {
     /// A corrected field on the first grid, the remaining error of its correction in mm, and its work.
     pub fn new(
-        (index, ratios): (usize, Ratios),
+        index: usize,
+        ratios: Ratios,
         way: Way,
         field: Field,
         left: f64,

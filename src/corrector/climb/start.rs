@@ -55,8 +55,14 @@ impl Climb<'_> {
         let (grid, left) = (&self.levels[found.index].grid, found.left);
         let work = vec![(grid.nodes(), Work::default())];
         let way = Way::from_start(Start::LoadPath, grid.cells());
-        let begin = (found.index, self.ratios);
-        Ok(Ascent::new(begin, way, found.field, left, work))
+        Ok(Ascent::new(
+            found.index,
+            self.ratios,
+            way,
+            found.field,
+            left,
+            work,
+        ))
     }
 
     fn begin(&self, start: Start, first: First) -> Ascent {
@@ -66,8 +72,7 @@ impl Climb<'_> {
             ..Way::from_start(start, grid.cells())
         };
         let work = vec![(grid.nodes(), first.work)];
-        let begin = (self.start, self.ratios);
-        Ascent::new(begin, way, first.field, first.left, work)
+        Ascent::new(self.start, self.ratios, way, first.field, first.left, work)
     }
 
     /// The corrected field from one start on the first grid; `None` where it cannot be corrected.

@@ -71,7 +71,8 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 /// The direct corrector's field and force; its multipliers are compared with the climb's.
 fn direct(
     problem: &ClampedPlate,
-    (cells, grading): ([usize; 2], f64),
+    cells: [usize; 2],
+    grading: f64,
     scheme: DifferenceScheme,
 ) -> (Vec<f64>, f64) {
     let springs = MassSpring::new(problem, cells, LatticeSettings { area_term: false });
@@ -161,7 +162,7 @@ fn the_climb_reaches_the_direct_corrector_with_every_scheme_law_and_number_of_ce
     let graded = |case| [1.0, 1.5, 2.5].map(|grading| (case, grading));
     for ((card, size, cells, stretch, scheme), grading) in cases.into_iter().flat_map(graded) {
         let problem = problem(card, size, stretch);
-        let (expected, force) = direct(&problem, (cells, grading), scheme);
+        let (expected, force) = direct(&problem, cells, grading, scheme);
         let climbed = Climb::graded(&problem, cells, scheme, grading, TIGHT)
             .correct(stretch)
             .unwrap();

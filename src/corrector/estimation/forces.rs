@@ -16,13 +16,14 @@ impl NearestField<'_> {
     /// The force of a body along an axis, and its derivatives with respect to p; `slopes` are those of F with respect to the law's parameters.
     pub(super) fn grip_of(
         &self,
-        (body, axis): (usize, usize),
+        body: usize,
+        axis: usize,
         slopes: &[Vec<f64>],
     ) -> Result<(Grip, Vec<f64>), Error> {
         let shares = &self.equations.bodies[body].shares[axis];
         let grip = self.equations.grip(shares, axis, &self.field)?;
         let first = self.equations.motion.parameters();
-        let row = grip.slopes(&self.linear.sensitivities, (first, slopes));
+        let row = grip.slopes(&self.linear.sensitivities, first, slopes);
         Ok((grip, row))
     }
 
@@ -31,7 +32,7 @@ impl NearestField<'_> {
         let reactions = self.reactions();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
-            let (grip, row) = self.grip_of((index, axis), &slopes)?;
+            let (grip, row) = self.grip_of(index, axis, &slopes)?;
             let force = dot(&grip.marks, &reactions);
             let mesh = own.map_or(0.0, |own| {
                 own.forces[index][axis] + dot(&row, own.parameters.as_slice())

@@ -74,8 +74,8 @@ pub fn estimate_jointly(
         .collect();
     let judged = judged?;
     let mut descent = Descent::new(judged.iter().collect(), law);
-    let found = descent.find(told)?;
-    outcome(&descent, found, settings, told)
+    let (course, scales) = descent.find(told)?;
+    outcome(&descent, course, scales, settings, told)
 }
 
 /// Checks that a force was measured in some frame.
@@ -101,7 +101,8 @@ pub fn check_joint_frames(frames: &[JointFrame]) -> Result<(), Error> {
 /// The results at the end of the search.
 fn outcome(
     descent: &Descent,
-    (course, scales): (Course, Vec<f64>),
+    course: Course,
+    scales: Vec<f64>,
     settings: &JointSettings,
     told: Told,
 ) -> Result<JointEstimate, Error> {
@@ -126,7 +127,7 @@ fn outcome(
     let determined = directions.iter().filter(|one| one.is_determined()).count() as f64;
     let measured = descent.measured();
     let scatter = ForceScatter::new(sum(|say| say.force_misfit), measured - determined);
-    let covariance = covariance(&says, &inverse, (common, scatter.widening()));
+    let covariance = covariance(&says, &inverse, common, scatter.widening());
     told("intervals");
     let mesh = mesh_error(&says, &inverse);
     let alike = alike(&says, &inverse, mesh.as_ref());
@@ -141,7 +142,7 @@ fn outcome(
         directions: &directions,
     };
     let parameters = ends.intervals(settings.profiles);
-    let frames = left_out::outcomes(descent, &course, (&says, &inverse), settings, told)?;
+    let frames = left_out::outcomes(descent, &course, &says, &inverse, settings, told)?;
     Ok(JointEstimate {
         law: descent.law.beginning_at(&course.values),
         parameters,
@@ -164,7 +165,8 @@ fn outcome(
 fn covariance(
     says: &[FrameInformation],
     inverse: &DMatrix<f64>,
-    (common, widening): (f64, f64),
+    common: f64,
+    widening: f64,
 ) -> DMatrix<f64> {
     let alike = common * (says_that_count(says, inverse) - 1.0).max(0.0);
     let sum = says.iter().fold(inverse * 0.0, |sum, say| {

@@ -74,7 +74,7 @@ pub fn judge(
     let of_score = |scored: &Scored| Model::of_score(&rows, found, scored).with(&rows, &granted);
     let all = all.map(|scored| of_score(&scored));
     let basis = Basis {
-        reference: Reference::new(&rows, noise.as_ref(), (&base, all.as_ref()), &columns, own),
+        reference: Reference::new(&rows, noise.as_ref(), &base, all.as_ref(), &columns, own),
         rows: &rows,
         base: &base,
     };

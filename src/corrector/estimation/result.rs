@@ -27,7 +27,8 @@ impl NearestField<'_> {
         mut self,
         edges: &[Edge],
         own: Option<&MeshError>,
-        (markers, judged): (Vec<Option<MarkerEstimate>>, Judgement),
+        markers: Vec<Option<MarkerEstimate>>,
+        judged: Judgement,
     ) -> Result<FieldEstimate, Error> {
         let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;

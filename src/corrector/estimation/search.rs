@@ -58,7 +58,7 @@ impl<'a> Equations<'a> {
             variance: self.first_variance(&place.field),
             sound: 1.0,
         };
-        self.run_from((place, variances), VARIANCE_STEPS, most)
+        self.run_from(place, variances, VARIANCE_STEPS, most)
     }
 
     /// The same from a given state, with variances that the data change in so many first steps.
@@ -67,7 +67,8 @@ impl<'a> Equations<'a> {
     /// As [`Self::run`].
     pub fn run_from(
         mut self,
-        (mut place, mut variances): (Place, VarianceComponents),
+        mut place: Place,
+        mut variances: VarianceComponents,
         adjusting: usize,
         most: usize,
     ) -> Result<NearestField<'a>, Error> {
@@ -75,7 +76,7 @@ impl<'a> Equations<'a> {
         let (mut moved, mut wanted) = (f64::NAN, f64::NAN);
         for steps in 1..=most {
             let linear = self.linearise(&place)?;
-            let fit = self.regress((&place, steps > adjusting), &linear, &mut variances)?;
+            let fit = self.regress(&place, steps > adjusting, &linear, &mut variances)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
             let close = self.close(&variances, &place.field);
             let scale = largest(&place.field);
@@ -128,7 +129,7 @@ impl<'a> Equations<'a> {
             ..found.variances.clone()
         };
         let linear = self.linearise(&place)?;
-        let fit = self.regress((&place, false), &linear, &mut variances)?;
+        let fit = self.regress(&place, false, &linear, &mut variances)?;
         Ok(Scored {
             linear,
             fit,
@@ -156,11 +157,12 @@ impl<'a> Equations<'a> {
 
     fn regress(
         &self,
-        (place, settled): (&Place, bool),
+        place: &Place,
+        settled: bool,
         linear: &Linear,
         variances: &mut VarianceComponents,
     ) -> Result<Fit, Error> {
-        let fitted = self.with_regression((place, settled), linear, |regression| {
+        let fitted = self.with_regression(place, settled, linear, |regression| {
             regression.fit(variances)
         });
         fitted.map_err(|Undetermined| {
@@ -174,7 +176,8 @@ impl<'a> Equations<'a> {
     /// Calls `work` with the regression about a state.
     pub(super) fn with_regression<T>(
         &self,
-        (place, settled): (&Place, bool),
+        place: &Place,
+        settled: bool,
         linear: &Linear,
         work: impl FnOnce(&Regression) -> T,
     ) -> T {

@@ -46,7 +46,8 @@ const PARTS: [&[f64]; 3] = [
 /// [`Error::Input`] when the mesh and the conditions do not match, [`Error::Solve`] when no equilibrium is found.
 pub fn transfer(
     specimen: &Specimen,
-    (given, displacement): (&Mesh, &[f64]),
+    given: &Mesh,
+    displacement: &[f64],
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
     let mesh = specimen.mesh;
@@ -62,7 +63,7 @@ pub fn transfer(
     let energy = SheetEnergy::of_mesh(Arc::clone(&specimen.law), mesh, specimen.thickness);
     let held: Vec<bool> = imposed.iter().map(Option::is_some).collect();
     let mut newton = Newton::new(&energy, &held).map_err(solve)?;
-    let (field, residual, steps) = equilibrium(&mut newton, &energy, mesh, (&start, &imposed))?;
+    let (field, residual, steps) = equilibrium(&mut newton, &energy, mesh, &start, &imposed)?;
     let describe = |cell: usize| mesh.describe_cell(cell);
     newton
         .tangent
@@ -83,7 +84,7 @@ pub fn transfer(
         displacement_error: vec![0.0; field.len()],
         cells: cells.collect::<Result<_, _>>()?,
         forces: forces(mesh, &edges, &reactions),
-        markers: differences(mesh, &field, (given, displacement)),
+        markers: differences(mesh, &field, given, displacement),
         known_noise: true,
         rule: RULE.into(),
         edges: edges.iter().map(outcome).collect(),
@@ -170,7 +171,8 @@ fn equilibrium(
     newton: &mut Newton,
     energy: &SheetEnergy,
     mesh: &Mesh,
-    (start, imposed): (&[f64], &[Option<f64>]),
+    start: &[f64],
+    imposed: &[Option<f64>],
 ) -> Result<(Vec<f64>, Vec<f64>, usize), Error> {
     let describe = |cell: usize| mesh.describe_cell(cell);
     let mut fault = SolveFault::Singular;
@@ -235,7 +237,8 @@ fn forces(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], reactions: &[f64]) ->
 fn differences(
     mesh: &Mesh,
     field: &[f64],
-    (given, displacement): (&Mesh, &[f64]),
+    given: &Mesh,
+    displacement: &[f64],
 ) -> Vec<Option<MarkerEstimate>> {
     let pairs = given.nodes.iter().zip(displacement.chunks_exact(2));
     let difference = |(place, u): (&[f64; 2], &[f64])| {

@@ -97,7 +97,7 @@ impl EquationOfMotion<'_> {
             factorisations: 0,
             windows: 0,
         };
-        match self.correct_onwards(data, start, (settings, progress), &mut corrected) {
+        match self.correct_onwards(data, start, settings, progress, &mut corrected) {
             Ok(()) => Ok(corrected),
             Err(fault) => Err(CorrectionEnd {
                 fault,
@@ -111,7 +111,8 @@ impl EquationOfMotion<'_> {
         &self,
         data: &[Vec<f64>],
         start: &Start,
-        (settings, progress): (WindowSettings, &dyn Fn(usize)),
+        settings: WindowSettings,
+        progress: &dyn Fn(usize),
         corrected: &mut CorrectedMotion,
     ) -> Result<(), SolveFault> {
         let mut retained = RetainedFactor {

@@ -160,7 +160,7 @@ impl Ascent {
         let share = SURE * tolerance * geometric_tail(1.0, self.ratio);
         let potential = model.potential(factor, &[]);
         let newton = self.newton(&*potential, &model.held(), levels);
-        let near = newton.and_then(|own| approach(&model, &*potential, own, (factor, &u), share));
+        let near = newton.and_then(|own| approach(&model, &*potential, own, factor, &u, share));
         self.reached = None;
         self.state = match near {
             Some((state, newton, own)) => {
@@ -263,17 +263,19 @@ fn approach(
     model: &Model,
     potential: &dyn Potential,
     mut newton: Newton,
-    (factor, start): (f64, &[f64]),
+    factor: f64,
+    start: &[f64],
     share: f64,
 ) -> Option<(State, Newton, Approach)> {
     let (mut displacement, mut residual) = (start.to_vec(), vec![0.0; start.len()]);
     let own = newton.approach(
         potential,
-        (&mut displacement, &mut residual),
+        &mut displacement,
+        &mut residual,
         Nearness::Share(share),
         FirstTangent::Own,
     )?;
     model.impose(factor, &mut displacement);
-    let state = approached(factor, (displacement, residual), f64::NAN, &own);
+    let state = approached(factor, displacement, residual, f64::NAN, &own);
     Some((state, newton, own))
 }

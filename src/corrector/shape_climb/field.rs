@@ -25,7 +25,8 @@ pub struct ShapeClimb {
 /// The state at a load factor that an approach reached, with its potential and residual.
 pub fn approached(
     factor: f64,
-    (displacement, residual): (Vec<f64>, Vec<f64>),
+    displacement: Vec<f64>,
+    residual: Vec<f64>,
     energy: f64,
     own: &Approach,
 ) -> State {

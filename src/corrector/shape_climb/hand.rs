@@ -92,7 +92,7 @@ impl<'a> Interactive<'a> {
         let step = motion.step().to_vec();
         if step.iter().any(|own| *own != 0.0) {
             let potential = motion.potential(0.0, &[]);
-            let others = systems.carried_along(&motion, &*potential, (before, &step));
+            let others = systems.carried_along(&motion, &*potential, before, &step);
             drop(potential);
             if let Some(others) = others {
                 let pairs = step.iter().zip(others);

@@ -187,7 +187,8 @@ impl Systems {
         &mut self,
         loading: &dyn Loading,
         potential: &dyn Potential,
-        (u, motion): (&[f64], &[f64]),
+        u: &[f64],
+        motion: &[f64],
     ) -> Option<Vec<f64>> {
         let by_multigrid = self.newton.carried_along(potential, u, motion);
         by_multigrid.or_else(|| {
@@ -222,8 +223,8 @@ impl Systems {
             });
         }
         self.anew = Anew::All;
-        let (stage, begin) = (Stage::first(aim.factor), (&mut self.newton, aim.start));
-        let state = equilibrium(loading, &*potential, stage, begin, NEWTON);
+        let (stage, newton) = (Stage::first(aim.factor), &mut self.newton);
+        let state = equilibrium(loading, &*potential, stage, newton, aim.start, NEWTON);
         Some(self.of_factors(levels, state.ok()?))
     }
 
@@ -269,13 +270,14 @@ impl Systems {
                 _ => FirstTangent::Own,
             };
             let (mut u, mut residual) = (aim.start.clone(), vec![0.0; aim.start.len()]);
-            let field = (&mut u[..], &mut residual[..]);
-            let Some(own) = self.newton.approach(potential, field, nearness, tangent) else {
+            let newton = &mut self.newton;
+            let own = newton.approach(potential, &mut u, &mut residual, nearness, tangent);
+            let Some(own) = own else {
                 continue;
             };
             self.judge(&own, anew);
             loading.impose(aim.factor, &mut u);
-            let state = approached(aim.factor, (u, residual), f64::NAN, &own);
+            let state = approached(aim.factor, u, residual, f64::NAN, &own);
             return Some((state, own));
         }
         None

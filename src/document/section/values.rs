@@ -295,7 +295,7 @@ impl<'a> Section<'a> {
         };
         let items = items.iter();
         items
-            .map(|item| self.item(key, item, (dimension, bound, most)))
+            .map(|item| self.item(key, item, dimension, bound, most))
             .collect()
     }
 
@@ -306,7 +306,7 @@ impl<'a> Section<'a> {
         dimension: Dimension,
         bound: Bound,
     ) -> f64 {
-        self.item(key, value, (dimension, bound, MOST_BARE))
+        self.item(key, value, dimension, bound, MOST_BARE)
     }
 
     /// A quantity; a ratio above `most` must say whether it is in percent.
@@ -314,7 +314,9 @@ impl<'a> Section<'a> {
         &self,
         key: &'static str,
         value: Value<'a>,
-        (dimension, bound, most): (Dimension, Bound, f64),
+        dimension: Dimension,
+        bound: Bound,
+        most: f64,
     ) -> f64 {
         let quantity = quantity(value.get_ref(), dimension);
         let bare =

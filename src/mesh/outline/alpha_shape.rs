@@ -31,7 +31,7 @@ pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), Outlin
     let mut inside: Vec<bool> = triangles.iter().map(small).collect();
     let beyond = neighbours(&triangles);
     mend_touching(&triangles, &beyond, &mut inside);
-    largest_part(points, (&triangles, &beyond), &mut inside)?;
+    largest_part(points, &triangles, &beyond, &mut inside)?;
     let boundary = boundary_edges(&triangles, &beyond, &inside);
     let lines = boundary_lines(boundary).into_iter();
     let places = lines.map(|line| line.iter().map(|point| points[*point]).collect());
@@ -120,7 +120,8 @@ fn mend_touching(triangles: &[[usize; 3]], beyond: &Neighbours, inside: &mut [bo
 /// Leaves the largest connected part inside; others must be small.
 fn largest_part(
     points: &[[f64; 2]],
-    (triangles, beyond): (&[[usize; 3]], &Neighbours),
+    triangles: &[[usize; 3]],
+    beyond: &Neighbours,
     inside: &mut [bool],
 ) -> Result<(), OutlineFault> {
     let mut part = vec![usize::MAX; triangles.len()];

@@ -21,7 +21,7 @@ impl Animation {
             let figure = self.figure(title, frame.panels.clone());
             let paint = |painter: &mut Painter| figure.paint(painter, &layout, &range);
             let draw = |area: &Area<'_>| figure.draw(area, &layout, &range);
-            rasterise(figure.size(&layout), (look, 1.0), paint, draw)
+            rasterise(figure.size(&layout), look, 1.0, paint, draw)
         });
         self.encode(pictures)
     }

@@ -19,17 +19,18 @@ pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Paints on an area of `size` points what is too much to be drawn, draws above it, and returns a file of the format.
 pub(super) fn render(
     size: (u32, u32),
-    (look, format): (Look, PictureFormat),
+    look: Look,
+    format: PictureFormat,
     paint: impl FnOnce(&mut Painter<'_>),
     draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
 ) -> DrawResult<Vec<u8>> {
     if format == PictureFormat::Png {
         return Ok(encode(
-            &rasterise(size, (look, look.pixels()), paint, draw)?,
+            &rasterise(size, look, look.pixels(), paint, draw)?,
             look,
         )?);
     }
-    let mut image = blank(size, (look, look.pixels()))?;
+    let mut image = blank(size, look, look.pixels())?;
     let before = image.clone();
     let mut painter = Painter {
         image: &mut image,
@@ -51,7 +52,7 @@ pub(super) fn render(
     }
 }
 
-fn blank(size: (u32, u32), (look, pixels_per_point): (Look, f32)) -> DrawResult<tiny_skia::Pixmap> {
+fn blank(size: (u32, u32), look: Look, pixels_per_point: f32) -> DrawResult<tiny_skia::Pixmap> {
     let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
     let image = tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1));
     let mut image = image.ok_or_else(|| format!("it would have {} × {} points", size.0, size.1))?;
@@ -77,12 +78,13 @@ fn drawn(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> DrawResult<()>) -> Dr
 /// Paints on an area of `size` points with so many pixels a point, then draws above it.
 pub(super) fn rasterise(
     size: (u32, u32),
-    (look, pixels_per_point): (Look, f32),
+    look: Look,
+    pixels_per_point: f32,
     paint: impl FnOnce(&mut Painter<'_>),
     draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
 ) -> DrawResult<tiny_skia::Pixmap> {
     let tree = usvg::Tree::from_str(&drawn(size, draw)?, &usvg::Options::default())?;
-    let mut image = blank(size, (look, pixels_per_point))?;
+    let mut image = blank(size, look, pixels_per_point)?;
     paint(&mut Painter {
         image: &mut image,
         pixels_per_point,

@@ -51,7 +51,7 @@ impl FieldFigure {
         let (layout, range) = (self.layout(look), self.range());
         let paint = |painter: &mut Painter| self.paint(painter, &layout, &range);
         let draw = |area: &Area<'_>| self.draw(area, &layout, &range);
-        render(self.size(&layout), (look, format), paint, draw)
+        render(self.size(&layout), look, format, paint, draw)
     }
 
     /// Width and height in points.

@@ -39,7 +39,7 @@ pub fn stacked(
         }
         Ok(())
     };
-    render((look.points(WIDTH), height), (look, format), |_| (), draw)
+    render((look.points(WIDTH), height), look, format, |_| (), draw)
 }
 
 /// How a chart is arranged, in points.

@@ -44,7 +44,7 @@ impl MeshFigure {
         };
         let height = bottom + ROW_HEIGHT * rows;
         let size = (layout.width() as u32, height as u32);
-        render(size, (look, format), paint, draw)
+        render(size, look, format, paint, draw)
     }
 
     fn paint(&self, painter: &mut Painter, layout: &Layout) {

@@ -13,7 +13,8 @@ use super::quantities::{misfits, nominal_stress, residuals};
 /// The pictures of one frame, with these fields of the sheet besides.
 pub fn figures(
     field: &MarkerStudy,
-    (frame, estimate): (&Frame, &FieldEstimate),
+    frame: &Frame,
+    estimate: &FieldEstimate,
     sheet: &[SheetField],
 ) -> Vec<Figure> {
     let pictures = Pictures {

@@ -25,15 +25,16 @@ use super::{figures, json, report, tables};
 /// The `kind` of these results.
 pub const KIND: &str = "markers";
 
-/// What is told of a correction but for the [`FrameFiles`]: of the study's name and `text`, empty where there is none, and after
+/// What is told of a correction but for the [`FrameFiles`]: of the study's `name` and `text`, empty where there is none, and after
 /// `seconds`.
 pub fn results(
     field: &MarkerStudy,
     estimates: &[FieldEstimate],
-    study: (String, String),
+    name: String,
+    text: String,
     seconds: f64,
 ) -> Results {
-    results_with(&Pictures::default(), field, estimates, study, seconds)
+    results_with(&Pictures::default(), field, estimates, name, text, seconds)
 }
 
 /// The same, with the pictures that are wanted.
@@ -41,15 +42,15 @@ pub fn results_with(
     pictures: &Pictures,
     field: &MarkerStudy,
     estimates: &[FieldEstimate],
-    study: (String, String),
+    name: String,
+    text: String,
     seconds: f64,
 ) -> Results {
-    let (name, text) = study;
     let doubts = field.all_doubts(estimates);
     let frames = || field.series.frames.iter().zip(estimates);
     let figures = frames().next_back();
     let figures =
-        figures.map(|(frame, last)| figures::figures(field, (frame, last), &pictures.fields));
+        figures.map(|(frame, last)| figures::figures(field, frame, last, &pictures.fields));
     let outcome = Outcome {
         problem: json::problem(field, estimates),
         material: Some(Material::from(&field.card)),

@@ -25,7 +25,8 @@ impl Deviations {
         lattice: &Mesh,
         fields: impl Iterator<Item = &'a Vec<f64>>,
         forces: impl Iterator<Item = [f64; 2]>,
-        (expected, expected_forces): (&[Vec<f64>], &[[f64; 2]]),
+        expected: &[Vec<f64>],
+        expected_forces: &[[f64; 2]],
     ) -> Self {
         let weights = lumped_mass(lattice, 1.0, 1.0);
         let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
@@ -53,9 +54,15 @@ impl Deviations {
     }
 
     /// Those of a model.
-    fn of_model(lattice: &Mesh, model: &ModelMotion, expected: (&[Vec<f64>], &[[f64; 2]])) -> Self {
+    fn of_model(
+        lattice: &Mesh,
+        model: &ModelMotion,
+        expected: &[Vec<f64>],
+        expected_forces: &[[f64; 2]],
+    ) -> Self {
         let fields = displacements_on(lattice, model);
-        Self::new(lattice, fields.iter(), right_forces(model), expected)
+        let forces = right_forces(model);
+        Self::new(lattice, fields.iter(), forces, expected, expected_forces)
     }
 
     /// Of the springs and of the corrected motion, from the finite elements at the nodes of the lattice.
@@ -66,12 +73,11 @@ impl Deviations {
     ) -> [Self; 2] {
         let lattice = &springs.mesh;
         let forces: Vec<_> = right_forces(elements).collect();
-        let expected = (expected, &forces[..]);
         let fields = corrected.displacement.iter();
         let of_corrected = corrected.right_force.iter().copied();
         [
-            Self::of_model(lattice, springs, expected),
-            Self::new(lattice, fields, of_corrected, expected),
+            Self::of_model(lattice, springs, expected, &forces),
+            Self::new(lattice, fields, of_corrected, expected, &forces),
         ]
     }
 }
@@ -133,7 +139,7 @@ impl OwnError {
                 displacements_on(&elements.mesh, b),
                 right_forces(b).collect::<Vec<_>>(),
             );
-            let found = Deviations::of_model(&elements.mesh, a, (&fields, &forces));
+            let found = Deviations::of_model(&elements.mesh, a, &fields, &forces);
             [Some(found.whole), found.force]
         };
         let last = distance(&coarse, elements);

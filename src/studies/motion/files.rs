@@ -68,7 +68,8 @@ impl ModelMotion {
 pub fn figures(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    (corrected, shown): (&CorrectedInstants, &[PlateMotion]),
+    corrected: &CorrectedInstants,
+    shown: &[PlateMotion],
 ) -> Vec<Figure> {
     let [springs, elements] = models;
     // The instants of all plates.

@@ -48,13 +48,13 @@ pub fn outcome(
     let animation = Drawing::Animation(animation(&instants, &plates));
     files.push(("motion.png".into(), Content::Picture(animation)));
     let mut outcome = Outcome {
-        checks: checks(plate, models, (&deviations, own_error)),
+        checks: checks(plate, models, &deviations, own_error),
         blocks,
         problem: statement::json(plate, own_error),
         material: Some(Material::from(&plate.card)),
         along: "time",
         steps: steps(models, corrected, &deviations),
-        figures: figures(plate, models, (corrected, &plates)),
+        figures: figures(plate, models, corrected, &plates),
         style: plate.pictures.style.clone(),
         grids: grids(plate, &instants, &plates, &expected),
         warnings: warnings(plate, &instants, &plates),
@@ -235,7 +235,8 @@ const REMEDY: &str = "take more `finite_element.cells`, or a shorter `time.step`
 fn checks(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    (deviations, own_error): (&[Deviations; 2], Option<&OwnError>),
+    deviations: &[Deviations; 2],
+    own_error: Option<&OwnError>,
 ) -> Vec<Check> {
     let limits = plate.tolerances;
     let check = |quantity: String, limit, value| {

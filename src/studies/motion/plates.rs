@@ -38,13 +38,13 @@ pub fn shown<'a>(
     corrected: &'a CorrectedInstants,
 ) -> Vec<PlateMotion<'a>> {
     let times = times(models);
-    let material = (&*plate.problem.law, &plate.viscosity);
+    let (law, material) = (&*plate.problem.law, &plate.viscosity);
     let shown = |[name, file]: [&'static str; 2], mesh: &'a Mesh, motion: Vec<[&'a [f64]; 2]>| {
         PlateMotion {
             name,
             file,
             mesh,
-            viscous: ViscousStress::over_time(material, mesh, &times, &motion),
+            viscous: ViscousStress::over_time(law, material, mesh, &times, &motion),
             motion,
             is_reference: false,
         }

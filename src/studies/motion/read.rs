@@ -54,7 +54,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(grip.as_ref());
-    check_times(root, &in_time, motion, (&material.viscosity, &forces));
+    check_times(root, &in_time, motion, &material.viscosity, &forces);
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
     let section = root.section("corrector");
     let is_corrected = section.flag("enabled");
@@ -65,8 +65,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
         .as_ref()
         .is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
     let tolerances = read_tolerances(&root.section("tolerances"), is_driven);
-    let times = ("times", Dimension::Time);
-    let pictures = Pictures::read(&root.section("pictures"), times, &[]);
+    let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
     let (grip, card) = (grip?, material.card?);
     let plate = MovingPlate {
         problem: ClampedPlate {

@@ -34,7 +34,8 @@ impl MovingPlate {
     pub fn moved(
         &self,
         style: ModelStyle,
-        (model, viscosity): (&Model, Option<&dyn Viscosity>),
+        model: &Model,
+        viscosity: Option<&dyn Viscosity>,
         time: TimeSettings,
         progress: &dyn Fn(f64),
     ) -> Result<ModelMotion, Error> {

@@ -25,7 +25,7 @@ fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMat
 }
 
 /// Whether steps and instants follow a grip that swings; steps that do not would make another motion of it.
-fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
+fn check_swing(section: &Section, time: &TimeSettings, grip: &GripMotion) {
     /// Steps in a period below which it is another motion, and those below which it is a rough one.
     const FEWEST: f64 = 8.0;
     const FEW: f64 = 20.0;
@@ -63,7 +63,7 @@ fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
 }
 
 /// Warns where a grip or a force does nothing in the time that is computed.
-fn check_idle(root: &Section, (time, grip): (&TimeSettings, &GripMotion), forces: &[PointForce]) {
+fn check_idle(root: &Section, time: &TimeSettings, grip: &GripMotion, forces: &[PointForce]) {
     let late = |begin: f64| begin >= time.duration;
     let hint = "take a longer `time.duration`, or an earlier time";
     let kinks = grip.stretch.kinks().into_iter().take(1);
@@ -87,22 +87,24 @@ pub fn check_times(
     root: &Section,
     in_time: &Section,
     motion: Option<(&TimeSettings, &GripMotion)>,
-    (viscosity, forces): (&ViscousMaterial, &[PointForce]),
+    viscosity: &ViscousMaterial,
+    forces: &[PointForce],
 ) {
-    let Some(motion) = motion else {
+    let Some((time, grip)) = motion else {
         return;
     };
-    check_interval(in_time, motion.0, viscosity);
-    check_covered(root, in_time, motion, &viscosity.covered);
-    check_swing(in_time, motion);
-    check_idle(root, motion, forces);
+    check_interval(in_time, time, viscosity);
+    check_covered(root, in_time, time, grip, &viscosity.covered);
+    check_swing(in_time, time, grip);
+    check_idle(root, time, grip, forces);
 }
 
 /// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.
 fn check_covered(
     root: &Section,
     in_time: &Section,
-    (time, grip): (&TimeSettings, &GripMotion),
+    time: &TimeSettings,
+    grip: &GripMotion,
     covered: &Covered,
 ) {
     if let Some([_, longest]) = covered.times

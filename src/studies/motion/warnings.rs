@@ -31,8 +31,13 @@ pub fn warnings(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> V
     all.extend(locking(plate, plates));
     // The stretches of the grip are compared with the range where the study is read.
     let is_worth = |stretches: &Stretches| stretches.far_share > FAR_BESIDE_CORNERS;
-    let named = (own.name, own.mesh);
-    all.extend(strained::warnings(&plate.card, named, is_worth, states));
+    all.extend(strained::warnings(
+        &plate.card,
+        own.name,
+        own.mesh,
+        is_worth,
+        states,
+    ));
     all
 }
 

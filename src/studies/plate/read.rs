@@ -117,15 +117,19 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     };
     let mass_spring = read_newton(&section);
     section.unknown_keys();
-    let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
-    let judged = (cells, corrector.is_some_and(|own| own.is_graded()));
-    let reference = read_reference(&root.section("finite_element"), &problem, judged);
+    let corrector = read_corrector(&root.section("corrector"), &plate, problem.size, cells);
+    let is_graded = corrector.is_some_and(|own| own.is_graded());
+    let reference = read_reference(&root.section("finite_element"), &problem, cells, is_graded);
     if problem.law.softening().is_some() {
         check_memory(&root, lattice, corrector);
     }
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
-    let places = ("factors", Dimension::Ratio);
-    let pictures = Pictures::read(&root.section("pictures"), places, &problem.stretches);
+    let pictures = Pictures::read(
+        &root.section("pictures"),
+        "factors",
+        Dimension::Ratio,
+        &problem.stretches,
+    );
     let output = read_output(&root.section("output"), name);
     root.unknown_keys();
     let card = card?;
@@ -172,11 +176,12 @@ fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Corr
 fn read_corrector(
     section: &Section<'_>,
     plate: &Section<'_>,
-    lattice: ([f64; 2], [usize; 2]),
+    size: [f64; 2],
+    cells: [usize; 2],
 ) -> Option<Correction> {
     let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
     if let Some(scheme) = scheme {
-        check_pairs(plate, scheme, lattice);
+        check_pairs(plate, scheme, size, cells);
     }
     let grading = section.number_or("automatic", "grading", GRADINGS);
     let climb = section.choice("method", &[("climb", true), ("direct", false)]);
@@ -198,7 +203,8 @@ fn read_corrector(
 fn read_reference(
     section: &Section<'_>,
     plate: &ClampedPlate,
-    judged: ([usize; 2], bool),
+    lattice: [usize; 2],
+    is_graded: bool,
 ) -> Option<Reference> {
     let element = section.choice("element", &Element::NAMES);
     let unknowns = match element {
@@ -208,10 +214,10 @@ fn read_reference(
     let states = plate.stretches.len();
     let need = |cells| need_of_cells(cells, unknowns, states);
     let cells = read_reference_cells(section, || {
-        let wanted = reference_cells(plate.size, judged);
+        let wanted = reference_cells(plate.size, lattice, is_graded);
         match section.excess(need(wanted)) {
             // Finite elements that cannot judge the field fully are better than none.
-            Some(_) => reference_cells(plate.size, (judged.0, false)),
+            Some(_) => reference_cells(plate.size, lattice, false),
             None => wanted,
         }
     });
@@ -257,7 +263,7 @@ fn read_reference_cells(section: &Section<'_>, automatic: impl Fn() -> [usize; 2
 /// so that it is 1/100 and less of the lattice's on plates of 1:1 to 20:1 with 4 to 80 cells across. Between the grips a
 /// long plate is nearly in uniaxial tension: over the longer side the cells need not be square. On graded cells the corrected field's
 /// error falls with the third power too: n = 2.4 m there, up to [`MOST_ACROSS`].
-fn reference_cells(size: [f64; 2], (lattice, is_graded): ([usize; 2], bool)) -> [usize; 2] {
+fn reference_cells(size: [f64; 2], lattice: [usize; 2], is_graded: bool) -> [usize; 2] {
     let short = if size[0] < size[1] { 0 } else { 1 };
     let m = lattice[short] as f64;
     let equal = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
@@ -329,7 +335,7 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
 }
 
 /// A scheme that takes cells two by two needs even numbers of them.
-fn check_pairs(plate: &Section, scheme: DifferenceScheme, (size, cells): ([f64; 2], [usize; 2])) {
+fn check_pairs(plate: &Section, scheme: DifferenceScheme, size: [f64; 2], cells: [usize; 2]) {
     let side = scheme.side();
     if let Some(odd) = cells.iter().find(|cells| !cells.is_multiple_of(side)) {
         let name = name_of(&DifferenceScheme::NAMES, scheme);

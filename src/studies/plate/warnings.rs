@@ -62,10 +62,15 @@ fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
     let law = &*study.problem.law;
     let compression = wrinkling::warning(law, mesh, states.iter().cloned());
     let strains = small_strain::warning(law, mesh, states.iter().cloned());
-    let named = (MODELS[model], mesh);
     // The nominal stretches are compared with the range where the study is read.
     let is_worth = |own: &Stretches| own.far_share > FAR_BESIDE_CORNERS;
-    let beyond = strained::warnings(&study.card, named, is_worth, states.into_iter());
+    let beyond = strained::warnings(
+        &study.card,
+        MODELS[model],
+        mesh,
+        is_worth,
+        states.into_iter(),
+    );
     let all = compression.into_iter().chain(strains).chain(beyond);
     all.collect()
 }

@@ -129,7 +129,8 @@ fn over_factors(
 /// A chart of the three models over the load factor.
 fn chart_over_factors(
     specimen: &Specimen,
-    (title, y): (String, &str),
+    title: String,
+    y: &str,
     points: impl Fn(usize) -> Vec<[f64; 2]>,
 ) -> LineChart {
     const STROKES: [Stroke; 3] = [Stroke::Dashed, Stroke::Points, Stroke::Solid];
@@ -154,7 +155,7 @@ fn displacement_over_factors(specimen: &Specimen, models: &Models) -> Option<Dra
     (measured.quantity == Quantity::Displacement).then(|| {
         let title = format!("Displacement of {}", measured.group);
         let y = format!("displacement along {} [mm]", measured.axis_name());
-        let chart = chart_over_factors(specimen, (title, &y), |model| {
+        let chart = chart_over_factors(specimen, title, &y, |model| {
             over_factors(specimen, models, model, |groups| measured.of(groups))
         });
         Drawing::Charts(vec![(chart, 340)])
@@ -184,7 +185,7 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let title = format!("Force of {}", groups[group]);
         let lines = |model: usize| points(model, group, axis);
-        (chart_over_factors(specimen, (title, &y), lines), 340)
+        (chart_over_factors(specimen, title, &y, lines), 340)
     };
     let charts: Vec<_> = carrying.map(chart).collect();
     (!charts.is_empty()).then_some(Drawing::Charts(charts))

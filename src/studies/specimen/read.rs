@@ -77,8 +77,12 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         "take fewer",
     );
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
-    let places = ("factors", Dimension::Ratio);
-    let pictures = Pictures::read(&root.section("pictures"), places, &factors);
+    let pictures = Pictures::read(
+        &root.section("pictures"),
+        "factors",
+        Dimension::Ratio,
+        &factors,
+    );
     let (card, name, mut outline) = (card?, name?, outline?);
     if !fits(section, &outline) || !affords(section, &mut outline, factors.len(), refinement) {
         return None;

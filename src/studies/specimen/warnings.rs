@@ -41,7 +41,8 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(several(models));
     all.extend(strained::warnings(
         &specimen.card,
-        (FINITE_ELEMENTS.name, mesh),
+        FINITE_ELEMENTS.name,
+        mesh,
         |stretches| stretches.share > 0.0,
         loads(),
     ));

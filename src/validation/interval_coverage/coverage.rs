@@ -98,7 +98,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
         progress.tell(&name);
         let subject = if wrong == Wrong::Edge { &plate } else { &strip };
         let draws = CorrelatedDraws::new(subject.places(), length);
-        let trial = |seed: u64| settings.trial(subject, (&draws, seed), wrong);
+        let trial = |seed: u64| settings.trial(subject, &draws, seed, wrong);
         let all: Result<Vec<CoverageTrial>, Error> =
             (0..settings.seeds).into_par_iter().map(trial).collect();
         let shares = Shares::of(&all?);
@@ -159,7 +159,8 @@ impl Settings {
     fn trial(
         &self,
         subject: &Subject,
-        (draws, seed): (&CorrelatedDraws, u64),
+        draws: &CorrelatedDraws,
+        seed: u64,
         wrong: Wrong,
     ) -> Result<CoverageTrial, Error> {
         let mut markers = subject.exact_markers();
@@ -183,8 +184,8 @@ impl Settings {
                 let law = self.law.as_ref().map(|law| law.scaled(1.1));
                 let fitted = estimate(&specimen, &markers, &with_force(law.as_ref()))?;
                 let truth = self.law.as_ref().map(|law| law.start()[0]);
-                let both = (&found, &fitted);
-                return Ok(CoverageTrial::new(subject, self.data.radius, both, truth));
+                let radius = self.data.radius;
+                return Ok(CoverageTrial::new(subject, radius, &found, &fitted, truth));
             }
             Wrong::Law => estimate(&specimen, &markers, &with_force(self.wrong_law.as_ref()))?,
             Wrong::Thickness => {

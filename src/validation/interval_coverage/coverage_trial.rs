@@ -29,7 +29,8 @@ impl CoverageTrial {
     pub fn new(
         subject: &Subject,
         radius: f64,
-        (found, fitted): (&FieldEstimate, &FieldEstimate),
+        found: &FieldEstimate,
+        fitted: &FieldEstimate,
         truth: Option<f64>,
     ) -> Self {
         let mut trial = Self::verdict(found);

@@ -177,7 +177,7 @@ fn results(
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let known = edges::written(&question.edges, &question.edge_gap);
     let seconds = begun.elapsed().as_secs_f64();
-    written::results(study, estimates, (stem.to_owned(), known), seconds)
+    written::results(study, estimates, stem.to_owned(), known, seconds)
 }
 
 /// Everything that `gelbench correct` writes, what it is told of the specimen, and the line that does it again.

@@ -93,7 +93,7 @@ impl EdgeMotion {
         for (segment, condition) in segments {
             if *condition == EdgeCondition::Unknown {
                 let singular = segment.ends().map(|node| singular.contains(&node));
-                motion.smooth((segment, singular), spacing, &mut moved);
+                motion.smooth(segment, singular, spacing, &mut moved);
             }
         }
         motion
@@ -134,12 +134,7 @@ impl EdgeMotion {
     }
 
     /// A smooth edge, whose displacement may be singular at its ends.
-    fn smooth(
-        &mut self,
-        (segment, singular): (&Segment, [bool; 2]),
-        spacing: f64,
-        moved: &mut Movers,
-    ) {
+    fn smooth(&mut self, segment: &Segment, singular: [bool; 2], spacing: f64, moved: &mut Movers) {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
         let spans = (length / (SPACINGS * spacing)).round() as usize;
@@ -194,7 +189,7 @@ impl EdgeMotion {
                     nodes,
                     centre,
                     first,
-                } => self.impose_rigid(&mut unknowns, nodes, *centre, (*first, p)),
+                } => self.impose_rigid(&mut unknowns, nodes, *centre, *first, p),
                 Part::Smooth {
                     spline,
                     coefficients,
@@ -220,7 +215,8 @@ impl EdgeMotion {
         unknowns: &mut BTreeMap<usize, Combination>,
         nodes: &[usize],
         centre: [f64; 2],
-        (first, p): (usize, &[f64]),
+        first: usize,
+        p: &[f64],
     ) {
         let (sine, cosine) = p[first + 2].sin_cos();
         for node in nodes {

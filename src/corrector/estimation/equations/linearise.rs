@@ -94,7 +94,7 @@ impl Equations<'_> {
             let grip = self.grip(&shares, *axis, field)?;
             let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
             values[row] = (force - there) / standard_deviation;
-            let slopes = grip.slopes(sensitivities, (self.motion.parameters(), slopes));
+            let slopes = grip.slopes(sensitivities, self.motion.parameters(), slopes);
             for (column, slope) in slopes.into_iter().enumerate() {
                 rows[(row, column)] = slope / standard_deviation;
             }
@@ -129,11 +129,7 @@ pub struct Grip {
 
 impl Grip {
     /// Its derivatives by p; those from `first` on change the law too, by ∂F/∂θ in `law`.
-    pub fn slopes(
-        &self,
-        sensitivities: &[Vec<f64>],
-        (first, law): (usize, &[Vec<f64>]),
-    ) -> Vec<f64> {
+    pub fn slopes(&self, sensitivities: &[Vec<f64>], first: usize, law: &[Vec<f64>]) -> Vec<f64> {
         let columns = sensitivities.iter();
         let mut slopes: Vec<f64> = columns.map(|column| dot(&self.pull, column)).collect();
         for (slope, own) in slopes[first..].iter_mut().zip(law) {

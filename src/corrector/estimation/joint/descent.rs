@@ -172,7 +172,7 @@ impl<'a> Descent<'a> {
                 course.steps = step;
                 return Ok(course);
             }
-            match self.advance(&course, &change, (settled, held)) {
+            match self.advance(&course, &change, settled, held) {
                 Ok(next) => course = next,
                 Err(fault) => {
                     course.steps = step;
@@ -226,7 +226,7 @@ impl<'a> Descent<'a> {
             .frames
             .par_iter()
             .enumerate()
-            .map(|(index, frame)| frame.at(&self.law, &values, (course.states.get(index), settled)))
+            .map(|(index, frame)| frame.at(&self.law, &values, course.states.get(index), settled))
             .collect();
         Ok(Course {
             values,
@@ -283,7 +283,8 @@ impl<'a> Descent<'a> {
         &self,
         course: &Course,
         change: &Step,
-        (settled, held): (bool, Option<usize>),
+        settled: bool,
+        held: Option<usize>,
     ) -> Result<Course, Error> {
         // The part of the misfit that is due to rounding and to the searches of the frames.
         const ROUGH: f64 = 1e-3;

@@ -180,11 +180,12 @@ impl Judged<'_> {
         &self,
         law: &RegressedLaw,
         values: &[f64],
-        from: (Option<&State>, bool),
+        from: Option<&State>,
+        settled: bool,
     ) -> Result<State, Error> {
-        self.with_field(law, values, from, |found| {
+        self.with_field(law, values, from, settled, |found| {
             let (place, variances) = (place(&found), found.variances.clone());
-            let equations = self.law_equations(found, (law, values), None)?.normal;
+            let equations = self.law_equations(found, law, values, None)?.normal;
             let reduced = Reduced::new(&equations, values.len())?;
             Ok(State {
                 information: reduced.information,
@@ -206,7 +207,7 @@ impl Judged<'_> {
         values: &[f64],
         from: &State,
     ) -> Result<FrameInformation, Error> {
-        self.with_field(law, values, (Some(from), true), |found| {
+        self.with_field(law, values, Some(from), true, |found| {
             let left = self.left(&found);
             let observations = found.observations();
             let sound = soundness(&observations.weights, &found.fit, &found.variances);
@@ -228,7 +229,7 @@ impl Judged<'_> {
             let effective = found.fit.effective;
             let variances = found.variances.clone();
             let difference = found.mesh_difference(&self.edges);
-            let about = self.law_equations(found, (law, values), difference.as_ref())?;
+            let about = self.law_equations(found, law, values, difference.as_ref())?;
             let equations = about.normal;
             let reduced = Reduced::new(&equations, values.len())?;
             let forces = reduced.force_misfit;
@@ -265,7 +266,7 @@ impl Judged<'_> {
         values: &[f64],
         from: Option<&State>,
     ) -> Result<CrossPrediction, Error> {
-        self.with_field(law, values, (from, false), |found| {
+        self.with_field(law, values, from, false, |found| {
             let forces = found.forces(1.0, None)?;
             let prediction = |measured: &MeasuredForce| {
                 let own = forces.iter().filter(|force| force.edge == measured.edge);
@@ -290,7 +291,8 @@ impl Judged<'_> {
         &self,
         law: &RegressedLaw,
         values: &[f64],
-        (from, settled): (Option<&State>, bool),
+        from: Option<&State>,
+        settled: bool,
         work: impl FnOnce(NearestField) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let specimen = self.ground.specimen(law, values);
@@ -305,8 +307,8 @@ impl Judged<'_> {
             None => search.run(MOST_STEPS)?,
             Some(state) => {
                 let adjusting = if settled { 0 } else { VARIANCE_STEPS };
-                let start = (state.place.clone(), state.variances.clone());
-                search.run_from(start, adjusting, MOST_STEPS)?
+                let (place, variances) = (state.place.clone(), state.variances.clone());
+                search.run_from(place, variances, adjusting, MOST_STEPS)?
             }
         };
         work(found)
@@ -316,7 +318,8 @@ impl Judged<'_> {
     fn law_equations(
         &self,
         found: NearestField,
-        (law, values): (&RegressedLaw, &[f64]),
+        law: &RegressedLaw,
+        values: &[f64],
         difference: Option<&MeshDifference>,
     ) -> Result<AboutField, Error> {
         let knowledge = self.ground.knowledge(Some(law.beginning_at(values)), true);
@@ -331,7 +334,7 @@ impl Judged<'_> {
         let of_law = values.iter().copied();
         place.parameters.splice(first..first, of_law);
         let linear = equations.linearise(&place)?;
-        let normal = equations.with_regression((&place, true), &linear, |regression| {
+        let normal = equations.with_regression(&place, true, &linear, |regression| {
             regression.equations(&variances)
         });
         let order = Order {
@@ -339,13 +342,13 @@ impl Judged<'_> {
             law: values.len(),
             all: linear.design.ncols(),
         };
-        let target = difference.map(|own| equations.mesh_target(own, (&linear, &variances)));
+        let target = difference.map(|own| equations.mesh_target(own, &linear, &variances));
         let force_rows = knowledge.measured_forces().iter();
         let off = force_rows.map(|own| own.common_deviation * own.force / own.standard_deviation);
         let (of_forces, _) = &linear.force_rows;
         let off = of_forces.tr_mul(&DVector::from_vec(off.collect()));
         let magnified = equations.magnified(&place.field);
-        let magnified = equations.target_of(&magnified, (&linear, &variances));
+        let magnified = equations.target_of(&magnified, &linear, &variances);
         let common = [off, magnified * -knowledge.scale_deviation];
         Ok(AboutField {
             design: order.columns(&linear.design),

@@ -20,7 +20,8 @@ type CrossPrediction = (Vec<ForcePrediction>, f64);
 pub fn outcomes(
     descent: &Descent,
     course: &Course,
-    (says, inverse): (&[FrameInformation], &DMatrix<f64>),
+    says: &[FrameInformation],
+    inverse: &DMatrix<f64>,
     settings: &JointSettings,
     told: Told,
 ) -> Result<Vec<FrameOutcome>, Error> {

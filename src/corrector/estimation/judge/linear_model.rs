@@ -124,7 +124,8 @@ impl Reference {
     pub fn new(
         rows: &Rows,
         noise: Option<&CorrelatedNoise>,
-        (base, all): (&Model, Option<&Model>),
+        base: &Model,
+        all: Option<&Model>,
         columns: &[Column],
         own: Option<&MeshError>,
     ) -> Self {

@@ -16,7 +16,7 @@ fn pulled(cells: [usize; 2]) -> (Mesh, Vec<f64>, [f64; 2]) {
     let pad = (0..mesh.nodes.len()).filter(|node| inside(mesh.nodes[*node]));
     let pad: BTreeSet<usize> = pad.collect();
     mesh.name_nodes("pad", &pad);
-    let (displacement, force) = solved(&mesh, ("pad", MOTION), &[0.5, 1.0]);
+    let (displacement, force) = solved(&mesh, "pad", MOTION, &[0.5, 1.0]);
     (mesh, displacement, force)
 }
 

@@ -48,7 +48,7 @@ fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
     let places = places(&window);
     let mut squares = vec![[[0.0; 2]; 4]; window.cell_count()];
     for seed in 0..SEEDS {
-        let markers = noisy(&places, &|place| whole.at(there(place)), (NOISE, seed));
+        let markers = noisy(&places, &|place| whole.at(there(place)), NOISE, seed);
         let found = estimate(&specimen(&window), &markers, &knowledge).unwrap();
         for (cell, (own, sums)) in found.cells.iter().zip(&mut squares).enumerate() {
             let exact = exact(cell);

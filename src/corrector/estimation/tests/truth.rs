@@ -32,7 +32,8 @@ pub(in super::super) struct Truth {
 /// The sheet held at its left edge, a group moved as a whole: the field in mm, and the force on the group in N.
 pub(in super::super) fn solved(
     mesh: &Mesh,
-    (group, motion): (&str, [f64; 2]),
+    group: &str,
+    motion: [f64; 2],
     factors: &[f64],
 ) -> (Vec<f64>, [f64; 2]) {
     let problem = BoundaryProblem {
@@ -63,8 +64,8 @@ impl Truth {
 
     /// The same on any mesh.
     pub(in super::super) fn on(mesh: Mesh) -> Self {
-        let right = ("right", [STRETCH * SIZE[0], 0.0]);
-        let (displacement, [force, _]) = solved(&mesh, right, &[1.0]);
+        let motion = [STRETCH * SIZE[0], 0.0];
+        let (displacement, [force, _]) = solved(&mesh, "right", motion, &[1.0]);
         Self {
             mesh,
             displacement,
@@ -88,7 +89,8 @@ impl Truth {
         noisy(
             &grid.collect::<Vec<_>>(),
             &|place| self.at(place),
-            (noise, seed),
+            noise,
+            seed,
         )
     }
 
@@ -103,7 +105,8 @@ impl Truth {
 pub(super) fn noisy(
     places: &[[f64; 2]],
     field: &dyn Fn([f64; 2]) -> [f64; 2],
-    (noise, seed): (f64, u64),
+    noise: f64,
+    seed: u64,
 ) -> Vec<Marker> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut draw = || -> f64 { StandardNormal.sample(&mut random) };

@@ -19,7 +19,7 @@ fn markers(
     size: &dyn Fn([f64; 2]) -> [f64; 2],
     seed: u64,
 ) -> Vec<Marker> {
-    let mut all = noisy(&grid(), &|_| [0.0; 2], (1.0, seed));
+    let mut all = noisy(&grid(), &|_| [0.0; 2], 1.0, seed);
     for Marker {
         place,
         displacement,

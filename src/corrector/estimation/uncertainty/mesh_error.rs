@@ -123,7 +123,7 @@ impl NearestField<'_> {
         let found = self.mesh_difference(edges)?;
         let target = self
             .equations
-            .mesh_target(&found, (&self.linear, &self.variances));
+            .mesh_target(&found, &self.linear, &self.variances);
         let change = &self.fit.covariance * target;
         let MeshDifference {
             fine,
@@ -234,9 +234,10 @@ impl Equations<'_> {
     pub fn mesh_target(
         &self,
         difference: &MeshDifference,
-        (linear, variances): (&Linear, &VarianceComponents),
+        linear: &Linear,
+        variances: &VarianceComponents,
     ) -> DVector<f64> {
-        let mut target = self.target_of(&difference.markers, (linear, variances));
+        let mut target = self.target_of(&difference.markers, linear, variances);
         let measured = self.task.knowledge.measured_forces().iter().enumerate();
         for (row, measured) in measured {
             let own = self.bodies.iter().zip(&difference.forces);
@@ -252,7 +253,8 @@ impl Equations<'_> {
     pub fn target_of(
         &self,
         displacements: &[f64],
-        (linear, variances): (&Linear, &VarianceComponents),
+        linear: &Linear,
+        variances: &VarianceComponents,
     ) -> DVector<f64> {
         let weights = &self.task.observations.weights;
         let weighted = displacements.iter().enumerate();
@@ -266,7 +268,7 @@ impl Equations<'_> {
 /// The unknowns of a refined mesh held by an edge: those between nodes of the edge whose unknowns are held.
 fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<usize>; 2] {
     if edge.segment.inside {
-        return [0, 1].map(|axis| held_inside(mesh, fine, edge, (axis, held)));
+        return [0, 1].map(|axis| held_inside(mesh, fine, edge, axis, held));
     }
     let mut boundary: Vec<usize> = fine.boundary().iter().flatten().copied().collect();
     boundary.sort_unstable();
@@ -302,12 +304,7 @@ fn is_near(place: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
 }
 
 /// The unknowns of a refined mesh along an axis held by a pad on the sheet: those in cells and on sides of cells all of whose nodes are held.
-fn held_inside(
-    mesh: &Mesh,
-    fine: &Mesh,
-    edge: &Edge,
-    (axis, held): (usize, &[bool]),
-) -> Vec<usize> {
+fn held_inside(mesh: &Mesh, fine: &Mesh, edge: &Edge, axis: usize, held: &[bool]) -> Vec<usize> {
     let nodes = edge.segment.nodes.iter().copied();
     let pad: BTreeSet<usize> = nodes.filter(|node| held[2 * node + axis]).collect();
     let mut found = BTreeSet::new();

@@ -52,7 +52,7 @@ impl NearestField<'_> {
         let column = self.equations.magnified(&self.field);
         let target = self
             .equations
-            .target_of(&column, (&self.linear, &self.variances));
+            .target_of(&column, &self.linear, &self.variances);
         -(&self.fit.covariance * target)
     }
 
@@ -63,7 +63,7 @@ impl NearestField<'_> {
     ) -> Result<ScaleChange, Error> {
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |body: usize, axis: usize| -> Result<f64, Error> {
-            let (_, row) = self.grip_of((body, axis), &slopes)?;
+            let (_, row) = self.grip_of(body, axis, &slopes)?;
             Ok(dot(&row, answer.as_slice()))
         };
         let bodies = 0..self.equations.bodies.len();
@@ -92,7 +92,7 @@ mod tests {
     const NOISE: f64 = 0.1;
 
     /// The estimate of a plate in pictures that show it larger by a relative `error`.
-    fn seen(truth: &Truth, (error, deviation): (f64, f64), seed: u64) -> FieldEstimate {
+    fn seen(truth: &Truth, error: f64, deviation: f64, seed: u64) -> FieldEstimate {
         let mut markers = truth.markers(NOISE, seed);
         let moved = |marker: &Marker, axis: usize| {
             let middle = 0.5 * SIZE[axis];
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn the_change_that_is_told_is_that_of_a_larger_picture() {
         let truth = Truth::new();
-        let [plain, larger] = [0.0, 1e-3].map(|error| seen(&truth, (error, 0.0), 2));
+        let [plain, larger] = [0.0, 1e-3].map(|error| seen(&truth, error, 0.0, 2));
         let index = right(&plain);
         let change = larger.forces[index].force[0].value - plain.forces[index].force[0].value;
         let told = 1e-3 * plain.scale_change.forces[index][0];
@@ -133,7 +133,7 @@ mod tests {
             let errors = [-3e-3, 3e-3].into_iter();
             let cases = errors.flat_map(|error| (0..4).map(move |seed| (error, seed)));
             let holds = cases.filter(|(error, seed)| {
-                let found = seen(&truth, (*error, deviation), *seed);
+                let found = seen(&truth, *error, deviation, *seed);
                 let [low, high] = found.forces[right(&found)].force[0].interval;
                 low < truth.force && truth.force < high
             });
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_scale_that_is_far_off_is_named() {
-        let found = seen(&Truth::new(), (0.05, 0.0), 1);
+        let found = seen(&Truth::new(), 0.05, 0.0, 1);
         assert_eq!(found.verdict.answer, Answer::NotExplained);
         assert_eq!(
             found.verdict.trials[0].alternative,

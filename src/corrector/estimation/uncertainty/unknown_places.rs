@@ -64,7 +64,7 @@ impl NearestField<'_> {
         let at_markers = observations.interpolation.multiply(change);
         let mut target = self
             .equations
-            .target_of(&at_markers, (&self.linear, &self.variances));
+            .target_of(&at_markers, &self.linear, &self.variances);
         for (row, measured) in self
             .equations
             .task
@@ -133,7 +133,7 @@ mod tests {
     }
 
     /// The estimate by markers amid the plate.
-    fn found(truth: &Truth, mesh: &Mesh, (gap, seed): (Option<f64>, u64)) -> FieldEstimate {
+    fn found(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
         let markers = truth.markers(0.3, seed).into_iter();
         let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.place[1]);
         let knowledge = Knowledge {
@@ -170,7 +170,7 @@ mod tests {
             let mesh = narrow(off);
             let share = |gap: Option<f64>| {
                 let of_seed = |seed| {
-                    let found = found(&truth, &mesh, (gap, seed));
+                    let found = found(&truth, &mesh, gap, seed);
                     assert_ne!(found.verdict.answer, Answer::NotExplained);
                     held(&truth, &mesh, &found)
                 };
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn values_stay_and_only_errors_grow() {
         let (truth, mesh) = (Truth::new(), narrow([1.0, 1.0]));
-        let [plain, considered] = [None, Some(GAP)].map(|gap| found(&truth, &mesh, (gap, 1)));
+        let [plain, considered] = [None, Some(GAP)].map(|gap| found(&truth, &mesh, gap, 1));
         assert_eq!(plain.displacement, considered.displacement);
         let errors = plain
             .displacement_error

@@ -55,7 +55,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let lattice = &springs.mesh;
     let compare = |(step, stretch): (usize, &f64)| {
         let deviation = |mesh, state, past: &[&[f64]], measures| {
-            reference_field.deviation(mesh, (state, past), measures, step)
+            reference_field.deviation(mesh, state, past, measures, step)
         };
         let springs = uncorrected.states.get(step);
         let past = corrected[..step].iter().flatten();

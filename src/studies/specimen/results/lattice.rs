@@ -118,13 +118,14 @@ impl OnLattice {
         let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
         progress.tell("corrector");
         let climbs = climbs(specimen, &springs.mesh)?;
-        Self::correct(specimen, (springs, uncorrected), climbs, ends, progress)
+        Self::correct(specimen, springs, uncorrected, climbs, ends, progress)
     }
 
     /// Corrects the springs where climbs do not lead.
     fn correct(
         specimen: &Specimen,
-        (springs, uncorrected): (MassSpring, Solution),
+        springs: MassSpring,
+        uncorrected: Solution,
         climbs: Vec<ShapeClimb>,
         ends: &mut Vec<End>,
         progress: Progress,
@@ -183,8 +184,8 @@ pub fn solve_corrected(
         let states = climbs.into_iter().map(|own| climbed(&model, own.state));
         return Ok(Solution::new(&model, &specimen.groups(), states.collect()));
     }
-    let springs = solve_springs(specimen, ends, progress)?;
-    let found = OnLattice::correct(specimen, springs, climbs, ends, progress)?;
+    let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
+    let found = OnLattice::correct(specimen, springs, uncorrected, climbs, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of(MASS_SPRING.name));
     Ok(found.corrected)

@@ -41,14 +41,15 @@ impl Reference {
 
     fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
         let solutions = nested(specimen, ends, progress)?;
-        Self::of_meshes(specimen, solutions, (Vec::new(), None), ends, progress)
+        Self::of_meshes(specimen, solutions, Vec::new(), None, ends, progress)
     }
 
     /// The reference on the last of some meshes; of local refinement with its rounds, and the solution with all cells halved.
     fn of_meshes(
         specimen: &Specimen,
         mut meshes: Vec<Solution>,
-        (rounds, all_halved): (Vec<Round>, Option<Solution>),
+        rounds: Vec<Round>,
+        all_halved: Option<Solution>,
         ends: &[End],
         progress: Progress,
     ) -> Result<Self, Error> {
@@ -94,7 +95,7 @@ impl Reference {
         let finer = on_mesh(specimen, &mesh, Some(&self.finest), FILE, ends, progress)?;
         let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
         meshes.extend([self.finest, finer]);
-        Self::of_meshes(specimen, meshes, (Vec::new(), None), ends, progress)
+        Self::of_meshes(specimen, meshes, Vec::new(), None, ends, progress)
     }
 
     fn adaptive(
@@ -120,7 +121,7 @@ impl Reference {
             on_mesh(specimen, &mesh, Some(finest), FILE, &mut untold, progress)
         });
         let all_halved = all_halved.transpose()?;
-        Self::of_meshes(specimen, meshes, (rounds, all_halved), ends, progress)
+        Self::of_meshes(specimen, meshes, rounds, all_halved, ends, progress)
     }
 }
 

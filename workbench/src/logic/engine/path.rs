@@ -67,15 +67,15 @@ impl Loading for OnTheWay<'_> {
 /// [`Error::Solve`] where neither leads there.
 pub fn reach(body: &Body, sheet: &Sheet, grip: Grip) -> Result<Vec<f64>, Error> {
     let rest = vec![0.0; body.displacement.len()];
-    let before = (body.grip(), &body.displacement[..]);
-    let near = on_the_way(body, sheet, before, grip, &[1.0]);
-    near.or_else(|_| on_the_way(body, sheet, (Grip::default(), &rest), grip, &FROM_REST))
+    let near = on_the_way(body, sheet, body.grip(), &body.displacement, grip, &[1.0]);
+    near.or_else(|_| on_the_way(body, sheet, Grip::default(), &rest, grip, &FROM_REST))
 }
 
 fn on_the_way(
     body: &Body,
     sheet: &Sheet,
-    (before, from): (Grip, &[f64]),
+    before: Grip,
+    from: &[f64],
     grip: Grip,
     factors: &[f64],
 ) -> Result<Vec<f64>, Error> {

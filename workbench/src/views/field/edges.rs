@@ -57,7 +57,7 @@ impl Fields {
             let label = "mesh of the field: click an edge and state what is known about it";
             WidgetInfo::labeled(Role::Image, true, label)
         });
-        markers(ui, (view, area), preview);
+        markers(ui, view, area, preview);
         let reach = view.way(vec2(REACH, 0.0))[0];
         let at = |pointer: Pos2| nearest(figure, view.place(pointer), reach);
         let under = response.hover_pos().and_then(at);
@@ -65,7 +65,7 @@ impl Fields {
             let asked = self.asked.as_ref().is_some_and(|(asked, _)| asked == name);
             let edge = self.question.edges.get(name);
             let said = edge.filter(|edge| **edge != Edge::Unnamed);
-            draw(ui, view, figure, name, (said, asked || under == Some(name)));
+            draw(ui, view, figure, name, said, asked || under == Some(name));
         }
         if under.is_some() {
             let icon = eframe::egui::CursorIcon::PointingHand;
@@ -143,7 +143,7 @@ fn displacements(ui: &mut Ui, name: &str, edge: &mut Edge) {
 }
 
 /// The markers at rest, and how they moved: half of the arrows are no longer than markers are apart.
-fn markers(ui: &mut Ui, (view, area): (View, Rect), preview: &Preview) {
+fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
     let way = |[rest, found]: &[[f64; 2]; 2]| [found[0] - rest[0], found[1] - rest[1]];
     let ways = preview.markers.iter().map(way);
     let mut lengths: Vec<f64> = ways.map(|[x, y]| x.hypot(y)).collect();
@@ -173,13 +173,7 @@ fn markers(ui: &mut Ui, (view, area): (View, Rect), preview: &Preview) {
 }
 
 /// An edge with what is said of it; thicker where it is pointed at.
-fn draw(
-    ui: &Ui,
-    view: View,
-    figure: &MeshFigure,
-    name: &str,
-    (said, pointed): (Option<&Edge>, bool),
-) {
+fn draw(ui: &Ui, view: View, figure: &MeshFigure, name: &str, said: Option<&Edge>, pointed: bool) {
     let painter = ui.painter();
     let ink = report::edge_colour(figure, name);
     let Some(group) = figure.groups.iter().find(|group| group.name == name) else {
