@@ -108,8 +108,10 @@ impl std::error::Error for Diagnostic {}
 /// Why a solver did not reach a solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveFault {
-    /// An element has turned inside out or shrunk to zero size.
-    #[error("{element} inverts or collapses, even with shorter steps")]
+    /// An element has turned inside out, has shrunk to zero size, or is strained beyond the limit of its law.
+    #[error(
+        "{element} inverts or collapses, or reaches a strain at which its law has no stress, even with shorter steps"
+    )]
     Inverted {
         /// The element, named with its place, as in `cell 80 near (150.0, 0.0) mm`.
         element: String,
@@ -234,7 +236,10 @@ impl SolveFault {
     /// What a user can try.
     pub fn advice(&self) -> &'static str {
         match self {
-            Self::Inverted { .. } => "refine the mesh there, or end the path or motion before it",
+            Self::Inverted { .. } => {
+                "end the path or motion before it: laws of chains end at their full length (`jm`, `lambda_m`), tables at their last row; if a few \
+                 cells alone are distorted, refine the mesh there"
+            }
             Self::NotPositiveDefinite => {
                 "look at the card's stable range with `gelbench materials show`, or take smaller steps of load or time"
             }

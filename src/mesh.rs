@@ -17,6 +17,7 @@ mod outline;
 mod plate;
 mod refine;
 mod rounding;
+mod seams;
 mod shapes;
 mod strips;
 mod triangulate;

@@ -46,13 +46,13 @@ pub struct Options {
     #[arg(required_unless_present = "sample")]
     data: Option<PathBuf>,
     /// The mass that the force moves
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     mass: Option<String>,
     /// The length at rest
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     length: Option<String>,
     /// The cross-section at rest: with it and the length, the law is a material law, for springs of any length
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     area: Option<String>,
     /// Form of K(·): constant, polynomial-N, spline or spline-N
     #[arg(long, value_name = "FORM", default_value = "spline", value_parser = Form::parse)]

@@ -7,6 +7,7 @@ use super::buckets::Buckets;
 use super::cell_shape::CellShape;
 use super::geometry::bounding_box;
 use super::grid::Grid;
+use super::seams::Neighbours;
 
 /// A named part of the boundary or of the sheet, or a set of nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,6 +52,7 @@ pub struct Mesh {
     groups: BTreeMap<String, Group>,
     pub(super) grid: Option<Grid>,
     pub(super) buckets: OnceLock<Buckets>,
+    pub(super) seams: OnceLock<Option<Neighbours>>,
     boundary: OnceLock<Vec<Vec<usize>>>,
 }
 
@@ -78,6 +80,7 @@ impl Mesh {
             groups: BTreeMap::new(),
             grid: None,
             buckets: OnceLock::new(),
+            seams: OnceLock::new(),
             boundary: OnceLock::new(),
         }
     }

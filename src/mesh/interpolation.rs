@@ -4,6 +4,9 @@ use super::cell_shape::{CellShape, GAUSS_3};
 use super::cells::Mesh;
 use super::geometry::determinant;
 
+/// A cell, and natural coordinates in it.
+pub type Place = (usize, [f64; 2]);
+
 /// The nodes of a mesh as combinations of those of another one.
 #[derive(Clone, Debug)]
 pub struct Interpolation {
@@ -100,7 +103,10 @@ impl Mesh {
 
     /// Displacement interpolated at a point; `displacement` is ux, uy of node after node.
     pub fn displacement_at(&self, displacement: &[f64], point: [f64; 2]) -> [f64; 2] {
-        let (cell, local) = self.locate(point);
+        self.displacement_in(displacement, self.locate(point))
+    }
+
+    fn displacement_in(&self, displacement: &[f64], (cell, local): Place) -> [f64; 2] {
         let values = self.shape(cell).values(local);
         let component = |axis: usize| {
             let nodes = self.cell(cell).iter().zip(&values);
@@ -111,21 +117,30 @@ impl Mesh {
         [component(0), component(1)]
     }
 
-    /// Displacement interpolated at all nodes of another mesh of the specimen.
+    /// Displacement interpolated at all nodes of another mesh of the specimen; on a seam, that of the side to which a node belongs.
     pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
-        let nodes = other.nodes.iter();
+        let places = self.places_from_own_sides(other);
+        let place = |node: usize| match &places {
+            Some(places) => places[node],
+            None => self.locate(other.nodes[node]),
+        };
+        let nodes = 0..other.nodes.len();
         nodes
-            .flat_map(|node| self.displacement_at(displacement, *node))
+            .flat_map(|node| self.displacement_in(displacement, place(node)))
             .collect()
     }
 
-    /// The places of another mesh's nodes in this one, both of the same specimen, to interpolate many fields.
+    /// The places of another mesh's nodes in this one, both of the same specimen, to interpolate many fields; as [`Self::displacement_on`].
     pub fn interpolation_on(&self, other: &Self) -> Interpolation {
         let (mut starts, mut terms) = (vec![0], Vec::new());
+        let places = self.places_from_own_sides(other);
         let mut cell = 0;
-        for node in &other.nodes {
+        for (node, place) in other.nodes.iter().enumerate() {
             let local;
-            (cell, local) = self.locate_near(cell, *node);
+            (cell, local) = match &places {
+                Some(places) => places[node],
+                None => self.locate_near(cell, *place),
+            };
             let values = self.shape(cell).values(local);
             terms.extend(self.cell(cell).iter().copied().zip(values));
             starts.push(terms.len());

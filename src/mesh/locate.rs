@@ -81,7 +81,7 @@ impl Mesh {
     }
 
     /// The natural coordinates of a point in a cell, by Newton's method; `None` where it does not converge.
-    fn natural_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
+    pub(super) fn natural_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
         let shape = self.shape(cell);
         // Relative to a node of the cell, so that a mesh far from the origin loses no digits.
         let origin = self.nodes[self.cell(cell)[0]];

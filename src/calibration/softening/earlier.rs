@@ -12,12 +12,10 @@ use crate::statistics::{f_tail, farthest};
 
 /// The earlier stretches that are tried, in equal steps up to the largest one of the record.
 const TRIED: usize = 12;
-/// An earlier stretch is told where chance gives as much with a smaller probability.
+/// More parameters are needed where chance gives as much as they do with a smaller probability.
 const CERTAIN: f64 = 1e-3;
 /// Residuals that are systematic with the earlier stretch too must fall at least to this share of their squares.
 const SYSTEMATIC: f64 = 0.25;
-/// Softening is in doubt where chance gives as much with a larger probability.
-const NO_SOFTENING: f64 = 0.05;
 
 /// The search for the parameters of a law that softens.
 pub struct Search<'a> {
@@ -70,7 +68,7 @@ impl Search<'_> {
         let alone = sum_of_squares(&law, alone.as_deref().unwrap_or(start));
         let more = values.len() - misfit.of_law;
         let chance = self.chance(misfit, values, more, alone / found);
-        (chance > NO_SOFTENING).then(|| {
+        (chance > CERTAIN).then(|| {
             "these data show no softening: the law alone follows them as well. A specimen that was stretched further before its record does not \
              soften again below that stretch; its law is then that of the softened specimen. Give the record of the first loading too, or state the \
              law of the first loading (`--card`) and the earlier stretch (`--preconditioned`)"

@@ -26,7 +26,7 @@ pub struct Options {
     #[arg(long, value_name = "CARD")]
     pub material: String,
     /// Thickness at rest, such as "2 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = size, required_unless_present = "specimen")]
+    #[arg(long, value_name = "LENGTH", value_parser = size, allow_hyphen_values = true, required_unless_present = "specimen")]
     pub thickness: Option<f64>,
     /// What else is known: a file with edge conditions and noise
     #[arg(long, value_name = "FILE")]
@@ -70,7 +70,7 @@ pub struct Options {
     #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = unit)]
     pub mesh_unit: f64,
     /// Merge nodes of the mesh that are no farther apart than this, such as "1e-6 mm"
-    #[arg(long, value_name = "LENGTH", requires = "mesh", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", requires = "mesh", value_parser = length, allow_hyphen_values = true)]
     pub merge_nodes: Option<f64>,
     /// Apparent faults of the mesh that are intended
     #[arg(long, value_name = "FAULT", requires = "mesh", value_delimiter = ',', value_parser = Exemptions::NAMES)]
@@ -80,11 +80,11 @@ pub struct Options {
     pub outline: Option<PathBuf>,
     /// How far inside the specimen's edge the outermost markers lie, such as "1.5 mm" or "0 mm": an outline made from
     /// markers is widened by it
-    #[arg(long, value_name = "LENGTH", value_parser = gap, conflicts_with_all = ["mesh", "outline"])]
+    #[arg(long, value_name = "LENGTH", value_parser = gap, allow_hyphen_values = true, conflicts_with_all = ["mesh", "outline"])]
     pub edge_gap: Option<f64>,
     /// Standard deviation of the scale of the pictures, such as "0.1 %": a specimen 1 mm nearer to a camera 1 m away seems to grow by this much. Intervals
     /// include it
-    #[arg(long, value_name = "RATIO", value_parser = scale_error)]
+    #[arg(long, value_name = "RATIO", value_parser = scale_error, allow_hyphen_values = true)]
     pub scale_error: Option<f64>,
     /// The field's unit or the length of a pixel, such as mm or "0.05 mm", if the file does not state it. It corrects the header
     /// of a table whose columns all state one other unit
@@ -107,14 +107,14 @@ pub struct Options {
     #[arg(long, value_name = "NAME", value_parser = encoding)]
     pub encoding: Option<TextEncoding>,
     /// The distance between the points of Ncorr's matrices, such as "0.5 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub grid: Option<f64>,
     /// The array of a VTK or Gmsh file
     #[arg(long, value_name = "NAME")]
     pub array: Option<String>,
     /// Size of the cells of a generated mesh [default: the markers' spacing, at least 12 cells across and at most
     /// about 20,000]
-    #[arg(long, value_name = "LENGTH", value_parser = size)]
+    #[arg(long, value_name = "LENGTH", value_parser = size, allow_hyphen_values = true)]
     pub cell_size: Option<f64>,
     /// Halve the cells of a generated mesh until its discretisation error is a small part of the stress intervals, and no longer the reason why
     /// data are not explained
@@ -127,7 +127,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value = "found")]
     pub holes: Holes,
     /// Standard deviation of the displacement's components, such as "0.1 mm"; estimated if omitted
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub noise: Option<f64>,
     /// Weights of outlying markers; tukey if some are farther off than noise can explain
     #[arg(long, value_enum)]

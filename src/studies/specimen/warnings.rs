@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
 use crate::results::{
-    is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
+    is_one_of_several, locking, number, one_of_several, small_strain, strained, wrinkling,
 };
 
 /// All warnings, each in a sentence.
@@ -39,6 +39,7 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(loads_on_points(specimen, mesh));
     all.extend(moved_points(specimen, mesh));
     all.extend(several(models));
+    all.extend(overlap(mesh, loads()));
     all.extend(strained::warnings(
         &specimen.card,
         FINITE_ELEMENTS.name,
@@ -47,6 +48,23 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         loads(),
     ));
     all
+}
+
+/// How deep in a cell a node of the boundary must lie, in natural coordinates, for the sheet to overlap.
+const OVERLAP: f64 = 0.05;
+
+/// The warning about the first state in which the sheet passes through itself.
+fn overlap<'a>(
+    mesh: &Mesh,
+    mut states: impl Iterator<Item = (String, &'a [f64])>,
+) -> Option<String> {
+    let (load, [x, y]) = states.find_map(|(load, u)| Some((load, mesh.overlap(u, OVERLAP)?)))?;
+    Some(format!(
+        "the sheet passes through itself at {load}, near ({}, {}) mm at rest: parts of the boundary have no contact with each other, and the \
+         state is impossible where they overlap",
+        number(x),
+        number(y)
+    ))
 }
 
 /// The warning about loads that supports take up at once.

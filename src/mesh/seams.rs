@@ -1,0 +1,212 @@
+//! Parts of the boundary that lie on each other: the two faces of a slit, bodies that touch.
+//!
+//! A place on them belongs to cells of both sides, whose displacements differ. The node of another mesh is found from the side of its own cells:
+//! from the centre of one of them, cell by cell without crossing the boundary, to the node.
+
+use super::cells::Mesh;
+use super::interpolation::Place;
+
+/// A node of the boundary this far inside or outside of a cell that is not its own, in natural coordinates, lies on it.
+const ON: f64 = 0.02;
+/// A place this far outside of a cell, in natural coordinates, is in it.
+const ROUNDING: f64 = 1e-9;
+
+/// The neighbours of the cells of a mesh whose boundary lies on itself, by the numbers of their edges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Neighbours(Vec<[Option<usize>; 4]>);
+
+impl Mesh {
+    /// The places of another mesh's nodes, both of the same specimen, where parts of the boundary lie on each other; `None` where none do.
+    pub(super) fn places_from_own_sides(&self, other: &Self) -> Option<Vec<Place>> {
+        let neighbours = self
+            .seams
+            .get_or_init(|| self.seamed_neighbours())
+            .as_ref()?;
+        let mut own_cell = vec![None; other.nodes.len()];
+        for cell in 0..other.cell_count() {
+            other
+                .cell(cell)
+                .iter()
+                .for_each(|node| own_cell[*node] = Some(cell));
+        }
+        let mut on_boundary = vec![false; other.nodes.len()];
+        other
+            .boundary()
+            .iter()
+            .flatten()
+            .for_each(|node| on_boundary[*node] = true);
+        let place = |node: usize| match own_cell[node].filter(|_| on_boundary[node]) {
+            Some(own) => {
+                let (start, _) = self.locate(other.centre(own));
+                self.walk(neighbours, start, other.nodes[node])
+            }
+            None => self.locate(other.nodes[node]),
+        };
+        Some((0..other.nodes.len()).map(place).collect())
+    }
+
+    /// The neighbours of all cells where a node of the boundary lies on a cell that is not its own.
+    fn seamed_neighbours(&self) -> Option<Neighbours> {
+        // The cells of a grid are joined.
+        if self.grid.is_some() {
+            return None;
+        }
+        let mut nodes = self.boundary().iter().flatten();
+        nodes.any(|node| self.lies_on_others(*node, -ON)).then(|| {
+            let mut neighbours = vec![[None; 4]; self.cell_count()];
+            for pair in self
+                .edges()
+                .windows(2)
+                .filter(|pair| pair[0].ends == pair[1].ends)
+            {
+                for [own, other] in [[pair[0], pair[1]], [pair[1], pair[0]]] {
+                    neighbours[own.cell][own.number] = Some(other.cell);
+                }
+            }
+            Neighbours(neighbours)
+        })
+    }
+
+    /// Whether a node lies in a cell that is not its own, deeper than `depth` in natural coordinates.
+    fn lies_on_others(&self, node: usize, depth: f64) -> bool {
+        let is_own = |cell: usize| self.cell(cell).contains(&node);
+        self.holds_inside(self.nodes[node], depth, is_own)
+    }
+
+    /// The place at rest of a node of the boundary that a displacement moves into a cell which is not its own, deeper than `depth` in natural
+    /// coordinates: there the mesh overlaps itself.
+    pub fn overlap(&self, displacement: &[f64], depth: f64) -> Option<[f64; 2]> {
+        let moved = |(node, [x, y]): (usize, &[f64; 2])| {
+            [x + displacement[2 * node], y + displacement[2 * node + 1]]
+        };
+        let nodes = self.nodes.iter().enumerate().map(moved);
+        let cells = (0..self.cell_count()).map(|cell| (self.shape(cell), self.cell(cell).to_vec()));
+        let deformed = Self::new(nodes.collect(), cells);
+        let mut boundary = self.boundary().iter().flatten();
+        let found = boundary.find(|node| deformed.lies_on_others(**node, depth));
+        found.map(|node| self.nodes[*node])
+    }
+
+    /// The cell of a place, reached from another cell across sides that cells share; beside the boundary, the nearest cell on the way.
+    fn walk(&self, neighbours: &Neighbours, from: usize, point: [f64; 2]) -> Place {
+        let (mut cell, mut visited) = (from, vec![from]);
+        let mut nearest: Option<(f64, Place)> = None;
+        loop {
+            if let Some(local) = self.natural_coordinates(cell, point) {
+                let outside = self.shape(cell).outside(local);
+                if outside < ROUNDING {
+                    return (cell, local);
+                }
+                if nearest.as_ref().is_none_or(|(least, _)| outside < *least) {
+                    nearest = Some((outside, (cell, local)));
+                }
+            }
+            let towards = self.edges_towards(cell, point).into_iter();
+            let next = towards.filter_map(|edge| neighbours.0[cell][edge]);
+            let Some(next) = next.into_iter().find(|next| !visited.contains(next)) else {
+                break;
+            };
+            visited.push(next);
+            cell = next;
+        }
+        nearest.map_or_else(|| self.locate(point), |(_, place)| place)
+    }
+
+    /// The edges of a cell beyond whose chords a point lies, those it is farthest from first.
+    fn edges_towards(&self, cell: usize, point: [f64; 2]) -> Vec<usize> {
+        let centre = self.centre(cell);
+        let edges = self.shape(cell).edges().into_iter().enumerate();
+        let beyond = edges.filter_map(|(number, edge)| {
+            let [a, b] = [edge[0], edge[1]].map(|node| self.nodes[self.cell(cell)[node]]);
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let side =
+                |place: [f64; 2]| along[0] * (place[1] - a[1]) - along[1] * (place[0] - a[0]);
+            // Positive beyond the chord, whichever way the cell is numbered.
+            let beyond = -side(point) * side(centre).signum() / along[0].hypot(along[1]);
+            (beyond > 0.0).then_some((beyond, number))
+        });
+        let mut beyond: Vec<(f64, usize)> = beyond.collect();
+        beyond.sort_by(|one, other| other.0.total_cmp(&one.0));
+        beyond.into_iter().map(|(_, number)| number).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::CellShape;
+
+    /// Two plates of 4 × 1 mm, the upper one on the lower, with nodes of their own from `x = slit` on; shifted and turned.
+    fn slit(cells: [usize; 2], shape: CellShape, slit: f64) -> Mesh {
+        let plate = Mesh::plate([4.0, 2.0], cells, shape);
+        let is_upper = |cell: usize| plate.centre(cell)[1] > 1.0;
+        let is_doubled = |[x, y]: [f64; 2]| (y - 1.0).abs() < 1e-12 && x > slit;
+        let mut nodes = plate.nodes.clone();
+        let twin: Vec<usize> = plate
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(node, place)| {
+                if is_doubled(*place) {
+                    nodes.push(*place);
+                    nodes.len() - 1
+                } else {
+                    node
+                }
+            })
+            .collect();
+        let cells = (0..plate.cell_count()).map(|cell| {
+            let own = plate.cell(cell).iter();
+            let own = own.map(|node| if is_upper(cell) { twin[*node] } else { *node });
+            (plate.shape(cell), own.collect())
+        });
+        let cells: Vec<_> = cells.collect();
+        let turned = |[x, y]: [f64; 2]| [700.0 + 0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y];
+        Mesh::new(nodes.into_iter().map(turned).collect(), cells)
+    }
+
+    /// The upper plate moves up, and the lower one down.
+    fn opened(mesh: &Mesh) -> Vec<f64> {
+        let mut field = vec![0.0; 2 * mesh.nodes.len()];
+        for cell in 0..mesh.cell_count() {
+            let [x, y] = mesh.centre(cell);
+            let upper = -0.6 * (x - 700.0) + 0.8 * y > 1.0;
+            for node in mesh.cell(cell) {
+                field[2 * node + 1] = if upper { 1.0 } else { -1.0 };
+            }
+        }
+        field
+    }
+
+    #[test]
+    fn fields_are_taken_from_the_own_side_of_a_seam() {
+        for shape in [
+            CellShape::Quad4,
+            CellShape::Quad9,
+            CellShape::Triangle3,
+            CellShape::Triangle6,
+        ] {
+            // All nodes of the seam are doubled: two bodies that touch.
+            let [coarse, fine] = [[4, 2], [12, 6]].map(|cells| slit(cells, shape, -1.0));
+            for (from, to) in [(&coarse, &fine), (&fine, &coarse), (&fine, &fine)] {
+                let found = from.displacement_on(&opened(from), to);
+                assert_eq!(from.interpolation_on(to).apply(&opened(from)), found);
+                for (found, expected) in found.iter().zip(opened(to)) {
+                    assert!((found - expected).abs() < 1e-12, "{shape:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn slits_are_seams_and_joined_cells_are_not() {
+        let is_seamed = |mesh: &Mesh| mesh.places_from_own_sides(mesh).is_some();
+        assert!(is_seamed(&slit([8, 4], CellShape::Quad9, 2.2)));
+        assert!(!is_seamed(&slit([8, 4], CellShape::Quad9, 9.0)));
+        assert!(!is_seamed(&Mesh::plate(
+            [3.0, 1.0],
+            [3, 2],
+            CellShape::Quad4
+        )));
+    }
+}
