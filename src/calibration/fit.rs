@@ -13,6 +13,10 @@
 //! # References
 //! G. H. Golub, V. Pereyra, Inverse Problems 19, R1 (2003), doi:10.1088/0266-5611/19/2/201
 
+mod doubtful_zero;
+
+use doubtful_zero::WithGivenZeros;
+
 use super::data::{Observation, Test, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::regression::refined_zero::Found;
@@ -231,11 +235,11 @@ fn finished(
     };
     let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &begun.bounds);
     let (misfit, values) = settled(&begun.misfit, begun.values, &begun.bounds, of_law);
-    let bounds = begun.bounds.clone();
+    let begun_bounds = begun.bounds;
     let found = Found {
         misfit,
         values,
-        bounds,
+        bounds: begun_bounds.clone(),
     };
     let Found {
         misfit,
@@ -256,6 +260,15 @@ fn finished(
     quality.warnings = warnings(&quality, &built.parameters, rival.as_ref());
     let of_noise = noise_warnings(&quality, &*fitted, assessment.tests, settings.weighting);
     quality.warnings.extend(of_noise);
+    let given = WithGivenZeros {
+        law,
+        tests,
+        weighting: settings.weighting,
+        parameters: &built.parameters,
+        bounds: &begun_bounds,
+        least: &least,
+    };
+    quality.warnings.extend(given.warning());
     Fit {
         law,
         fitted,

@@ -251,6 +251,14 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
             "give places at rest in the axes of the study, and their unit with --unit",
         )
     })?;
+    if let Some([[x, y], [length, width]]) = sites.window(lattice) {
+        let message = format!(
+            "{}: the points span {x:.4} × {y:.4} mm of the specimen's {length:.4} × {width:.4} mm, and the models are compared there alone",
+            options.field.display()
+        );
+        let hint = "if the field is that of a whole specimen, this study has another size, or the field another unit (`--unit`)";
+        warn(&[Diagnostic::warning("", message).hint(hint)]);
+    }
     Ok((imported, sites))
 }
 

@@ -85,6 +85,8 @@ pub struct Sites {
     weights: Vec<f64>,
     /// ux, uy of place after place in mm.
     pub expected: Vec<f64>,
+    /// The mesh whose nodes they are; `None` for points.
+    lattice: Option<Mesh>,
 }
 
 /// The difference of a field from the imported one.
@@ -225,6 +227,7 @@ impl ExternalField {
                     places: lattice.nodes.clone(),
                     weights: lattice.corner_areas(),
                     expected: field.mesh.displacement_on(&field.displacement, lattice),
+                    lattice: Some(lattice.clone()),
                 })
             }
             Self::AtPoints(Points {
@@ -237,6 +240,7 @@ impl ExternalField {
                     places: places.clone(),
                     weights: vec![1.0; places.len()],
                     expected: displacement.clone(),
+                    lattice: None,
                 })
             }
         }
@@ -246,10 +250,25 @@ impl ExternalField {
 impl Sites {
     /// A model's field at the sites, ux, uy of place after place.
     pub fn at(&self, field: &ModelField) -> Vec<f64> {
+        if let Some(lattice) = &self.lattice {
+            return field.mesh.displacement_on(&field.displacement, lattice);
+        }
         let places = self.places.iter();
         places
             .flat_map(|place| field.mesh.displacement_at(&field.displacement, *place))
             .collect()
+    }
+
+    /// The extents of the sites and of the specimen in mm, where the sites cover a window of it alone.
+    pub fn window(&self, specimen: &Mesh) -> Option<[[f64; 2]; 2]> {
+        const WHOLE: f64 = 0.9;
+        let extents = |places: &[[f64; 2]]| {
+            let [low, high] = bounding_box(places.iter().copied());
+            [0, 1].map(|axis| high[axis] - low[axis])
+        };
+        let [own, whole] = [&self.places, &specimen.nodes].map(|places| extents(places));
+        let is_window = (0..2).any(|axis| own[axis] < WHOLE * whole[axis]);
+        is_window.then_some([own, whole])
     }
 
     /// The difference of a model's field from the imported one.

@@ -6,6 +6,7 @@
 //! ```text
 //! d ≤ ρ and e ≤ ρ     exact: both are rounding, ρ = 10⁻⁶ %
 //! e ≤ d/10            judged: pass where d ≤ l, else FAIL
+//! d + 10 e ≤ l        pass: even ten times the reference's error would not change that
 //! else                cannot be judged: the reference is too coarse for what it has to judge
 //! ```
 //!
@@ -30,6 +31,8 @@ pub enum Judgement {
     Pass,
     /// Within the limit because there is nothing to measure, and why.
     Exact(&'static str),
+    /// Within the limit by a margin of ten times the reference's own error, which is more than a tenth of the deviation.
+    PassByMargin,
     /// Beyond the limit, or NaN.
     Fail,
     /// The reference is not good enough to judge it.
@@ -45,7 +48,7 @@ impl Judgement {
     /// `pass`, `FAIL` or `cannot be judged`.
     pub fn word(&self) -> &'static str {
         match self {
-            Self::Pass | Self::Exact(_) => "pass",
+            Self::Pass | Self::Exact(_) | Self::PassByMargin => "pass",
             Self::Fail => "FAIL",
             Self::CannotBeJudged { .. } => "cannot be judged",
         }
@@ -53,7 +56,7 @@ impl Judgement {
 
     /// Whether the requirement is met.
     pub fn passed(&self) -> bool {
-        matches!(self, Self::Pass | Self::Exact(_))
+        matches!(self, Self::Pass | Self::Exact(_) | Self::PassByMargin)
     }
 
     /// The remark beside the word: the reason and the remedy where it cannot be judged, or why there is nothing to measure.
@@ -61,6 +64,9 @@ impl Judgement {
         match self {
             Self::Pass | Self::Fail => None,
             Self::Exact(why) => Some((*why).to_owned()),
+            Self::PassByMargin => {
+                Some("even ten times the reference's own error would not change this".to_owned())
+            }
             Self::CannotBeJudged { reason, remedy } => Some(format!("{reason}; {remedy}")),
         }
     }
@@ -81,8 +87,11 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
             false => Judgement::Fail,
         };
     }
+    if deviation + own_error / OWN_SHARE <= limit {
+        return Judgement::PassByMargin;
+    }
     let told = format!(
-        "the reference is too coarse: its own error, {} %, is more than a tenth of the deviation, {} %",
+        "the reference is too coarse: its own error, {} %, is more than a tenth of the deviation, {} %, and of its distance to the limit",
         percent(own_error),
         percent(deviation)
     );
@@ -113,11 +122,11 @@ pub fn judge_correction(
             "nothing to correct: exact but for rounding before the correction",
         );
     }
-    // The rounding level is that of the deviations, not of their ratio.
-    match judge(after, own_error, f64::INFINITY, remedy) {
-        Judgement::Pass if before.is_nan() || 100.0 * after / before > limit => Judgement::Fail,
-        judged => judged,
+    if before.is_nan() {
+        return Judgement::Fail;
     }
+    // The rounding level is that of the deviations, not of their ratio.
+    judge(after, own_error, before * limit / 100.0, remedy)
 }
 
 /// Judges a deviation by whether its distance to the limit exceeds the reference's own error; both in percent of the same size.
@@ -167,6 +176,21 @@ mod tests {
     }
 
     #[test]
+    fn a_deviation_far_within_its_limit_passes_by_a_reference_that_is_far_better_than_the_limit() {
+        let judged = |d, e| judge(d, e, 0.5, "refine");
+        assert_eq!(judged(0.0097, 0.0015), Judgement::PassByMargin);
+        assert_eq!(judged(0.0, 0.049), Judgement::PassByMargin);
+        assert!(
+            judged(0.0097, 0.0015)
+                .remark()
+                .unwrap()
+                .contains("ten times")
+        );
+        assert!(is_open(&judged(0.0097, 0.05)) && is_open(&judged(0.45, 0.046)));
+        assert!(is_open(&judge(0.01, f64::NAN, f64::INFINITY, "")));
+    }
+
+    #[test]
     fn by_margin_the_own_error_must_not_decide() {
         let judged = |d, e| judge_by_margin(d, e, 16.0, "refine");
         assert_eq!(judged(8.0, 3.0), Judgement::Pass);
@@ -198,8 +222,9 @@ mod tests {
         assert_eq!(judged([20.0, 0.2], 0.01), Judgement::Pass);
         assert_eq!(judged([20.0, 2.0], 0.01), Judgement::Fail);
         assert!(judged([20.0, 1e-9], 1e-9).passed());
-        // The correction of something by something that cannot be told from the reference's own error.
-        assert!(is_open(&judged([20.0, 0.0], 0.01)));
+        // What is left cannot be told from the reference's own error, which is far below the limit of 1.
+        assert_eq!(judged([20.0, 0.0], 0.01), Judgement::PassByMargin);
+        assert!(is_open(&judged([20.0, 0.0], 0.2)));
         assert!(is_open(&judged([1e-12, 1e-12], 0.01)));
         assert_eq!(judged([f64::NAN, f64::NAN], 0.01), Judgement::Fail);
     }

@@ -10,8 +10,8 @@ use crate::calibration::least_squares::{Precision, Residuals, minimise, sum_of_s
 use crate::calibration::settings::Weighting;
 use crate::statistics::{f_tail, farthest};
 
-/// The earlier stretches that are tried, in equal steps up to the largest one of the record.
-const TRIED: usize = 12;
+/// The earlier stretches that are tried are equal steps to the largest one of the record, which is the last and not tried.
+const STEPS: usize = 12;
 /// More parameters are needed where chance gives as much as they do with a smaller probability.
 const CERTAIN: f64 = 1e-3;
 /// Residuals that are systematic with the earlier stretch too must fall at least to this share of their squares.
@@ -37,18 +37,8 @@ impl Search<'_> {
     /// What speaks against values that were found for records which begin with the first loading, or as they state.
     pub fn doubts(&self, misfit: &SofteningMisfit, values: &[f64]) -> Option<String> {
         let found = sum_of_squares(misfit, values);
-        self.earlier_stretch(misfit.of_law, found)
-            .or_else(|| self.nothing_softens(misfit, values, found))
-    }
-
-    /// The ratio of sums of squares that one more parameter, or several, bring by chance with a probability.
-    fn chance(&self, misfit: &SofteningMisfit, values: &[f64], more: usize, ratio: f64) -> f64 {
-        let judged = judged(misfit, self.tests, values, self.bounds, self.weighting);
-        let freedom = judged.effective(misfit.count() as f64) - values.len() as f64;
-        f_tail(
-            [more as f64, freedom],
-            (ratio - 1.0) * freedom / more as f64,
-        )
+        self.nothing_softens(misfit, values, found)
+            .or_else(|| self.earlier_stretch(misfit.of_law, found))
     }
 
     /// The warning where the law alone follows the data as well.
@@ -67,8 +57,9 @@ impl Search<'_> {
         };
         let alone = sum_of_squares(&law, alone.as_deref().unwrap_or(start));
         let more = values.len() - misfit.of_law;
-        let chance = self.chance(misfit, values, more, alone / found);
-        (chance > CERTAIN).then(|| {
+        // Softening that is not there leaves residuals as before, whose number of independent points is not known.
+        let freedom = misfit.count() as f64 - values.len() as f64;
+        (chance(more, freedom, alone / found) > CERTAIN).then(|| {
             "these data show no softening: the law alone follows them as well. A specimen that was stretched further before its record does not \
              soften again below that stretch; its law is then that of the softened specimen. Give the record of the first loading too, or state the \
              law of the first loading (`--card`) and the earlier stretch (`--preconditioned`)"
@@ -84,8 +75,8 @@ impl Search<'_> {
             let rows = test.observations.iter();
             rows.map(|one| test.drawn_strain(one))
         }));
-        let tried = (1..=TRIED).filter_map(|step| {
-            let strain = far * step as f64 / TRIED as f64;
+        let tried = (1..STEPS).filter_map(|step| {
+            let strain = far * step as f64 / STEPS as f64;
             let mut tests = self.tests.to_vec();
             for test in tests.iter_mut().filter(|test| is_open(test)) {
                 test.preconditioned = Some(strain);
@@ -94,8 +85,9 @@ impl Search<'_> {
             let (sum, values) = rough_minimum(&misfit, self.start, self.bounds, self.largest)?;
             let judged = judged(&misfit, &tests, &values, self.bounds, self.weighting);
             let explains = judged.is_noise() || sum < SYSTEMATIC * found;
-            let chance = self.chance(&misfit, &values, 1, found / sum);
-            let is_better = explains && chance < CERTAIN / TRIED as f64;
+            let freedom = judged.effective(misfit.count() as f64) - values.len() as f64;
+            let chance = chance(1, freedom, found / sum);
+            let is_better = explains && chance < CERTAIN / STEPS as f64;
             is_better.then_some((sum, strain))
         });
         let (sum, strain) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -106,4 +98,12 @@ impl Search<'_> {
             100.0 * (sum / found).sqrt()
         ))
     }
+}
+
+/// The probability that so many more parameters reduce a sum of squares by a ratio if none of them is needed.
+fn chance(more: usize, freedom: f64, ratio: f64) -> f64 {
+    f_tail(
+        [more as f64, freedom],
+        (ratio - 1.0) * freedom / more as f64,
+    )
 }

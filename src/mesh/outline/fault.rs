@@ -6,7 +6,7 @@ use crate::mesh::geometry::OutOfSize;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum OutlineFault {
     /// Too few points.
-    #[error("{0} points have no outline, which takes three that are not on a line")]
+    #[error("{0} points have no outline, which takes six that are not on a line")]
     TooFew(usize),
     /// All points lie on one line.
     #[error("the points lie on one line")]

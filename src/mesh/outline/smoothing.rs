@@ -31,6 +31,10 @@ const STRIP: f64 = 5.0;
 const END: f64 = 1.0;
 const SQUARE: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
+/// And so do edges of any length by that turn if their points are as near as this, in spacings, to their chords, and one has three points or
+/// more: sides of small grids. Steps along a curve or an oblique edge are farther off.
+const EXACT: f64 = 0.1;
+
 /// Curves have points so many spacings apart, as far as they are needed.
 const STEP: f64 = 0.4;
 
@@ -101,7 +105,13 @@ fn meet_at_a_corner(before: &Part, next: &Part, spacing: f64) -> bool {
     };
     let [a, b] = [before, next].map(|edge| [edge[0], edge[edge.len() - 1]]);
     let turn = turn_between(a, b).abs();
-    turn > CORNER && both(SIDE, SIDE) || turn > SQUARE && both(STRIP, END)
+    let is_exact = |edge: &Part| {
+        let chord = [edge[0], edge[edge.len() - 1]];
+        let mut points = edge.iter();
+        points.all(|point| distance(chord, *point) < EXACT * spacing)
+    };
+    let are_exact = before.len().max(next.len()) > 2 && is_exact(before) && is_exact(next);
+    turn > CORNER && both(SIDE, SIDE) || turn > SQUARE && (both(STRIP, END) || are_exact)
 }
 
 /// The points of a closed line from one to another one.

@@ -216,3 +216,46 @@ fn an_outline_moves_out_by_a_gap_and_its_holes_narrow() {
     // A hole narrower than twice the gap is closed.
     assert!(outline.widened(1.0).unwrap().holes.is_empty());
 }
+
+/// Small grids are rectangles too, whatever their spacings, jitter and turn; the points of a small disc are none.
+#[test]
+fn small_grids_have_four_corners() {
+    for (columns, rows) in [
+        (3, 3),
+        (4, 3),
+        (5, 3),
+        (3, 5),
+        (4, 4),
+        (5, 5),
+        (6, 4),
+        (9, 3),
+    ] {
+        for (ratio, turn, jitter) in [
+            (1.0, 0.0, 0.0),
+            (1.25, 0.0, 0.0),
+            (0.8, 0.5, 0.0),
+            (1.4, 1.2, 0.02),
+        ] {
+            let (sine, cosine) = f64::sin_cos(turn);
+            let places = (0..columns).flat_map(|i| (0..rows).map(move |j| [i, j].map(f64::from)));
+            let points: Vec<[f64; 2]> = places
+                .map(|[x, y]| {
+                    let moved = jitter * (12.9898 * x + 78.233 * y).sin();
+                    let [x, y] = [20.0 * (ratio * x + moved), 20.0 * (y - moved)];
+                    [300.0 + cosine * x - sine * y, sine * x + cosine * y]
+                })
+                .collect();
+            let found = Outline::of_points(&points).unwrap().outline;
+            let area = 400.0 * ratio * f64::from((columns - 1) * (rows - 1));
+            let named = format!(
+                "{columns} × {rows}, {ratio}, {turn}, {jitter}: {:?}",
+                found.outer
+            );
+            assert_eq!(found.outer.len(), 4, "{named}");
+            assert!((found.area() / area - 1.0).abs() < 0.05, "{named}");
+        }
+    }
+    let disc = grid(|[x, y]| (x - 75.0).hypot(y - 25.0) < 13.0);
+    let found = Outline::of_points(&disc).unwrap().outline;
+    assert!(found.outer.len() > 8, "{:?}", found.outer);
+}

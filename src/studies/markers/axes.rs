@@ -57,7 +57,8 @@ pub fn mistaken(frame: &Frame, law: &dyn HyperelasticLaw) -> Option<(String, &'s
             .find(|(along, other, _)| is_pull(*along, -other));
         return mirrored.map(|(along, other, axis)| {
             let message = format!(
-                "stretched by {}, the markers widen by {} in the transverse direction: displacements along {axis} seem to be mirrored",
+                "stretched by {}, the markers widen by {} in the transverse direction: displacements along {axis} seem to be mirrored, unless the specimen is \
+                 pulled along both axes",
                 percent(along),
                 percent(other)
             );

@@ -294,7 +294,11 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
     }
     if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
         let hint = "at rest there is nothing to solve; leave it out";
-        section.fault(KEY, "must not contain zero", hint);
+        section.fault(
+            KEY,
+            &format!("must not contain zero, or a stretch below {SMALLEST}"),
+            hint,
+        );
         return stretches;
     }
     let are_like_lambda = stretches

@@ -50,7 +50,7 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
         Block::Paragraph(format!(
             "The departure before the correction is the model error of the springs; the correction removes it. What remains is the discretisation \
              error of the corrector's finite differences on {}{}, and the finite elements' own discretisation error, estimated from three meshes. A \
-             deviation is judged only where the finite elements' own error is at most a tenth of it.",
+             deviation is judged only where the finite elements' own error is at most a tenth of it, or ten times this error would not change the verdict.",
             match study.corrector.is_graded() {
                 true => "the nodes of its graded cells",
                 false => "the lattice's nodes",

@@ -122,7 +122,7 @@ impl Results {
 fn severity(judgement: &Judgement) -> usize {
     match judgement {
         Judgement::Exact(_) => 0,
-        Judgement::Pass => 1,
+        Judgement::Pass | Judgement::PassByMargin => 1,
         Judgement::CannotBeJudged { .. } => 2,
         Judgement::Fail => 3,
     }
