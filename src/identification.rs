@@ -19,8 +19,6 @@
 //! P. H. C. Eilers, B. D. Marx, Stat. Sci. 11, 89 (1996), doi:10.1214/ss/1038425655;
 //! P. Craven, G. Wahba, Numer. Math. 31, 377 (1979), doi:10.1007/BF01404567
 
-use nalgebra::DVector;
-
 use crate::error::Error;
 use crate::statistics::{BSpline, Ends, extremes};
 use band::reach;
@@ -92,15 +90,45 @@ pub fn identify(
     told("the motion");
     let (joint, start) =
         begin(recording, settings, &signals).ok_or_else(|| undetermined("the motion"))?;
-    let mut fit = Fit {
-        joint: &joint,
-        state: start,
-        exponents: [0.0; 2],
-    };
-    let found = fit.improve(told)?;
+    let (fit, found) = nearest_fit(&joint, start, told)?;
     told("intervals");
     fit.conclude(settings, &found, &signals)
         .ok_or_else(|| undetermined("K(·) and D(·)"))
+}
+
+/// A misfit beyond this, where 1 is noise, may be a wrong minimum.
+const POOR: f64 = 2.0;
+
+/// The fit from the recorded motion. Where it does not converge, or ends far from the data, also from the motion that belongs to polynomials:
+/// a noisy motion has accelerations that splines with a weak penalty follow.
+fn nearest_fit<'a>(
+    joint: &'a Joint,
+    start: State,
+    told: &dyn Fn(&str),
+) -> Result<(Fit<'a>, PenalisedFit), Error> {
+    let converged = |start: State| {
+        let mut fit = Fit::new(joint, start);
+        fit.improve(told).map(|found| (fit, found))
+    };
+    let squares = |(fit, _): &(Fit, PenalisedFit)| joint.sum_of_squares(&fit.state);
+    let direct = converged(start.clone());
+    let observations = 2.0 * joint.recording.times.len() as f64;
+    if matches!(&direct, Ok(found) if squares(found) < POOR * observations) {
+        return direct;
+    }
+    let simple = joint.with_polynomials();
+    let mut fit = Fit::new(&simple, simple.state(start.motion));
+    // Even where it does not converge, its motion is smoother.
+    let _ = fit.improve(told);
+    match (direct, converged(joint.state(fit.state.motion))) {
+        (Ok(one), Ok(other)) => Ok(if squares(&other) < squares(&one) {
+            other
+        } else {
+            one
+        }),
+        (Err(_), Ok(found)) | (Ok(found), Err(_)) => Ok(found),
+        (Err(fault), Err(_)) => Err(fault),
+    }
 }
 
 fn undetermined(what: &str) -> Error {
@@ -150,22 +178,15 @@ fn begin<'a>(
         extension.noise.max(floor(&recording.extension)),
         force.noise.max(floor(&recording.force)),
     ];
-    let coefficients = functions.iter().map(Basis::count).sum();
-    let state = State {
-        motion,
-        functions: DVector::zeros(coefficients),
+    let joint = Joint {
+        recording,
+        orders,
+        noise,
+        functions,
+        argument: settings.argument,
     };
-    let argument = settings.argument;
-    Some((
-        Joint {
-            recording,
-            orders,
-            noise,
-            functions,
-            argument,
-        },
-        state,
-    ))
+    let state = joint.state(motion);
+    Some((joint, state))
 }
 
 /// The state of a fit during the iteration.
@@ -175,7 +196,15 @@ struct Fit<'a> {
     exponents: Exponents,
 }
 
-impl Fit<'_> {
+impl<'a> Fit<'a> {
+    fn new(joint: &'a Joint<'a>, state: State) -> Self {
+        Self {
+            joint,
+            state,
+            exponents: [0.0; 2],
+        }
+    }
+
     fn observations(&self) -> f64 {
         2.0 * self.joint.recording.times.len() as f64
     }

@@ -12,6 +12,7 @@ mod grid;
 mod import;
 mod interpolation;
 mod locate;
+mod neighbours;
 mod nodal_field;
 mod outline;
 mod plate;

@@ -84,7 +84,7 @@ fn the_longitudinal_frequency_of_a_slender_plate_is_none_of_bending() {
 
 #[test]
 fn a_viscous_plate_in_sine_motion_dissipates_under_gravity_and_a_force() {
-    let rest = "[material]\ncard = \"pva-10\"\ndensity = \"1 g/cm^3\"\n\
+    let rest = "[tolerances]\nforce = \"100 %\"\n[material]\ncard = \"pva-10\"\ndensity = \"1 g/cm^3\"\n\
         [material.viscosity]\nshear = \"100 Pa·s\"\nrelaxation = [{ share = 0.2, time = \"5 ms\" }]\n\
         [grip]\nmotion = \"sine\"\namplitude = \"2 %\"\nfrequency = \"50 Hz\"\n\
         [gravity]\nx = \"0 m/s^2\"\ny = \"-9.81 m/s^2\"\n\
@@ -286,6 +286,7 @@ fn viscous_work_of_a_slow_ramp_is_that_of_the_closed_form() {
 fn a_very_viscous_plate_whose_grip_begins_suddenly_does_not_explode() {
     let rest = "[start]\nstretch = \"0 %\"\n[material]\ncard = \"pva-10\"\ndensity = \"1020 kg/m^3\"\n[material.viscosity]\nshear = \"1000 Pa·s\"\n\
         [grip]\nmotion = \"ramp\"\nbegin = \"0 s\"\nend = \"1 s\"\nto = \"20 %\"\n\
+        [tolerances]\nforce = \"100 %\"\n\
         [time]\nduration = \"1 s\"\ninterval = \"0.1 s\"\nintegrator = \"generalised-alpha\"\n";
     let force = |settings: &str| {
         let folder = folder_with(&motion(&format!("{rest}{settings}")));

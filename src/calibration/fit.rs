@@ -200,14 +200,8 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         values: minimum.values,
         bounds,
     };
-    Ok(finished(
-        law,
-        tests,
-        settings,
-        begun,
-        &parameters,
-        minimum.rival,
-    ))
+    let rival = minimum.rival;
+    Ok(finished(law, tests, settings, begun, &parameters, rival))
 }
 
 /// The fit at the best values, with its zeros and its warnings.
@@ -221,54 +215,29 @@ fn finished(
 ) -> Fit {
     let stiffness = begun.misfit.stiffness();
     let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();
-    let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
-        let own = Assessment {
-            misfit,
-            weighting: settings.weighting,
-            tests,
-            law: &*misfit.build(values).0,
-            values,
-            bounds,
-            least: &least,
-        };
-        own.is_noise()
-    };
-    let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &begun.bounds);
-    let (misfit, values) = settled(&begun.misfit, begun.values, &begun.bounds, of_law);
-    let begun_bounds = begun.bounds;
-    let found = Found {
-        misfit,
-        values,
-        bounds: begun_bounds.clone(),
-    };
-    let Found {
-        misfit,
-        values,
-        bounds,
-    } = found.with_zeros(&is_noise);
-    let (fitted, built) = misfit.build(&values);
-    let assessment = Assessment {
-        misfit: &misfit,
-        weighting: settings.weighting,
-        tests: &misfit.moved_tests(&values),
-        law: &*fitted,
-        values: &values,
-        bounds: &bounds,
-        least: &least,
-    };
-    let mut quality = assessment.quality();
-    quality.warnings = warnings(&quality, &built.parameters, rival.as_ref());
-    let of_noise = noise_warnings(&quality, &*fitted, assessment.tests, settings.weighting);
-    quality.warnings.extend(of_noise);
     let given = WithGivenZeros {
         law,
         tests,
         weighting: settings.weighting,
-        parameters: &built.parameters,
-        bounds: &begun_bounds,
+        bounds: &begun.bounds,
         least: &least,
     };
-    quality.warnings.extend(given.warning());
+    let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
+        given.assess(misfit, tests, values, bounds, |own| own.is_noise())
+    };
+    let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &begun.bounds);
+    let (misfit, values) = settled(&begun.misfit, begun.values, &begun.bounds, of_law);
+    let found = Found {
+        misfit,
+        values,
+        bounds: begun.bounds.clone(),
+    };
+    let found = found.with_zeros(&is_noise);
+    let (fitted, built) = found.misfit.build(&found.values);
+    let moved = found.misfit.moved_tests(&found.values);
+    let quality = given.assess(&found.misfit, &moved, &found.values, &found.bounds, |own| {
+        warned(own, &given, &built.parameters, rival.as_ref())
+    });
     Fit {
         law,
         fitted,
@@ -281,6 +250,22 @@ fn finished(
         relaxed: None,
         softened: None,
     }
+}
+
+/// The figures of a fit with their warnings.
+fn warned(
+    assessment: &Assessment,
+    given: &WithGivenZeros,
+    parameters: &[Parameter],
+    rival: Option<&Rival>,
+) -> Quality {
+    let mut quality = assessment.quality();
+    quality.warnings = warnings(&quality, parameters, rival);
+    let (tests, weighting) = (assessment.tests, assessment.weighting);
+    let of_noise = noise_warnings(&quality, assessment.law, tests, weighting);
+    quality.warnings.extend(of_noise);
+    quality.warnings.extend(given.warning(parameters));
+    quality
 }
 
 /// The least significant size of a parameter: a thousandth of a usual one.

@@ -5,17 +5,13 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::data::{Observation, TestData};
 use super::fit::{Fit, check_measures, fit};
-use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
+use super::least_squares::Residuals;
 use super::regression::settled;
-use super::settings::{FitSettings, Weighting, limits};
+use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};
-use super::trust::{
-    AT_BOUND, Deviations, Judged, Quality, Values, aicc, at_bound, rounded, taken_zeros, warnings,
-};
+use super::trust::{Deviations, Quality, aicc, taken_zeros, warnings};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
@@ -24,6 +20,7 @@ use crate::statistics::farthest;
 
 mod earlier;
 mod misfit;
+mod search;
 #[cfg(test)]
 mod tests;
 
@@ -31,6 +28,7 @@ pub use misfit::Base;
 
 use earlier::Search;
 use misfit::{SOFTENING, SofteningMisfit, softening_parameters};
+use search::{judged, minimum};
 
 /// Fits a law that softens to some tests together.
 ///
@@ -181,64 +179,6 @@ fn rising(data: &TestData) -> TestData {
         found_zero: None,
         ..data.clone()
     }
-}
-
-/// The best values from several softenings.
-fn minimum(
-    misfit: &SofteningMisfit,
-    start: &[f64],
-    bounds: &[[f64; 2]],
-    largest: f64,
-) -> Option<Vec<f64>> {
-    let (_, best) = rough_minimum(misfit, start, bounds, largest)?;
-    Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
-}
-
-/// The sum of squares and the values of the best of several rough searches.
-fn rough_minimum(
-    misfit: &SofteningMisfit,
-    start: &[f64],
-    bounds: &[[f64; 2]],
-    largest: f64,
-) -> Option<(f64, Vec<f64>)> {
-    let of_law = start.len() - SOFTENING.len();
-    let mut starts = Vec::new();
-    for r in [1.3, 2.0, 4.0] {
-        for width in [0.05, 0.3] {
-            for beta in [0.01, 0.3] {
-                let own = [r, width * largest, beta];
-                let mut values: Vec<f64> = start[..of_law].iter().copied().chain(own).collect();
-                for (value, [low, high]) in values.iter_mut().zip(bounds) {
-                    *value = value.clamp(*low, *high);
-                }
-                starts.push(values);
-            }
-        }
-    }
-    let improved = |start: &Vec<f64>| {
-        let found = minimise(misfit, start, bounds, Precision::Rough)?;
-        Some((sum_of_squares(misfit, &found), found))
-    };
-    let rough: Vec<(f64, Vec<f64>)> = starts.par_iter().filter_map(improved).collect();
-    rough.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
-}
-
-/// The residuals at some values.
-fn judged(
-    misfit: &SofteningMisfit,
-    tests: &[TestData],
-    values: &[f64],
-    bounds: &[[f64; 2]],
-    weighting: Weighting,
-) -> Judged {
-    let at_bound = at_bound(values, bounds, AT_BOUND);
-    let rounded = rounded(tests, &*misfit.law(values), weighting);
-    Judged::of(
-        misfit,
-        misfit.curves(),
-        Values::held(values, at_bound),
-        rounded,
-    )
 }
 
 /// The data by which the values found are judged.

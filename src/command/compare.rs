@@ -6,6 +6,10 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::{Value, json};
 
+mod doubts;
+
+use doubts::doubts;
+
 use super::export::not_for_other_codes;
 use super::interrupt;
 use super::large::Large;
@@ -112,57 +116,6 @@ pub fn run(options: Options) -> Outcome {
     Ok(u8::from(!doubts.is_empty()))
 }
 
-/// What makes the figures doubtful: displacements that all models find larger or smaller by one factor, be it the ratio of two
-/// units or of two load factors.
-fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
-    let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
-    let ratio = ratios.filter(|ratios| ratios.iter().all(|ratio| *ratio == ratios[0]));
-    let doubt = ratio.map(|ratios| {
-        let relation = match differences[0].factor.abs() > 1.0 {
-            true => "small",
-            false => "large",
-        };
-        let message = format!(
-            "the imported displacements are about {} times too {relation}, as if in another unit of length",
-            ratios[0]
-        );
-        Diagnostic::warning("", message).hint("state the file's unit with --unit")
-    });
-    let scaled = differences.iter().all(Difference::is_scaled);
-    let doubt = doubt.or_else(|| {
-        let share = 1.0 / differences[0].factor;
-        scaled.then(|| {
-            let message = format!(
-                "the imported displacements are about {share:.3} times those of the models at the load factor {at}, as if at another load factor"
-            );
-            Diagnostic::warning("", message).hint("state the file's load factor with --factor")
-        })
-    });
-    // The finite elements stand first.
-    let shifted = differences
-        .first()
-        .filter(|own| doubt.is_none() && own.is_shifted());
-    doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
-}
-
-/// Finite elements that a motion of the whole body brings near: it says nothing of the material.
-fn shift_doubt(finite_elements: &Difference) -> Diagnostic {
-    let Difference {
-        shift,
-        percent,
-        shifted_percent,
-        ..
-    } = finite_elements;
-    let [x, y] = shift.displacement;
-    let message = format!(
-        "most of the finite elements' difference is a rigid-body motion by ({x:.4}, {y:.4}) mm and {:.4} degrees: without it the difference is \
-         {shifted_percent:.4} instead of {percent:.4} %",
-        shift.angle.to_degrees()
-    );
-    Diagnostic::warning("", message)
-        .hint("remove it from the file, or correct the axes or the supports of the study")
-}
-
 /// Computes what is compared.
 fn compute(options: &Options) -> Result<Comparison, Error> {
     let path = &options.study;
@@ -251,13 +204,9 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
             "give places at rest in the axes of the study, and their unit with --unit",
         )
     })?;
-    if let Some([[x, y], [length, width]]) = sites.window(lattice) {
-        let message = format!(
-            "{}: the points span {x:.4} × {y:.4} mm of the specimen's {length:.4} × {width:.4} mm, and the models are compared there alone",
-            options.field.display()
-        );
-        let hint = "if the field is that of a whole specimen, this study has another size, or the field another unit (`--unit`)";
-        warn(&[Diagnostic::warning("", message).hint(hint)]);
+    if let Some(told) = sites.window(lattice) {
+        let hint = "if the field is that of a whole specimen, this study has another size";
+        warn(&[Diagnostic::warning("", told).hint(hint)]);
     }
     Ok((imported, sites))
 }

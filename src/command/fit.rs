@@ -119,12 +119,8 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         // What relaxes or softens is the whole record.
         reading.entry("cycle".into()).or_insert("all".into());
     }
-    if reading.contains_key(PRECONDITIONED) && !arguments.softening {
-        let message = "an earlier stretch only matters for the softening of a specimen";
-        return Err(Error::input(
-            message,
-            "add --softening, or leave out --preconditioned",
-        ));
+    if !arguments.softening {
+        check_history(&reading)?;
     }
     let files = arguments.data.iter();
     let tests = together(files.map(|path| TestData::read(path, &reading)))?;
@@ -141,14 +137,9 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     let base = arguments.card.as_deref().map(load).transpose()?;
     let fit = found(arguments.law, base, &tests, &settings, wanted)?;
     let tests = fit.fitted_tests(&tests);
-    let first = arguments.data[0].file_stem().unwrap_or_default();
-    let more = match (&fit.relaxed, &fit.softened) {
-        (Some(_), _) => "-relaxation",
-        (_, Some(_)) => "-softening",
-        (None, None) => "",
-    };
-    let usual = || format!("{}-{}{more}", first.to_string_lossy(), fit.law.name);
-    let name = arguments.name.unwrap_or_else(usual);
+    let name = arguments
+        .name
+        .unwrap_or_else(|| usual_name(&arguments.data[0], &fit));
     let place = arguments.output.join(&name);
     let Some(stem) = Path::new(&name).file_name().and(place.file_name()) else {
         return Err(Error::input(
@@ -175,6 +166,28 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         fit_message::fit(&fit, &tests)
     ))?;
     Ok(0)
+}
+
+/// The name of a fit's files where none is stated.
+fn usual_name(data: &Path, fit: &Fit) -> String {
+    let more = match (&fit.relaxed, &fit.softened) {
+        (Some(_), _) => "-relaxation",
+        (_, Some(_)) => "-softening",
+        (None, None) => "",
+    };
+    let first = data.file_stem().unwrap_or_default().to_string_lossy();
+    format!("{first}-{}{more}", fit.law.name)
+}
+
+/// Checks that nothing is stated of an earlier loading, which only a fit of softening takes.
+fn check_history(reading: &Statements) -> Result<(), Error> {
+    match reading.contains_key(PRECONDITIONED) {
+        true => Err(Error::input(
+            "an earlier stretch only matters for the softening of a specimen",
+            "add --softening, or leave out --preconditioned",
+        )),
+        false => Ok(()),
+    }
 }
 
 /// The fit of a law, on top of a card, or of the best law where neither is named.

@@ -259,8 +259,8 @@ impl Sites {
             .collect()
     }
 
-    /// The extents of the sites and of the specimen in mm, where the sites cover a window of it alone.
-    pub fn window(&self, specimen: &Mesh) -> Option<[[f64; 2]; 2]> {
+    /// What is to be said of sites that cover a window of the specimen alone.
+    pub fn window(&self, specimen: &Mesh) -> Option<String> {
         const WHOLE: f64 = 0.9;
         let extents = |places: &[[f64; 2]]| {
             let [low, high] = bounding_box(places.iter().copied());
@@ -268,7 +268,12 @@ impl Sites {
         };
         let [own, whole] = [&self.places, &specimen.nodes].map(|places| extents(places));
         let is_window = (0..2).any(|axis| own[axis] < WHOLE * whole[axis]);
-        is_window.then_some([own, whole])
+        let ([x, y], [length, width]) = (own, whole);
+        is_window.then(|| {
+            format!(
+                "the points span {x:.4} × {y:.4} mm of the specimen's {length:.4} × {width:.4} mm, and the models are compared there alone"
+            )
+        })
     }
 
     /// The difference of a model's field from the imported one.

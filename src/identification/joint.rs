@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::basis::Basis;
+use super::basis::{Basis, Form, Shape};
 use super::penalty::NormalEquations;
 use super::recording::Recording;
 use super::smoothing::{BandMatrix, SplineValues};
@@ -77,6 +77,33 @@ impl JointEquations {
 }
 
 impl Joint<'_> {
+    /// A motion, without forces yet.
+    pub fn state(&self, motion: Vec<f64>) -> State {
+        let coefficients = self.functions.iter().map(Basis::count).sum();
+        State {
+            motion,
+            functions: DVector::zeros(coefficients),
+        }
+    }
+
+    /// The same with polynomials in place of splines.
+    pub fn with_polynomials(&self) -> Self {
+        const DEGREE: usize = 3;
+        let functions = self.functions.map(|basis| match basis.form {
+            Form::Spline(_) => Basis {
+                form: Form::Polynomial(DEGREE),
+                shape: Shape::Free,
+                ..basis
+            },
+            Form::Constant | Form::Polynomial(_) => basis,
+        });
+        Self {
+            orders: self.orders.clone(),
+            functions,
+            ..*self
+        }
+    }
+
     /// The forces at an instant: m ẍ + D ẋ + K x and its derivatives.
     pub fn instant(&self, instant: usize, state: &State) -> Instant {
         let [x, v, a] = [0, 1, 2].map(|order| self.orders[order].value(instant, &state.motion));

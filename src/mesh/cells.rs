@@ -7,7 +7,7 @@ use super::buckets::Buckets;
 use super::cell_shape::CellShape;
 use super::geometry::bounding_box;
 use super::grid::Grid;
-use super::seams::Neighbours;
+use super::neighbours::Neighbours;
 
 /// A named part of the boundary or of the sheet, or a set of nodes.
 #[derive(Clone, Debug, Default, PartialEq)]

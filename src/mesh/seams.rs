@@ -5,15 +5,12 @@
 
 use super::cells::Mesh;
 use super::interpolation::Place;
+use super::neighbours::Neighbours;
 
 /// A node of the boundary this far inside or outside of a cell that is not its own, in natural coordinates, lies on it.
 const ON: f64 = 0.02;
 /// A place this far outside of a cell, in natural coordinates, is in it.
 const ROUNDING: f64 = 1e-9;
-
-/// The neighbours of the cells of a mesh whose boundary lies on itself, by the numbers of their edges.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Neighbours(Vec<[Option<usize>; 4]>);
 
 impl Mesh {
     /// The places of another mesh's nodes, both of the same specimen, where parts of the boundary lie on each other; `None` where none do.
@@ -53,17 +50,10 @@ impl Mesh {
         }
         let mut nodes = self.boundary().iter().flatten();
         nodes.any(|node| self.lies_on_others(*node, -ON)).then(|| {
-            let mut neighbours = vec![[None; 4]; self.cell_count()];
-            for pair in self
-                .edges()
-                .windows(2)
-                .filter(|pair| pair[0].ends == pair[1].ends)
-            {
-                for [own, other] in [[pair[0], pair[1]], [pair[1], pair[0]]] {
-                    neighbours[own.cell][own.number] = Some(other.cell);
-                }
-            }
-            Neighbours(neighbours)
+            let edges = self.edges();
+            let pairs = edges.windows(2).filter(|pair| pair[0].ends == pair[1].ends);
+            let pairs = pairs.map(|pair| [0, 1].map(|i| (pair[i].cell, pair[i].number)));
+            Neighbours::new(self.cell_count(), pairs)
         })
     }
 
@@ -102,7 +92,7 @@ impl Mesh {
                 }
             }
             let towards = self.edges_towards(cell, point).into_iter();
-            let next = towards.filter_map(|edge| neighbours.0[cell][edge]);
+            let next = towards.filter_map(|edge| neighbours.across(cell, edge));
             let Some(next) = next.into_iter().find(|next| !visited.contains(next)) else {
                 break;
             };

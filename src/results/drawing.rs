@@ -65,11 +65,22 @@ impl From<FieldFigure> for Drawing {
     }
 }
 
-/// A mesh with its named groups; curved edges are drawn through their middles.
+/// A mesh with its named groups, those of the same nodes as one; curved edges are drawn through their middles.
 pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
     let cells = 0..mesh.cell_count();
-    let named = mesh.groups().iter().map(|(name, group)| NamedLines {
-        name: name.clone(),
+    // Groups of the same part share a line: one would hide the others.
+    let mut parts: Vec<(&Group, Vec<&str>)> = Vec::new();
+    for (name, group) in mesh.groups() {
+        let is_same = |(own, _): &&mut (&Group, Vec<&str>)| {
+            own.nodes == group.nodes && own.edges.is_empty() == group.edges.is_empty()
+        };
+        match parts.iter_mut().find(is_same) {
+            Some((_, names)) => names.push(name),
+            None => parts.push((group, vec![name])),
+        }
+    }
+    let named = parts.into_iter().map(|(group, names)| NamedLines {
+        name: names.join(" = "),
         lines: match group.edges.is_empty() {
             false => edge_lines(&group.edges, &mesh.nodes),
             true => points(group, mesh),

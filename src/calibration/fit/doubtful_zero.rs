@@ -3,9 +3,9 @@
 //! A short slack, a preload taken for rest, or an offset of the load cell leaves residuals that are often like noise, and parameters that
 //! are wrong by many of their standard errors. So the zero of each test is tried as one more value.
 
-use super::refined_zero::Found;
 use crate::calibration::data::{FoundZero, TestData};
 use crate::calibration::regression::Misfit;
+use crate::calibration::regression::refined_zero::Found;
 use crate::calibration::settings::Weighting;
 use crate::calibration::trust::Assessment;
 use crate::material::parameters::Parameter;
@@ -23,8 +23,6 @@ pub struct WithGivenZeros<'a> {
     pub tests: &'a [TestData],
     /// The weights of the residuals.
     pub weighting: Weighting,
-    /// The parameters found.
-    pub parameters: &'a [Parameter],
     /// The bounds of the parameters.
     pub bounds: &'a [[f64; 2]],
     /// The least size of each parameter that counts.
@@ -48,26 +46,31 @@ impl MovedTest {
 }
 
 impl WithGivenZeros<'_> {
-    /// The warning about the most doubtful zero, if one is.
-    pub fn warning(&self) -> Option<String> {
+    /// The warning about the most doubtful zero beside the parameters found, if one is.
+    pub fn warning(&self, parameters: &[Parameter]) -> Option<String> {
         let kinds = [
             FoundZero::Strain { length: 1.0 },
             FoundZero::Stress { area: 1.0 },
         ];
         let given = (0..self.tests.len()).filter(|test| self.tests[*test].found_zero.is_none());
-        let moved = given.flat_map(|test| kinds.map(|kind| self.with_zero(test, kind)));
+        let moved = given.flat_map(|test| kinds.map(|kind| self.with_zero(parameters, test, kind)));
         let doubtful = moved.flatten().filter(|moved| moved.halves() > DOUBTFUL);
         let most = doubtful.max_by(|a, b| a.halves().total_cmp(&b.halves()))?;
-        Some(self.describe(&most))
+        Some(self.describe(&parameters[0], &most))
     }
 
     /// The fit with the zero of a test as one more value; `None` where what is left is no noise.
-    fn with_zero(&self, test: usize, kind: FoundZero) -> Option<MovedTest> {
+    fn with_zero(
+        &self,
+        parameters: &[Parameter],
+        test: usize,
+        kind: FoundZero,
+    ) -> Option<MovedTest> {
         let mut tests = self.tests.to_vec();
         tests[test].found_zero = Some(kind);
         let found = Found {
             misfit: Misfit::new(self.law, &tests, self.weighting),
-            values: self.parameters.iter().map(|one| one.value).collect(),
+            values: parameters.iter().map(|one| one.value).collect(),
             bounds: self.bounds.to_vec(),
         };
         let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
@@ -86,7 +89,8 @@ impl WithGivenZeros<'_> {
         })
     }
 
-    fn assess<T>(
+    /// An answer of the assessment of values.
+    pub fn assess<T>(
         &self,
         misfit: &Misfit,
         tests: &[TestData],
@@ -105,7 +109,7 @@ impl WithGivenZeros<'_> {
         })
     }
 
-    fn describe(&self, moved: &MovedTest) -> String {
+    fn describe(&self, parameter: &Parameter, moved: &MovedTest) -> String {
         let error = moved.by.standard_error;
         let (what, unit, causes) = match moved.kind {
             FoundZero::Strain { .. } => (
@@ -115,7 +119,6 @@ impl WithGivenZeros<'_> {
             ),
             FoundZero::Stress { .. } => ("stresses", " MPa", "an offset of the load cell"),
         };
-        let parameter = &self.parameters[0];
         format!(
             "{}: the law follows the data better if all {what} are {} by {:.3e}{unit} (± {:.1e}, {:.0} standard errors): {causes}, or another law. {} \
              = {:.4e} would be {:.4e} then, and no interval holds this: check the zero, and state it (`--zero`) or correct the data",

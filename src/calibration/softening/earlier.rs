@@ -4,7 +4,7 @@
 //! the first loading; if it stays below, nothing softens any more, and the law found is that of the softened specimen.
 
 use super::misfit::{Base, SofteningMisfit, WithoutSoftening};
-use super::{judged, rough_minimum};
+use super::search::{judged, rough_minimum};
 use crate::calibration::data::{Test, TestData};
 use crate::calibration::least_squares::{Precision, Residuals, minimise, sum_of_squares};
 use crate::calibration::settings::Weighting;

@@ -61,10 +61,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     section.unknown_keys();
     let element = read_element(&root.section("finite_element"));
     let probes = read_probes(root, &problem);
-    let is_driven = grip
-        .as_ref()
-        .is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
-    let tolerances = read_tolerances(&root.section("tolerances"), is_driven);
+    let tolerances = read_tolerances(&root.section("tolerances"), grip.as_ref());
     let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
     let (grip, card) = (grip?, material.card?);
     let plate = MovingPlate {
@@ -220,15 +217,16 @@ fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
 }
 
 /// The tolerances of a study. A grip that is driven imposes most of the displacement, so that the force is judged too.
-fn read_tolerances(section: &Section, is_driven: bool) -> Tolerances {
+fn read_tolerances(section: &Section, grip: Option<&GripMotion>) -> Tolerances {
+    let is_driven = |grip: &&GripMotion| grip.release.is_none() && rates(&grip.stretch).is_some();
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
-    let deviation_percent = percent("deviation");
+    let [energy_percent, deviation_percent] = ["energy", "deviation"].map(percent);
     let tolerances = Tolerances {
-        energy_percent: percent("energy"),
+        energy_percent,
         deviation_percent,
         force_percent: match section.has("force") {
             true => Some(percent("force")),
-            false => is_driven.then_some(deviation_percent),
+            false => grip.filter(is_driven).map(|_| deviation_percent),
         },
     };
     section.unknown_keys();

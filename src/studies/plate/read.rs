@@ -124,12 +124,8 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         check_memory(&root, lattice, corrector);
     }
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
-    let pictures = Pictures::read(
-        &root.section("pictures"),
-        "factors",
-        Dimension::Ratio,
-        &problem.stretches,
-    );
+    let section = root.section("pictures");
+    let pictures = Pictures::read(&section, "factors", Dimension::Ratio, &problem.stretches);
     let output = read_output(&root.section("output"), name);
     root.unknown_keys();
     let card = card?;
@@ -294,11 +290,7 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
     }
     if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
         let hint = "at rest there is nothing to solve; leave it out";
-        section.fault(
-            KEY,
-            &format!("must not contain zero, or a stretch below {SMALLEST}"),
-            hint,
-        );
+        section.fault(KEY, "must not contain zero, or less than 1e-9", hint);
         return stretches;
     }
     let are_like_lambda = stretches

@@ -296,19 +296,18 @@ impl Judged<'_> {
         work: impl FnOnce(NearestField) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let specimen = self.ground.specimen(law, values);
-        let knowledge = self.ground.knowledge(None, false);
         let task = Task {
             specimen: &specimen,
             observations: &self.observations,
-            knowledge: &knowledge,
+            knowledge: &self.ground.knowledge(None, false),
         };
         let search = Equations::new(&task, &self.edges)?;
         let found = match from {
             None => search.run(MOST_STEPS)?,
             Some(state) => {
                 let adjusting = if settled { 0 } else { VARIANCE_STEPS };
-                let (place, variances) = (state.place.clone(), state.variances.clone());
-                search.run_from(place, variances, adjusting, MOST_STEPS)?
+                let variances = state.variances.clone();
+                search.run_from(state.place.clone(), variances, adjusting, MOST_STEPS)?
             }
         };
         work(found)
@@ -390,10 +389,8 @@ pub fn common_noise(frames: &[&Judged], says: &[FrameInformation]) -> f64 {
         std::ptr::eq(frames[0].ground.frame.mesh, frames[1].ground.frame.mesh)
     });
     let [product, size] = same.fold([0.0; 2], |[product, size], (_, says)| {
-        let found = says[0].left.iter().filter_map(|(number, a)| {
-            let b = says[1].left.get(number)?;
-            Some((*a, *b))
-        });
+        let left = says[0].left.iter();
+        let found = left.filter_map(|(number, a)| Some((*a, *says[1].left.get(number)?)));
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         found.fold([product, size], |[product, size], (a, b)| {
             [product + dot(a, b), size + 0.5 * (dot(a, a) + dot(b, b))]
