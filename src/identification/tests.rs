@@ -373,3 +373,24 @@ fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one(
         }
     }
 }
+
+/// The way by polynomials, which is taken where the direct one does not converge, leads to the same functions.
+#[test]
+fn from_the_motion_of_polynomials_the_functions_are_the_same() {
+    let recording = Sample::default().recording();
+    let smooth = |signal: &[f64], degree| smooth(&recording.times, signal, degree).unwrap();
+    let signals = (smooth(&recording.extension, 5), smooth(&recording.force, 3));
+    let settings = IdentificationSettings::default();
+    let (joint, start) = begin(&recording, settings, &signals).unwrap();
+    let squares = |fit: &Fit| joint.sum_of_squares(&fit.state);
+    let (direct, _) = nearest_fit(&joint, start.clone(), &|_| ()).unwrap();
+    let simple = joint.with_polynomials();
+    let mut first = Fit::new(&simple, simple.state(start.motion));
+    first.improve(&|_| ()).unwrap();
+    let mut fit = Fit::new(&joint, joint.state(first.state.motion));
+    fit.improve(&|_| ()).unwrap();
+    let ratio = squares(&fit) / squares(&direct);
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+    let apart = (&fit.state.functions - &direct.state.functions).amax();
+    assert!(apart < 1e-3 * direct.state.functions.amax(), "{apart}");
+}
