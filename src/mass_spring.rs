@@ -105,6 +105,12 @@ pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
     })
 }
 
+/// The same of a plate's lattice, which may have an area term.
+pub fn warning_of_plate(law: &dyn HyperelasticLaw) -> Option<String> {
+    let told = warning(law)?;
+    Some(told + "; an area term (`mass_spring.area_term`) gives them the sheet's ν")
+}
+
 impl MassSpring {
     /// Builds the lattice of a problem on `cells` cells.
     ///

@@ -13,10 +13,6 @@
 //! # References
 //! G. H. Golub, V. Pereyra, Inverse Problems 19, R1 (2003), doi:10.1088/0266-5611/19/2/201
 
-mod doubtful_zero;
-
-use doubtful_zero::WithGivenZeros;
-
 use super::data::{Observation, Test, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::regression::refined_zero::Found;
@@ -30,6 +26,9 @@ use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 use crate::material::viscosity::ViscousMaterial;
+use doubtful_zero::WithGivenZeros;
+
+mod doubtful_zero;
 
 /// A law fitted to tests.
 #[derive(Debug)]

@@ -46,9 +46,7 @@ impl MovedTest {
         let [_, high] = self.by.interval;
         self.by.value.abs() / (high - self.by.value)
     }
-}
 
-impl MovedTest {
     fn describe(&self, parameter: &Parameter) -> String {
         let (what, unit, causes) = match self.kind {
             FoundZero::Strain { .. } => (

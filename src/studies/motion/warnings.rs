@@ -16,11 +16,10 @@ pub fn warnings(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> V
     let law = &*plate.problem.law;
     let follows_card = matches!(plate.springs, SpringLaw::Material);
     let is_alike = plate.lattice.area_term || !follows_card;
-    let lattice = (!is_alike).then(|| mass_spring::warning(law)).flatten();
-    let lattice = lattice.map(|told| {
-        format!("{told}; an area term (`mass_spring.area_term`) gives them the sheet's ν")
-    });
-    let mut all: Vec<String> = lattice.into_iter().collect();
+    let mut all = Vec::new();
+    if !is_alike {
+        all.extend(mass_spring::warning_of_plate(law));
+    }
     all.extend(compression(plate, times, plates));
     let Some(own) = plates.iter().find(|own| own.is_reference) else {
         return all;

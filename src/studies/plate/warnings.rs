@@ -19,9 +19,7 @@ const BALANCED: f64 = 1e-9;
 pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     let mut all = Vec::new();
     if !study.lattice.area_term {
-        let remedy = "; an area term (`mass_spring.area_term`) gives them the sheet's ν";
-        let lattice = mass_spring::warning(&*study.problem.law);
-        all.extend(lattice.map(|warning| warning + remedy));
+        all.extend(mass_spring::warning_of_plate(&*study.problem.law));
     }
     let corrected = study.corrector.scheme != DifferenceScheme::Biquadratic;
     let finite_elements = study.reference.element == Element::Q1;
