@@ -29,6 +29,7 @@ mod newton;
 mod path;
 mod ratios;
 mod start;
+mod sweep;
 mod tangents;
 #[cfg(test)]
 mod tests;

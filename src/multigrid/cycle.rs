@@ -1,7 +1,7 @@
 //! The V-cycle.
 
 use super::coarsest::Factor;
-use super::stencil::Stencil;
+use super::stencil::{Stencil, Sweep};
 use super::strip::LineSmoother;
 use super::transfer::Transfer;
 use super::vector::{Lines, Vector};
@@ -109,7 +109,7 @@ impl Multigrid {
             return;
         };
         x.clear();
-        stencil.smooth(x, b, |line| lines.holds(line), false);
+        stencil.smooth(x, b, |line| lines.holds(line), Sweep::DownFromZero);
         lines.factorise(stencil);
         lines.smooth(stencil, x, b, false);
         stencil.residual(x, b, r);
@@ -127,6 +127,6 @@ impl Multigrid {
         let transfer = transfer.as_ref().expect("not the coarsest grid");
         transfer.prolong(&coarser[index - 1].x, x);
         lines.smooth(stencil, x, b, true);
-        stencil.smooth(x, b, |line| lines.holds(line), true);
+        stencil.smooth(x, b, |line| lines.holds(line), Sweep::Up);
     }
 }

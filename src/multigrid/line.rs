@@ -347,7 +347,8 @@ impl WithSimd for LineResidual<'_> {
 pub struct SmoothLine<'a> {
     pub before: LineStencil<'a>,
     pub own: LineStencil<'a>,
-    pub beside: [Pair<'a>; 2],
+    /// The lines before and after; none where they are zero.
+    pub beside: Option<[Pair<'a>; 2]>,
     pub b: Pair<'a>,
     pub x_x: &'a mut [f32],
     pub x_y: &'a mut [f32],
@@ -378,7 +379,10 @@ impl WithSimd for SmoothLine<'_> {
         let [g_x, g_y] = self.scratch;
         for place in (0..nodes).step_by(S::F32_LANES) {
             let b = load_pair::<S>(self.b, place + 1);
-            let [x, y] = subtract_beside(simd, b, [self.before, self.own], self.beside, place);
+            let [x, y] = match self.beside {
+                Some(beside) => subtract_beside(simd, b, [self.before, self.own], beside, place),
+                None => b,
+            };
             store::<S>(g_x, place, x);
             store::<S>(g_y, place, y);
         }

@@ -22,6 +22,15 @@ use super::line::{
 };
 use super::vector::{Lines, Neighbours, Vector};
 
+/// The order of a sweep over all lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sweep {
+    /// Odd lines, then even ones, from zero: the lines beside odd ones are still zero.
+    DownFromZero,
+    /// The reverse.
+    Up,
+}
+
 /// The operator of a grid.
 #[derive(Clone, Debug)]
 pub struct Stencil {
@@ -108,16 +117,17 @@ impl Stencil {
     }
 
     /// One Gauss–Seidel sweep in four colours over all lines but those that are `left_out`: odd lines, then even ones, and on each
-    /// odd nodes before even ones; the other way round where `reversed`.
+    /// odd nodes before even ones; the other way round where it goes `Up`.
     pub fn smooth(
         &self,
         x: &mut Vector,
         b: &Vector,
         left_out: impl Fn(usize) -> bool + Sync,
-        reversed: bool,
+        sweep: Sweep,
     ) {
         let lines = self.lines;
-        for parity in if reversed { [0, 1] } else { [1, 0] } {
+        let down = sweep == Sweep::DownFromZero;
+        for parity in if down { [1, 0] } else { [0, 1] } {
             x.for_each_of_parity(parity, |line, beside: Neighbours, x_x, x_y| {
                 if left_out(line) {
                     return;
@@ -129,12 +139,13 @@ impl Stencil {
                     Arch::new().dispatch(SmoothLine {
                         before: self.line(line - 1),
                         own: self.line(line),
-                        beside: [beside.line(line - 1), beside.line(line + 1)],
+                        beside: (!down || parity == 0)
+                            .then(|| [beside.line(line - 1), beside.line(line + 1)]),
                         b: b.line(line),
                         x_x,
                         x_y,
                         scratch,
-                        first: usize::from(!reversed),
+                        first: usize::from(down),
                     });
                 });
             });

@@ -45,8 +45,13 @@ impl Interpolation {
 
     /// For each place the first node and the shares of it and of those that follow.
     pub fn shares(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        let shares = self.shares.iter();
-        shares.map(|(first, shares)| (*first, &shares[..self.width]))
+        (0..self.shares.len()).map(|place| self.at(place))
+    }
+
+    /// The first node and the shares of it and of those that follow, for one of the places.
+    pub fn at(&self, place: usize) -> (usize, &[f64]) {
+        let (first, shares) = &self.shares[place];
+        (*first, &shares[..self.width])
     }
 }
 

@@ -1,5 +1,6 @@
 //! A plate's grid: the coordinates of its nodes, and fields on them.
 
+use super::sweep::Part;
 use crate::mesh;
 use crate::multigrid::{Interpolation, Lines};
 
@@ -247,23 +248,26 @@ impl Field {
         let [along_x, along_y] = [0, 1]
             .map(|axis| Interpolation::cubic(&grid.coordinates[axis], &finer.coordinates[axis]));
         let mut field = Self::zeros(finer);
-        let mut line = vec![0.0; self.width];
+        let (own, width) = (self.width, field.width);
         for (from, to) in self.components.iter().zip(&mut field.components) {
-            for ((first, shares), to) in along_x.shares().zip(to.chunks_exact_mut(field.width)) {
-                line.fill(0.0);
-                for (share, from) in shares
-                    .iter()
-                    .zip(from[first * self.width..].chunks_exact(self.width))
-                {
-                    for (sum, value) in line.iter_mut().zip(from) {
-                        *sum += share * value;
+            let part = Part::all(finer.lines());
+            part.sweep([to], [], &|part, [to], []| {
+                let mut between = vec![0.0; own];
+                for (place, to) in to.chunks_exact_mut(width).enumerate() {
+                    let (first, shares) = along_x.at(part.first / width + place);
+                    between.fill(0.0);
+                    for (share, from) in shares.iter().zip(from[first * own..].chunks_exact(own)) {
+                        for (sum, value) in between.iter_mut().zip(from) {
+                            *sum += share * value;
+                        }
+                    }
+                    for ((first, shares), to) in along_y.shares().zip(to) {
+                        let pairs = shares.iter().zip(&between[first..]);
+                        *to = pairs.map(|(share, value)| share * value).sum();
                     }
                 }
-                for ((first, shares), to) in along_y.shares().zip(to) {
-                    let pairs = shares.iter().zip(&line[first..]);
-                    *to = pairs.map(|(share, value)| share * value).sum();
-                }
-            }
+                []
+            });
         }
         field
     }

@@ -3,6 +3,7 @@
 use super::fall::Fall;
 use super::forces::forces;
 use super::grid::{Field, Grid, Rule};
+use super::sweep::{Part, sum};
 use super::tangents::linearise;
 use crate::corrector::DifferenceScheme;
 use crate::material::HyperelasticLaw;
@@ -79,6 +80,15 @@ impl Work {
         self.linearisations += other.linearisations;
         self.cycles += other.cycles;
     }
+}
+
+/// A correction z = M⁻¹ r.
+#[derive(Clone, Copy, Debug)]
+struct Preconditioned {
+    /// r · z.
+    steepness: f64,
+    /// Root mean square of z over the nodes in mm.
+    size: f64,
 }
 
 /// The result of an iteration.
@@ -177,8 +187,8 @@ impl Level {
             ..Work::default()
         };
         self.evaluate_residual(sheet, u)?;
-        let mut steepness = self.precondition(multigrid, &mut work);
-        let mut fall = Fall::new(self.correction.size(), ending.weakest);
+        let mut found = self.precondition(multigrid, &mut work);
+        let mut fall = Fall::new(found.size, ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
         }
@@ -187,23 +197,18 @@ impl Level {
             if (ending.enough)(fall.first(), fall.left()) {
                 break;
             }
-            self.turn(share);
-            let length = self.step(sheet, u, &mut work)?;
-            let before = steepness;
-            steepness = self.precondition(multigrid, &mut work);
-            share = steepness / before;
-            fall.push(self.correction.size(), length, share);
+            let length = self.step(sheet, u, share, &mut work)?;
+            let before = found.steepness;
+            found = self.precondition(multigrid, &mut work);
+            share = found.steepness / before;
+            fall.push(found.size, length, share);
         }
-        let free = u.free();
-        for (u, correction) in u.components.iter_mut().zip(&self.correction.components) {
-            let pairs = u[free.clone()].iter_mut().zip(&correction[free.clone()]);
-            pairs.for_each(|(u, correction)| *u -= correction);
-        }
+        self.add_to(u, -1.0, &self.correction);
         Ok(Iteration { fall, work })
     }
 
-    /// The correction z = M⁻¹ r of the residual; returns r · z.
-    fn precondition(&mut self, multigrid: &mut Multigrid, work: &mut Work) -> f64 {
+    /// The correction z = M⁻¹ r of the residual, which is zero at the grips.
+    fn precondition(&mut self, multigrid: &mut Multigrid, work: &mut Work) -> Preconditioned {
         work.cycles += 1;
         let width = self.residual.width;
         let residual = &self.residual;
@@ -215,34 +220,68 @@ impl Level {
             }
         });
         let z: &Vector = multigrid.cycle(self.index);
-        let mut product = 0.0;
-        for line in 1..z.lines().count - 1 {
-            for (axis, z) in z.line(line).into_iter().enumerate() {
-                let here = line * width..(line + 1) * width;
-                let target = &mut self.correction.components[axis][here.clone()];
-                let residual = &self.residual.components[axis][here];
-                let mut sum = 0.0;
-                for ((target, z), r) in target.iter_mut().zip(&z[1..=width]).zip(residual) {
-                    *target = f64::from(*z);
-                    sum += *target * r;
-                }
-                product += sum;
-            }
+        let last = z.lines().count - 1;
+        let (mut product, mut squares) = (0.0, 0.0);
+        for axis in [0, 1] {
+            let target = &mut self.correction.components[axis][..];
+            let residual = &self.residual.components[axis][..];
+            let [own, square] =
+                Part::all(z.lines()).sweep([target], [residual], &|part, [target], [residual]| {
+                    let lines = target.chunks_exact_mut(width);
+                    let mut sums = [0.0; 2];
+                    for (line, (target, r)) in lines.zip(residual.chunks_exact(width)).enumerate() {
+                        let line = part.first / width + line;
+                        if line == 0 || line == last {
+                            continue;
+                        }
+                        let z = &z.line(line)[axis][1..=width];
+                        for (target, z) in target.iter_mut().zip(z) {
+                            *target = f64::from(*z);
+                        }
+                        let of_line = sum(width, |node| {
+                            [target[node] * r[node], target[node] * target[node]]
+                        });
+                        sums = [sums[0] + of_line[0], sums[1] + of_line[1]];
+                    }
+                    sums
+                });
+            product += own;
+            squares += square;
         }
-        product
+        Preconditioned {
+            steepness: product,
+            size: (squares / self.grid.nodes() as f64).sqrt(),
+        }
     }
 
-    /// p = β p − z.
-    fn turn(&mut self, share: f64) {
-        let pairs = self
-            .direction
-            .components
-            .iter_mut()
-            .zip(&self.correction.components);
-        for (direction, correction) in pairs {
-            for (p, z) in direction.iter_mut().zip(correction) {
-                *p = share * *p - z;
-            }
+    /// u += s p.
+    fn add_to(&self, u: &mut Field, factor: f64, direction: &Field) {
+        for (u, p) in u.components.iter_mut().zip(&direction.components) {
+            let part = Part::all(self.grid.lines());
+            part.sweep([u], [p], &|_, [u], [p]| {
+                for (u, p) in u.iter_mut().zip(p) {
+                    *u += factor * p;
+                }
+                []
+            });
+        }
+    }
+
+    /// p = β p − z, and the trial u + p.
+    fn turn(&mut self, u: &Field, share: f64) {
+        for axis in [0, 1] {
+            let direction = &mut self.direction.components[axis][..];
+            let trial = &mut self.trial.components[axis][..];
+            let read = [&u.components[axis][..], &self.correction.components[axis]];
+            let part = Part::all(self.grid.lines());
+            part.sweep([direction, trial], read, &|_, [p, trial], [u, z]| {
+                let pairs = p.iter_mut().zip(trial).zip(u.iter().zip(z));
+                for ((p, trial), (u, z)) in pairs {
+                    *p = share * *p - z;
+                    *trial = u + *p;
+                }
+                []
+            });
         }
     }
 
@@ -269,12 +308,12 @@ impl Level {
             evaluations: 1,
             ..Work::default()
         };
-        let mut steepness = self.precondition(multigrid, &mut work);
-        let first = self.correction.size();
+        let mut found = self.precondition(multigrid, &mut work);
+        let first = found.size;
         self.direction.scale(0.0);
         let mut share = 0.0;
         for _ in 0..LINEAR_ITERATIONS {
-            self.turn(share);
+            self.turn(u, share);
             let scale = DIFFERENCE * u.size() / self.direction.size().max(f64::MIN_POSITIVE);
             self.trial.clone_from(u);
             self.trial.add(scale, &self.direction);
@@ -290,10 +329,10 @@ impl Level {
             x.add(length, &self.direction);
             image.add(length, &self.trial_residual);
             self.residual.add(length, &self.trial_residual);
-            let before = steepness;
-            steepness = self.precondition(multigrid, &mut work);
-            share = steepness / before;
-            if self.correction.size() <= tolerance * first {
+            let before = found.steepness;
+            found = self.precondition(multigrid, &mut work);
+            share = found.steepness / before;
+            if found.size <= tolerance * first {
                 let free = u.free();
                 for (axis, x) in x.components.iter_mut().enumerate() {
                     let held = (0..x.len()).filter(|node| !free.contains(node));
@@ -307,19 +346,17 @@ impl Level {
         Ok(None)
     }
 
-    /// Goes along the direction until the residual is orthogonal to it; returns how far.
-    fn step(&mut self, sheet: Sheet, u: &mut Field, work: &mut Work) -> Result<f64, Inverted> {
-        let free = u.free();
+    /// Turns the direction, p = β p − z, and goes along it until the residual is orthogonal to it; returns how far.
+    fn step(
+        &mut self,
+        sheet: Sheet,
+        u: &mut Field,
+        share: f64,
+        work: &mut Work,
+    ) -> Result<f64, Inverted> {
+        self.turn(u, share);
         let mut length = 1.0;
         loop {
-            for axis in [0, 1] {
-                let trial = &mut self.trial.components[axis];
-                trial.copy_from_slice(&u.components[axis]);
-                let pairs = trial[free.clone()]
-                    .iter_mut()
-                    .zip(&self.direction.components[axis][free.clone()]);
-                pairs.for_each(|(trial, p)| *trial += length * p);
-            }
             work.evaluations += 1;
             let done = sheet.forces(&self.grid, &self.trial, &mut self.trial_residual);
             match done {
@@ -327,31 +364,39 @@ impl Level {
                 Err(Inverted) if length > 0.1 => length *= 0.5,
                 Err(Inverted) => return Err(Inverted),
             }
+            self.trial.clone_from(u);
+            self.trial.add(length, &self.direction);
         }
+        let part = Part::all(self.grid.lines());
         let (mut against, mut curvature) = (0.0, 0.0);
         for axis in [0, 1] {
-            let p = &self.direction.components[axis][free.clone()];
-            let r = &self.residual.components[axis][free.clone()];
-            let there = &self.trial_residual.components[axis][free.clone()];
-            for ((p, r), there) in p.iter().zip(r).zip(there) {
-                against += p * r;
-                curvature += p * (there - r);
-            }
+            let read = [&self.direction, &self.residual, &self.trial_residual];
+            let read = read.map(|field| &field.components[axis][..]);
+            let [own, change] = part.sweep([], read, &|_, [], [p, r, there]| {
+                sum(p.len(), |k| [p[k] * r[k], p[k] * (there[k] - r[k])])
+            });
+            against += own;
+            curvature += change;
         }
         let share = match curvature > 0.0 {
             true => (-against / curvature).min(2.0),
             false => 1.0,
         };
-        u.add(share * length, &self.direction);
-        for (r, there) in self
-            .residual
-            .components
-            .iter_mut()
-            .zip(&self.trial_residual.components)
-        {
-            for (r, there) in r.iter_mut().zip(there) {
-                *r += share * (there - *r);
-            }
+        for axis in [0, 1] {
+            let changed = [&mut u.components[axis], &mut self.residual.components[axis]];
+            let read = [&self.direction, &self.trial_residual];
+            let read = read.map(|field| &field.components[axis][..]);
+            part.sweep(
+                changed.map(|f| &mut f[..]),
+                read,
+                &|_, [u, r], [p, there]| {
+                    for ((u, r), (p, there)) in u.iter_mut().zip(r).zip(p.iter().zip(there)) {
+                        *u += share * length * p;
+                        *r += share * (there - *r);
+                    }
+                    []
+                },
+            );
         }
         Ok(share * length)
     }

@@ -1,0 +1,102 @@
+//! Passes over the numbers of a grid's fields, by one thread or several, with sums that do not depend on their number.
+
+use rayon::join;
+
+use crate::multigrid::Lines;
+
+/// Nodes that one thread handles at a time, about: their numbers stay in its nearest caches.
+const NODES_AT_ONCE: usize = 2_048;
+
+/// A part of a grid's nodes: whole lines.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The number of the first node among all nodes.
+    pub first: usize,
+    /// The most nodes that are not divided.
+    piece: usize,
+    threaded: bool,
+}
+
+impl Part {
+    /// All nodes of a grid.
+    pub fn all(lines: Lines) -> Self {
+        Self {
+            first: 0,
+            piece: lines.nodes * (NODES_AT_ONCE / lines.nodes).max(1),
+            threaded: lines.threaded(),
+        }
+    }
+
+    /// Calls `work` with pieces of the numbers to be changed and of those to be read, and adds what it returns by halves: the order of
+    /// the sums depends on the grid alone.
+    pub fn sweep<const CHANGED: usize, const READ: usize, const SUMS: usize>(
+        self,
+        changed: [&mut [f64]; CHANGED],
+        read: [&[f64]; READ],
+        work: &(impl Fn(Self, [&mut [f64]; CHANGED], [&[f64]; READ]) -> [f64; SUMS] + Sync),
+    ) -> [f64; SUMS] {
+        let lengths = changed.iter().map(|numbers| numbers.len());
+        let count = lengths
+            .chain(read.iter().map(|numbers| numbers.len()))
+            .max();
+        let pieces = count.unwrap_or(0).div_ceil(self.piece);
+        if pieces <= 1 {
+            return work(self, changed, read);
+        }
+        let middle = pieces / 2 * self.piece;
+        let after = Self {
+            first: self.first + middle,
+            ..self
+        };
+        let (changed, changed_after) = halves(changed, |numbers| numbers.split_at_mut(middle));
+        let (read, read_after) = halves(read, |numbers| numbers.split_at(middle));
+        let before = || self.sweep(changed, read, work);
+        let after = || after.sweep(changed_after, read_after, work);
+        let (sums, more) = match self.threaded {
+            true => join(before, after),
+            false => (before(), after()),
+        };
+        std::array::from_fn(|k| sums[k] + more[k])
+    }
+}
+
+/// Divides several slices.
+fn halves<T: Default, const COUNT: usize>(
+    slices: [T; COUNT],
+    divide: impl Fn(T) -> (T, T),
+) -> ([T; COUNT], [T; COUNT]) {
+    let mut after = std::array::from_fn(|_| T::default());
+    let mut places = after.iter_mut();
+    let before = slices.map(|slice| {
+        let (before, rest) = divide(slice);
+        *places.next().expect("as many") = rest;
+        before
+    });
+    (before, after)
+}
+
+/// Partial sums that are added side by side, in vectors.
+const LANES: usize = 8;
+
+/// Σ f(k) over the numbers of a piece.
+#[inline(always)]
+pub fn sum<const SUMS: usize>(count: usize, term: impl Fn(usize) -> [f64; SUMS]) -> [f64; SUMS] {
+    let mut lanes = [[0.0; LANES]; SUMS];
+    let whole = count / LANES * LANES;
+    for first in (0..whole).step_by(LANES) {
+        for lane in 0..LANES {
+            let terms = term(first + lane);
+            for k in 0..SUMS {
+                lanes[k][lane] += terms[k];
+            }
+        }
+    }
+    let mut sums = lanes.map(|lanes| lanes.iter().sum());
+    for place in whole..count {
+        let terms = term(place);
+        for k in 0..SUMS {
+            sums[k] += terms[k];
+        }
+    }
+    sums
+}
