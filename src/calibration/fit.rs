@@ -80,6 +80,25 @@ impl Fit {
         self.stress_measure
     }
 
+    /// Adds the warning about a zero of strain or stress that the law finds elsewhere than the tests have it, if there is one. It takes
+    /// about as long as the fit.
+    pub fn doubt_zeros(&mut self, tests: &[TestData]) {
+        let misfit = Misfit::new(self.law, tests, self.settings.weighting);
+        let (parameters, stiffness) = (self.law_parameters(), misfit.stiffness());
+        let Ok(bounds) = limits(self.law, parameters, &self.settings.bounds, stiffness) else {
+            return;
+        };
+        let given = WithGivenZeros {
+            law: self.law,
+            tests,
+            weighting: self.settings.weighting,
+            bounds: &bounds,
+            least: &sizes(parameters, stiffness),
+        };
+        let warning = given.warning(parameters);
+        self.quality.warnings.extend(warning);
+    }
+
     /// The tests as they were fitted: with the zeros that were found together with the law.
     pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
         refined_zero::with_zeros(tests, &self.quality.zeros)
@@ -142,12 +161,23 @@ impl Residuals for Curve<'_> {
     }
 }
 
-/// Fits a law to some tests together.
+/// Fits a law to some tests together, and doubts their zeros.
 ///
 /// # Errors
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
+    let mut fit = nearest(law, tests, settings)?;
+    fit.doubt_zeros(tests);
+    Ok(fit)
+}
+
+/// As [`fit`], without doubts about zeros.
+pub(in crate::calibration) fn nearest(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+) -> Result<Fit, Error> {
     check_measures(tests)?;
     let misfit = Misfit::new(law, tests, settings.weighting);
     if law.name == SWELLING {
@@ -213,7 +243,7 @@ fn finished(
     rival: Option<Rival>,
 ) -> Fit {
     let stiffness = begun.misfit.stiffness();
-    let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();
+    let least = sizes(parameters, stiffness);
     let given = WithGivenZeros {
         law,
         tests,
@@ -235,7 +265,7 @@ fn finished(
     let (fitted, built) = found.misfit.build(&found.values);
     let moved = found.misfit.moved_tests(&found.values);
     let quality = given.assess(&found.misfit, &moved, &found.values, &found.bounds, |own| {
-        warned(own, &given, &built.parameters, rival.as_ref())
+        warned(own, &built.parameters, rival.as_ref())
     });
     Fit {
         law,
@@ -252,28 +282,25 @@ fn finished(
 }
 
 /// The figures of a fit with their warnings.
-fn warned(
-    assessment: &Assessment,
-    given: &WithGivenZeros,
-    parameters: &[Parameter],
-    rival: Option<&Rival>,
-) -> Quality {
+fn warned(assessment: &Assessment, parameters: &[Parameter], rival: Option<&Rival>) -> Quality {
     let mut quality = assessment.quality();
     quality.warnings = warnings(&quality, parameters, rival);
     let (tests, weighting) = (assessment.tests, assessment.weighting);
     let of_noise = noise_warnings(&quality, assessment.law, tests, weighting);
     quality.warnings.extend(of_noise);
-    quality.warnings.extend(given.warning(parameters));
     quality
 }
 
-/// The least significant size of a parameter: a thousandth of a usual one.
-fn size(parameter: &Parameter, stiffness: f64) -> f64 {
-    let [low, high] = parameter.usual.map(f64::abs);
-    1e-3 * match parameter.is_stress() {
-        true => stiffness,
-        false => low.max(high),
-    }
+/// The least significant size of each parameter: a thousandth of a usual one.
+fn sizes(parameters: &[Parameter], stiffness: f64) -> Vec<f64> {
+    let size = |parameter: &Parameter| {
+        let [low, high] = parameter.usual.map(f64::abs);
+        1e-3 * match parameter.is_stress() {
+            true => stiffness,
+            false => low.max(high),
+        }
+    };
+    parameters.iter().map(size).collect()
 }
 
 /// All tests of one fit must have one stress measure.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::data::TestData;
-use super::fit::{Fit, fit};
+use super::fit::{Fit, nearest};
 use super::settings::{FitSettings, MEASURE};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
@@ -12,6 +12,7 @@ use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
 /// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that
 /// cannot be fitted are left out, with the reasons. All have the number of effective points of the law with the least
 /// variance of residuals: the number of independent points depends on the noise, not on a law that misses them.
+/// Zeros are not doubted, see [`Fit::doubt_zeros`].
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
     // A fibre law needs to see two directions.
     let axis = |axis: usize| {
@@ -32,7 +33,7 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
         .collect();
     let outcomes: Vec<Result<Fit, Error>> = eligible
         .into_par_iter()
-        .map(|law| fit(law, tests, settings))
+        .map(|law| nearest(law, tests, settings))
         .collect();
     let (mut fits, mut reasons) = (Vec::new(), Vec::new());
     for outcome in outcomes {
@@ -45,10 +46,10 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
         let quality = &fit.quality;
         quality.weighted_sum / (quality.points - fit.parameters.len()) as f64
     };
-    let nearest = fits
+    let closest = fits
         .iter()
         .min_by(|a, b| variance(a).total_cmp(&variance(b)));
-    if let Some(effective) = nearest.map(|fit| fit.quality.effective_points()) {
+    if let Some(effective) = closest.map(|fit| fit.quality.effective_points()) {
         for fit in &mut fits {
             fit.quality.aicc = fit.quality.aicc_with(effective);
         }
@@ -58,13 +59,15 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
 }
 
 /// Of ranked fits the first that is stable over the data and all of whose parameters are determined, otherwise the
-/// first that is stable, otherwise the first; `None` where there is none.
-pub fn best(fits: Vec<Fit>) -> Option<Fit> {
+/// first that is stable, otherwise the first, with doubts about the zeros of the tests; `None` where there is none.
+pub fn best(fits: Vec<Fit>, tests: &[TestData]) -> Option<Fit> {
     let first = |fits: &[Fit], told: bool| {
         let wanted =
             |fit: &Fit| fit.quality.is_stable() && (!told || fit.quality.is_identifiable());
         fits.iter().position(wanted)
     };
     let chosen = first(&fits, true).or_else(|| first(&fits, false));
-    fits.into_iter().nth(chosen.unwrap_or(0))
+    let mut best = fits.into_iter().nth(chosen.unwrap_or(0))?;
+    best.doubt_zeros(tests);
+    Some(best)
 }

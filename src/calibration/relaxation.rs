@@ -8,7 +8,7 @@
 use std::fmt::Write;
 
 use super::data::{Branches, TestData, Times};
-use super::fit::{Fit, Relaxed, check_measures, fit};
+use super::fit::{Fit, Relaxed, check_measures, nearest};
 use super::least_squares::Residuals;
 use super::regression::{Reweighed, settled};
 use super::settings::{FitSettings, MEASURE, limits};
@@ -109,7 +109,7 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         bounds: settings.bounds.iter().filter(own).cloned().collect(),
         ..settings.clone()
     };
-    fit(law, tests, &settings)
+    nearest(law, tests, &settings)
 }
 
 /// The shortest interval between rows and the longest duration of a history, in s.

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::data::{Observation, TestData};
-use super::fit::{Fit, check_measures, fit};
+use super::fit::{Fit, check_measures, nearest};
 use super::least_squares::Residuals;
 use super::regression::settled;
 use super::settings::{FitSettings, limits};
@@ -128,7 +128,7 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
         ..settings.clone()
     };
     let rising: Vec<TestData> = tests.iter().map(rising).collect();
-    let found = fit(law, &rising, &of_law)?;
+    let found = nearest(law, &rising, &of_law)?;
     Ok(First {
         law,
         fitted: found.fitted.into(),

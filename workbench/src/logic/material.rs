@@ -100,7 +100,11 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
             })?;
             (vec![calibration::fit(law, &tests, &settings)?], Vec::new())
         }
-        None => calibration::rank(&tests, &settings),
+        None => {
+            let (mut fits, without) = calibration::rank(&tests, &settings);
+            fits.iter_mut().for_each(|fit| fit.doubt_zeros(&tests));
+            (fits, without)
+        }
     };
     let provenance = Provenance {
         files: question
