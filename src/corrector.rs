@@ -34,6 +34,7 @@ pub mod matrix;
 pub mod motion;
 pub mod plate;
 pub mod retained;
+mod sampling;
 pub mod shape_climb;
 pub mod specimen;
 mod step;

@@ -24,7 +24,7 @@ mod strips;
 mod triangulate;
 
 pub use blocks::{Block, mesh_of_blocks};
-pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
+pub use cell_shape::{CellShape, GAUSS_2, GAUSS_3, GAUSS_4, GAUSS_5, QuadraturePoint, lobatto};
 pub use cells::{Group, Mesh, decimals_for};
 pub use faults::{Exemptions, UnknownName};
 pub use grid::{Grid, Side};

@@ -15,6 +15,7 @@
 //!
 //! All sums run in an order that does not depend on the number of threads.
 
+mod assembled_line;
 mod blocks;
 mod coarsest;
 mod cycle;
@@ -27,8 +28,8 @@ pub mod transfer;
 mod tridiagonal;
 mod vector;
 
+pub use assembled_line::CellStiffness;
 pub use cycle::{Multigrid, NotPositiveDefinite};
-pub use line::CellStiffness;
 pub use stencil::Stencil;
 pub use transfer::Interpolation;
 pub use vector::{Lines, Vector};

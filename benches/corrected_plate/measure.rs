@@ -11,7 +11,7 @@ use rayon::ThreadPool;
 use super::MEMORY;
 use super::opponent::{Guess, Opponent};
 use super::reference::{Reference, relative_percent};
-use super::way::{Found, Layout, Way, element, go};
+use super::way::{Found, Layout, Way, go};
 
 /// A way measured on one grid.
 pub struct Run {
@@ -60,8 +60,21 @@ pub struct Bench<'a> {
     pub pools: &'a [ThreadPool; 2],
 }
 
-/// The climb's schemes; their finite elements are linear and quadratic.
-pub const SCHEMES: [DifferenceScheme; 2] = [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic];
+/// The climb's schemes; their finite elements are linear, quadratic and cubic.
+pub const SCHEMES: [DifferenceScheme; 3] = [
+    DifferenceScheme::Gauss,
+    DifferenceScheme::Biquadratic,
+    DifferenceScheme::Bicubic,
+];
+
+/// The solution of a grid's equations: finite elements that are iterated further.
+struct Exact {
+    scheme: DifferenceScheme,
+    /// Its error relative to the departure from affine.
+    error: f64,
+    grid: Grid,
+    field: Field,
+}
 
 /// What is left of the solution of a grid's equations at most, relative to the departure from affine, ten times over.
 const EXACT: f64 = 1e-8;
@@ -74,9 +87,9 @@ const TURN: Duration = Duration::from_millis(250);
 impl Bench<'_> {
     /// Measures all ways on one grid, turn by turn; `corrected` tells whether the climb is one of them.
     pub fn grid(&self, layout: Layout, corrected: bool) -> Result<Vec<Run>, Error> {
-        let exact = SCHEMES.map(|scheme| self.exact(layout, scheme));
-        let errors = exact.each_ref().map(|(error, _)| *error);
-        let contestants = contestants(layout, corrected, &errors);
+        let schemes = SCHEMES.into_iter().filter(|scheme| layout.suits(*scheme));
+        let exact: Vec<Exact> = schemes.map(|scheme| self.exact(layout, scheme)).collect();
+        let contestants = contestants(layout, corrected, &exact);
         let mut runs = Vec::new();
         let mut fields: Vec<Field> = Vec::new();
         for (way, threads, error) in &contestants {
@@ -97,15 +110,17 @@ impl Bench<'_> {
         self.pools[threads - 1].install(|| go(way, self.problem, layout, self.stretch, error))
     }
 
-    /// The error of a grid's equations relative to the departure from affine, and their solution: finite elements that are
-    /// iterated further.
-    fn exact(&self, layout: Layout, scheme: DifferenceScheme) -> (f64, (Grid, Field)) {
-        let mut direct = Opponent::new(self.problem, layout, element(scheme));
+    fn exact(&self, layout: Layout, scheme: DifferenceScheme) -> Exact {
+        let mut direct = Opponent::new(self.problem, layout, scheme);
         let mut u = direct.start(Guess::Nested, self.stretch, EXACT);
         direct.solve(&mut u, self.stretch, EXACT);
         let field = Field::of_nodes(&direct.grid, &u);
-        let error = 0.01 * self.reference.departure_percent(&direct.grid, &field);
-        (error, (direct.grid, field))
+        Exact {
+            scheme,
+            error: 0.01 * self.reference.departure_percent(&direct.grid, &field),
+            grid: direct.grid,
+            field,
+        }
     }
 
     fn run(&self, way: Way, layout: Layout, threads: usize, found: &Found, bytes: f64) -> Run {
@@ -146,25 +161,29 @@ impl Bench<'_> {
 }
 
 /// Compares the fields of the climb with the solutions of the same equations, and with those of one thread.
-fn compare(runs: &mut [Run], fields: &[Field], exact: &[(f64, (Grid, Field))], stretch: f64) {
-    for (scheme, (_, (grid, exact))) in SCHEMES.into_iter().zip(exact) {
-        let climb = Way::Climb(scheme);
+fn compare(runs: &mut [Run], fields: &[Field], exact: &[Exact], stretch: f64) {
+    for exact in exact {
+        let (scheme, climb) = (exact.scheme, Way::Climb(exact.scheme));
         let Some(first) = runs.iter().position(|run| run.way == climb) else {
             continue;
         };
         for (run, field) in runs.iter_mut().zip(fields) {
             if [climb, Way::Newton(scheme)].contains(&run.way) {
-                run.difference_percent = relative_percent(grid, field, exact, stretch);
+                run.difference_percent =
+                    relative_percent(&exact.grid, field, &exact.field, stretch);
                 run.same_bits = run.way != climb || *field == fields[first];
             }
         }
     }
 }
 
-/// The ways on a grid, with threads and the grid's error: on equal cells the climb by one and two threads and plain Newton too.
-fn contestants(layout: Layout, corrected: bool, errors: &[f64; 2]) -> Vec<(Way, usize, f64)> {
+/// The ways on a grid, with threads and the grid's error: on equal cells the climb by one and two threads and plain Newton too. The
+/// bicubic climb goes on every grid that suits it.
+fn contestants(layout: Layout, corrected: bool, exact: &[Exact]) -> Vec<(Way, usize, f64)> {
     let mut all = Vec::new();
-    for (scheme, error) in SCHEMES.into_iter().zip(errors) {
+    for Exact { scheme, error, .. } in exact {
+        let scheme = *scheme;
+        let corrected = corrected || scheme == DifferenceScheme::Bicubic;
         if corrected {
             all.push((Way::Climb(scheme), 1, *error));
         }
@@ -173,9 +192,9 @@ fn contestants(layout: Layout, corrected: bool, errors: &[f64; 2]) -> Vec<(Way, 
             all.push((Way::Newton(scheme), 1, *error));
         }
     }
-    for (scheme, error) in SCHEMES.into_iter().zip(errors) {
+    for Exact { scheme, error, .. } in exact {
         for guess in [Guess::Affine, Guess::Nested] {
-            all.push((Way::FiniteElements(element(scheme), guess), 1, *error));
+            all.push((Way::FiniteElements(*scheme, guess), 1, *error));
         }
     }
     all

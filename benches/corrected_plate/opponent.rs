@@ -14,9 +14,11 @@
 //! Nested dissection by coordinates is therefore gelbench's order for large meshes. faer's factorisation by two
 //! threads was slower than by one on this machine (600 × 200: 0.54 against 0.30 s, 1000 × 334: 3.8 against 2.5 s).
 
+use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Field, Grid};
-use gelbench::finite_element::{Element, FiniteElements};
+use gelbench::mesh::Mesh;
 use gelbench::problem::ClampedPlate;
+use gelbench::problem::sheet_energy::SheetEnergy;
 use gelbench::solve::{Assembly, Cholesky};
 
 use super::way::Layout;
@@ -45,8 +47,9 @@ pub struct Opponent<'a> {
     problem: &'a ClampedPlate,
     layout: Layout,
     pub grid: Grid,
-    element: Element,
-    model: FiniteElements,
+    scheme: DifferenceScheme,
+    mesh: Mesh,
+    energy: SheetEnergy,
     assembly: Assembly,
     cholesky: Cholesky,
 }
@@ -58,41 +61,34 @@ const COARSER: f64 = 3.0;
 /// Newton iterations at most.
 const ITERATIONS: usize = 12;
 
-/// Cells of the grid of nodes in an element, along each axis.
-fn degree(element: Element) -> usize {
-    match element {
-        Element::Q1 => 1,
-        Element::Q2 => 2,
-    }
-}
-
 impl<'a> Opponent<'a> {
-    /// Meshes the plate so that the nodes are those of a grid.
-    pub fn new(problem: &'a ClampedPlate, layout: Layout, element: Element) -> Self {
-        let elements = layout.cells.map(|n| n / degree(element));
-        let model = FiniteElements::graded(problem, elements, element, layout.grading);
-        let assembly = Assembly::new(model.energy(), &problem.held(&model.mesh));
+    /// Meshes the plate by the finite elements whose equations are those of a scheme.
+    pub fn new(problem: &'a ClampedPlate, layout: Layout, scheme: DifferenceScheme) -> Self {
+        let mesh = scheme.graded(problem.size, layout.cells, layout.grading);
+        let energy = scheme.energy(problem, &mesh);
+        let assembly = Assembly::new(&energy, &problem.held(&mesh));
         let cholesky = assembly.analyse();
         Self {
             problem,
             layout,
-            grid: layout.grid(problem.size, degree(element)),
-            element,
+            grid: layout.grid(problem.size, scheme.side()),
+            scheme,
             cholesky: cholesky.expect("enough memory"),
             assembly,
-            model,
+            mesh,
+            energy,
         }
     }
 
     /// The displacements that the iteration begins at.
     pub fn start(&self, guess: Guess, stretch: f64, error: f64) -> Vec<f64> {
-        let coarser = self.layout.halved(degree(self.element));
+        let coarser = self.layout.halved(self.scheme.side());
         let coarser =
             coarser.filter(|layout| guess == Guess::Nested && layout.cells[1] >= COARSEST);
         let Some(layout) = coarser else {
-            return self.problem.affine(&self.model.mesh, stretch);
+            return self.problem.affine(&self.mesh, stretch);
         };
-        let mut coarser = Self::new(self.problem, layout, self.element);
+        let mut coarser = Self::new(self.problem, layout, self.scheme);
         let error = COARSER * error;
         let mut u = coarser.start(guess, stretch, error);
         coarser.solve(&mut u, stretch, error);
@@ -116,10 +112,9 @@ impl<'a> Opponent<'a> {
 
     /// One Newton iteration; the norm of its step.
     pub fn iterate(&mut self, u: &mut [f64]) -> f64 {
-        let potential = self.model.energy();
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
         self.assembly
-            .linearise(potential, u, &mut residual, &mut stiffness)
+            .linearise(&self.energy, u, &mut residual, &mut stiffness)
             .expect("admissible fields");
         self.cholesky.factorise(&stiffness).expect("a stable state");
         let free = self.assembly.free();
@@ -133,14 +128,14 @@ impl<'a> Opponent<'a> {
 
     /// The norm of a field's departure from the affine stretch.
     fn departure(&self, u: &[f64], stretch: f64) -> f64 {
-        let nodes = self.model.mesh.nodes.iter().zip(u.chunks_exact(2));
+        let nodes = self.mesh.nodes.iter().zip(u.chunks_exact(2));
         let squares = nodes.map(|([x, _], u)| (u[0] - stretch * x).powi(2) + u[1].powi(2));
         squares.sum::<f64>().sqrt()
     }
 
     /// Moves the grip of a field to another stretch.
     pub fn impose(&self, stretch: f64, u: &mut [f64]) {
-        let mesh = &self.model.mesh;
+        let mesh = &self.mesh;
         for (node, u) in u.chunks_exact_mut(2).enumerate() {
             if let Some(held) = self.problem.grip_displacement(mesh, node, stretch) {
                 u.copy_from_slice(&held);
@@ -152,9 +147,8 @@ impl<'a> Opponent<'a> {
     /// iteration left far less than the sum of the reactions does.
     pub fn force(&self, u: &[f64]) -> f64 {
         let mut residual = vec![0.0; u.len()];
-        let potential = self.model.energy();
-        Assembly::residual(potential, u, &mut residual).expect("admissible fields");
-        let nodes = self.model.mesh.nodes.iter().zip(residual.chunks_exact(2));
+        Assembly::residual(&self.energy, u, &mut residual).expect("admissible fields");
+        let nodes = self.mesh.nodes.iter().zip(residual.chunks_exact(2));
         let length = self.problem.size[0];
         nodes.map(|([x, _], force)| x / length * force[0]).sum()
     }

@@ -10,7 +10,7 @@ use gelbench::problem::ClampedPlate;
 use gelbench::solve::NewtonSettings;
 
 use super::opponent::Opponent;
-use super::way::{Layout, element};
+use super::way::{self, Layout};
 
 /// Times of a path in s, shortest of several runs.
 pub struct PathTimes {
@@ -85,7 +85,7 @@ fn built_in(
         max_iterations: 20,
     };
     let elements = cells.map(|cells| cells / scheme.side());
-    let model = FiniteElements::new(&problem, elements, element(scheme));
+    let model = FiniteElements::new(&problem, elements, way::built_in(scheme));
     model.solve(&problem, settings, &|_| ()).map(drop)
 }
 
@@ -97,7 +97,7 @@ fn tuned(
     stretches: &[f64],
     error: f64,
 ) -> (Vec<f64>, usize) {
-    let mut opponent = Opponent::new(problem, Layout::equal(cells), element(scheme));
+    let mut opponent = Opponent::new(problem, Layout::equal(cells), scheme);
     let mut known: Vec<(f64, Vec<f64>)> = Vec::new();
     let (mut forces, mut iterations) = (Vec::new(), 0);
     for stretch in stretches.iter().copied() {

@@ -1,7 +1,6 @@
 //! The table: one row for each grid, scheme and number of threads of the climb.
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::finite_element::Element;
 use gelbench::output;
 use gelbench::results::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 
@@ -9,7 +8,7 @@ use super::columns::{Columns, number, ratio};
 use super::lines;
 use super::measure::Run;
 use super::opponent::Guess;
-use super::way::{Layout, Way, element, scheme_name};
+use super::way::{Layout, Way, element_name, scheme_name};
 
 /// The climb on one grid beside its opponents; times in s.
 pub struct Row<'a> {
@@ -17,7 +16,7 @@ pub struct Row<'a> {
     pub scheme: DifferenceScheme,
     /// Finite elements with the same nodes and equations: from the affine and from the nested guess.
     pub same_nodes: [&'a Run; 2],
-    /// The cheapest finite elements that are as accurate, of all meshes, equal and graded, and both elements.
+    /// The cheapest finite elements that are as accurate, of all meshes, equal and graded, and all elements.
     pub equal_accuracy: [Option<&'a Run>; 2],
     /// Plain Newton with the same multigrid, on grids of equal cells.
     pub newton: Option<&'a Run>,
@@ -45,7 +44,7 @@ impl<'a> Row<'a> {
                 .find(|run| run.way == way && run.layout == climb.layout)
         };
         let elements = |guess: Guess| {
-            let found = here(Way::FiniteElements(element(scheme), guess));
+            let found = here(Way::FiniteElements(scheme, guess));
             found.expect("finite elements are measured on every grid")
         };
         let cheapest = |guess: Guess| {
@@ -80,8 +79,8 @@ impl<'a> Row<'a> {
         let climb = self.climb;
         let equal = self.equal_accuracy[0];
         let mesh = equal.map_or("-".to_owned(), |run| match run.way {
-            Way::FiniteElements(element, _) => {
-                format!("{} {}", element.name(), run.layout)
+            Way::FiniteElements(scheme, _) => {
+                format!("{} {}", element_name(scheme), run.layout)
             }
             _ => unreachable!("finite elements"),
         });
@@ -139,7 +138,7 @@ impl<'a> Row<'a> {
 
 /// The finite elements' own error on a grid of nodes, relative to the departure from affine.
 pub fn own_error(runs: &[Run], cells: [usize; 2], scheme: DifferenceScheme) -> f64 {
-    let way = Way::FiniteElements(element(scheme), Guess::Affine);
+    let way = Way::FiniteElements(scheme, Guess::Affine);
     let layout = Layout::equal(cells);
     let found = runs
         .iter()
@@ -193,10 +192,11 @@ fn chart(title: &str, x: &str, points: impl Fn(Way) -> Vec<[f64; 2]>) -> (LineCh
     let ways = [
         Way::Climb(DifferenceScheme::Gauss),
         Way::Climb(DifferenceScheme::Biquadratic),
+        Way::Climb(DifferenceScheme::Bicubic),
         Way::Newton(DifferenceScheme::Biquadratic),
-        Way::FiniteElements(Element::Q1, Guess::Affine),
-        Way::FiniteElements(Element::Q2, Guess::Affine),
-        Way::FiniteElements(Element::Q2, Guess::Nested),
+        Way::FiniteElements(DifferenceScheme::Gauss, Guess::Nested),
+        Way::FiniteElements(DifferenceScheme::Biquadratic, Guess::Nested),
+        Way::FiniteElements(DifferenceScheme::Bicubic, Guess::Nested),
     ];
     let line = |(way, colour): (&Way, &[u8; 3])| {
         Line::new(way.name(), points(*way), *colour, Stroke::Marked)

@@ -27,6 +27,11 @@ impl Layout {
         }
     }
 
+    /// Whether a scheme can take its cells together.
+    pub fn suits(self, scheme: DifferenceScheme) -> bool {
+        self.cells.iter().all(|n| n.is_multiple_of(scheme.side()))
+    }
+
     /// Half as many elements of so many cells a side along both axes, graded in the same way; nothing where their number is odd.
     pub fn halved(self, side: usize) -> Option<Self> {
         let halves = self.cells.iter().all(|n| n.is_multiple_of(2 * side));
@@ -63,8 +68,8 @@ pub enum Way {
     Climb(DifferenceScheme),
     /// Plain Newton on the same equations with the same multigrid.
     Newton(DifferenceScheme),
-    /// Finite elements.
-    FiniteElements(Element, Guess),
+    /// Finite elements with the equations of a scheme.
+    FiniteElements(DifferenceScheme, Guess),
 }
 
 impl Way {
@@ -72,25 +77,32 @@ impl Way {
         match self {
             Self::Climb(scheme) => format!("climb, {}", scheme_name(scheme)),
             Self::Newton(scheme) => format!("Newton with multigrid, {}", scheme_name(scheme)),
-            Self::FiniteElements(element, guess) => {
-                format!("finite elements {}, {} guess", element.name(), guess.name())
-            }
+            Self::FiniteElements(scheme, guess) => format!(
+                "finite elements {}, {} guess",
+                element_name(scheme),
+                guess.name()
+            ),
         }
     }
 }
 
 pub fn scheme_name(scheme: DifferenceScheme) -> &'static str {
-    match scheme {
-        DifferenceScheme::Corners | DifferenceScheme::Gauss => "gauss",
-        DifferenceScheme::Biquadratic => "biquadratic",
-    }
+    let named = DifferenceScheme::NAMES
+        .iter()
+        .find(|(_, own)| *own == scheme);
+    named.expect("a scheme of the table").0
 }
 
-/// The element with the same equations.
-pub fn element(scheme: DifferenceScheme) -> Element {
-    match scheme {
-        DifferenceScheme::Corners | DifferenceScheme::Gauss => Element::Q1,
-        DifferenceScheme::Biquadratic => Element::Q2,
+/// The name of the finite elements with the same equations.
+pub fn element_name(scheme: DifferenceScheme) -> &'static str {
+    ["Q1", "Q2", "Q3"][scheme.side() - 1]
+}
+
+/// The built-in finite elements with the same equations.
+pub fn built_in(scheme: DifferenceScheme) -> Element {
+    match scheme.side() {
+        1 => Element::Q1,
+        _ => Element::Q2,
     }
 }
 
@@ -121,8 +133,8 @@ pub fn go(
 ) -> Result<Found, Error> {
     let start = Instant::now();
     let (scheme, newton) = match way {
-        Way::FiniteElements(element, guess) => {
-            let mut opponent = Opponent::new(problem, layout, element);
+        Way::FiniteElements(scheme, guess) => {
+            let mut opponent = Opponent::new(problem, layout, scheme);
             let mut u = opponent.start(guess, stretch, error);
             let iterations = opponent.solve(&mut u, stretch, error);
             let force = opponent.force(&u);

@@ -28,6 +28,7 @@ mod multipliers;
 mod newton;
 mod path;
 mod ratios;
+mod sheet;
 mod start;
 mod sweep;
 mod tangents;
@@ -38,9 +39,10 @@ mod way;
 pub use crate::problem::RigidMotion;
 pub use grid::{Field, Grid};
 pub use level::Work;
-use level::{Ending, Inverted, Iteration, Level, Sheet};
+use level::{Ending, Iteration, Level};
 pub use path::{Grips, Interactive};
 pub(super) use ratios::{Ratios, geometric_tail};
+use sheet::{Inverted, Sheet};
 pub use way::{Start, Way};
 
 /// Accuracy of the climb.
@@ -76,8 +78,8 @@ pub struct ClimbSolution {
     pub field: Field,
     /// Force on the moving grip in N.
     pub force: f64,
-    /// The change from the grid before to the finest grid; `None` where there is one grid only.
-    change: Option<Field>,
+    /// The change from the grid before to the finest grid, and its size in mm; `None` where there is one grid only.
+    change: Option<(Field, f64)>,
     /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only.
     pub discretisation_error: f64,
     /// Whether the discretisation error is known within a factor of about two: this takes a finest grid with twice as many cells along both
@@ -136,7 +138,7 @@ impl<'a> Climb<'a> {
     /// Prepares the grids of a plate with `cells` equal cells.
     ///
     /// # Panics
-    /// When the scheme takes cells two by two and their number is odd.
+    /// When the scheme takes cells together and their number is no multiple of that.
     pub fn even(
         problem: &'a ClampedPlate,
         cells: [usize; 2],
@@ -151,7 +153,7 @@ impl<'a> Climb<'a> {
     /// singular; see [`mesh::Grid`](crate::mesh::Grid) and [`DifferenceScheme::grading`].
     ///
     /// # Panics
-    /// When the scheme takes cells two by two and their number is odd, or the grading is below 1.
+    /// When the scheme takes cells together and their number is no multiple of that, or the grading is below 1.
     pub fn graded(
         problem: &'a ClampedPlate,
         cells: [usize; 2],
@@ -313,9 +315,8 @@ impl<'a> Climb<'a> {
 
     /// The field after Richardson extrapolation from the finest grid and the one before it; `None` where there is one grid only.
     pub fn extrapolated(&self, climbed: &ClimbSolution) -> Option<Field> {
-        let change = climbed.change.as_ref()?;
+        let (change, size) = climbed.change.as_ref()?;
         let mut field = climbed.field.clone();
-        let size = self.levels[self.levels.len() - 1].size_of(change);
         field.add(climbed.discretisation_error / size, change);
         Some(field)
     }
@@ -333,7 +334,7 @@ fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
 /// The number of elements along both axes for so many cells.
 fn elements(cells: [usize; 2], scheme: DifferenceScheme) -> [usize; 2] {
     cells.map(|cells| {
-        assert!(cells.is_multiple_of(scheme.side()), "pairs of cells");
+        assert!(cells.is_multiple_of(scheme.side()), "cells taken together");
         cells / scheme.side()
     })
 }

@@ -69,16 +69,19 @@ pub struct PlateCorrector<'a> {
     names: PlateNames,
 }
 
-/// Names of a plate's cells and nodes by their places.
-struct PlateNames(Mesh);
+/// Names of a plate's elements and nodes by their places.
+struct PlateNames {
+    elements: Mesh,
+    nodes: Mesh,
+}
 
 impl Describe for PlateNames {
     fn element(&self, element: usize) -> String {
-        self.0.describe_cell(element)
+        self.elements.describe_cell(element)
     }
 
     fn unknown(&self, unknown: usize) -> String {
-        self.0.describe_unknown(unknown)
+        self.nodes.describe_unknown(unknown)
     }
 }
 
@@ -115,7 +118,10 @@ impl<'a> PlateCorrector<'a> {
             energy,
             assembly,
             settings,
-            names: PlateNames(scheme.mesh(mesh)),
+            names: PlateNames {
+                elements: scheme.elements(mesh),
+                nodes: mesh.clone(),
+            },
         }
     }
 

@@ -38,11 +38,25 @@ const TRIANGLE: [[f64; 2]; 6] = [
     [0.0, 0.5],
 ];
 
+/// Gauss's rule with two points on −1…1: point and weight.
+pub const GAUSS_2: [(f64, f64); 2] = [
+    (-0.577_350_269_189_625_8, 1.0),
+    (0.577_350_269_189_625_8, 1.0),
+];
+
 /// Gauss's rule with three points on −1…1: point and weight.
 pub const GAUSS_3: [(f64, f64); 3] = [
     (-0.774_596_669_241_483_4, 5.0 / 9.0),
     (0.0, 8.0 / 9.0),
     (0.774_596_669_241_483_4, 5.0 / 9.0),
+];
+
+/// Gauss's rule with four points on −1…1: point and weight.
+pub const GAUSS_4: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_2),
+    (0.339_981_043_584_856_26, 0.652_145_154_862_546_2),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
 /// Gauss's rule with five points on −1…1: point and weight.
@@ -53,6 +67,23 @@ pub const GAUSS_5: [(f64, f64); 5] = [
     (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
+
+/// The nodes along one axis of an element of a degree, on 0…1: Lobatto's points. Polynomials through them oscillate least, and the
+/// stiffness of linear cells between them is near that of the element.
+///
+/// # Panics
+/// When the degree is 0 or above 3.
+///
+/// # References
+/// S. A. Orszag, J. Comput. Phys. 37, 70 (1980), doi:10.1016/0021-9991(80)90005-4
+pub fn lobatto(degree: usize) -> &'static [f64] {
+    match degree {
+        1 => &[0.0, 1.0],
+        2 => &[0.0, 0.5, 1.0],
+        3 => &[0.0, 0.276_393_202_250_021, 0.723_606_797_749_978_9, 1.0],
+        _ => panic!("degree {degree}"),
+    }
+}
 
 impl CellShape {
     /// All kinds by the names of their finite elements.
@@ -158,14 +189,13 @@ impl CellShape {
 
     /// Points and weights that integrate the stiffness of an undistorted cell exactly.
     pub fn quadrature(self) -> Vec<QuadraturePoint> {
-        let linear = [(-1.0 / 3.0_f64.sqrt(), 1.0), (1.0 / 3.0_f64.sqrt(), 1.0)];
         match self {
             Self::Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
             Self::Triangle6 => {
                 let (a, b) = (1.0 / 6.0, 2.0 / 3.0);
                 [[a, a], [b, a], [a, b]].map(|point| (point, a)).to_vec()
             }
-            Self::Quad4 => self.product_quadrature(&linear),
+            Self::Quad4 => self.product_quadrature(&GAUSS_2),
             Self::Quad8 | Self::Quad9 => self.product_quadrature(&GAUSS_3),
         }
     }

@@ -1,5 +1,7 @@
 //! The lines of a plate's cells, equal or smaller towards its corners.
 
+use super::cell_shape::lobatto;
+
 /// Named sides of the plate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -47,7 +49,8 @@ pub struct Grid {
     pub cells: [usize; 2],
     /// The exponent g.
     pub grading: f64,
-    /// Number of cells along both axes that are equal and graded as one: 1, or 2 where cells are taken two by two.
+    /// Number of cells along both axes that are graded as one, between the nodes of an element of this degree (Lobatto's points): 1, or
+    /// 2 equal ones, or 3.
     pub together: usize,
 }
 
@@ -91,7 +94,7 @@ impl Grid {
     /// Length and width of a cell in mm.
     pub(super) fn cell_size(self, cell: usize) -> [f64; 2] {
         let place = [cell / self.cells[1], cell % self.cells[1]];
-        [0, 1].map(|axis| match self.grading == 1.0 {
+        [0, 1].map(|axis| match self.is_equal() {
             true => self.size[axis] / self.cells[axis] as f64,
             false => {
                 let line = |line: usize| self.node_line(axis, line, 1);
@@ -103,7 +106,7 @@ impl Grid {
     /// The place of a line of nodes, with `degree` lines per cell.
     pub(super) fn node_line(self, axis: usize, node: usize, degree: usize) -> f64 {
         let cells = self.cells[axis];
-        if self.grading == 1.0 {
+        if self.is_equal() {
             return self.line(axis, node, cells * degree);
         }
         let (blocks, steps) = (cells / self.together, degree * self.together);
@@ -112,14 +115,25 @@ impl Grid {
         if part == 0 {
             return from;
         }
-        from + (self.line(axis, block + 1, blocks) - from) * part as f64 / steps as f64
+        let (places, cell) = (lobatto(self.together), part / degree);
+        let within = (part % degree) as f64 / degree as f64;
+        let share = match within == 0.0 {
+            true => places[cell],
+            false => places[cell] + (places[cell + 1] - places[cell]) * within,
+        };
+        from + (self.line(axis, block + 1, blocks) - from) * share
+    }
+
+    /// Whether all cells are equal.
+    fn is_equal(self) -> bool {
+        self.grading == 1.0 && self.together < 3
     }
 
     /// The cell that contains a point, and the point's natural coordinates in it.
     pub(super) fn locate(self, point: [f64; 2]) -> (usize, [f64; 2]) {
         let place = |axis: usize| {
             let cells = self.cells[axis];
-            if self.grading == 1.0 {
+            if self.is_equal() {
                 let step = self.size[axis] / cells as f64;
                 let index = ((point[axis] / step) as usize).min(cells - 1);
                 return (index, 2.0 * (point[axis] / step - index as f64) - 1.0);
@@ -135,10 +149,12 @@ impl Grid {
             };
             let block = (steps as usize).min(blocks - 1);
             let [from, to] = [block, block + 1].map(|step| self.line(axis, step, blocks));
-            let along = (point[axis] - from) / (to - from) * self.together as f64;
-            let part = (along as usize).min(self.together - 1);
+            let along = (point[axis] - from) / (to - from);
+            let places = lobatto(self.together);
+            let part = places[1..self.together].partition_point(|place| *place <= along);
+            let [from, to] = [places[part], places[part + 1]];
             let index = block * self.together + part;
-            (index, 2.0 * (along - part as f64) - 1.0)
+            (index, 2.0 * (along - from) / (to - from) - 1.0)
         };
         let ((i, x), (j, y)) = (place(0), place(1));
         (i * self.cells[1] + j, [x, y])

@@ -138,6 +138,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::lobatto;
 
     #[test]
     fn sides_are_found_whatever_the_size() {
@@ -166,15 +167,15 @@ mod tests {
         let shapes = [CellShape::Quad4, CellShape::Quad9];
         for (shape, together) in shapes
             .into_iter()
-            .flat_map(|shape| [(shape, 1), (shape, 2)])
+            .flat_map(|shape| [(shape, 1), (shape, 2), (shape, 3)])
         {
-            let single = Grid::new([150.0, 50.0], [12, 6 - together], 2.0);
+            let single = Grid::new([150.0, 50.0], [12, [5, 4, 3][together - 1]], 2.0);
             let grid = Grid { together, ..single };
             let mesh = Mesh::of_grid(grid, shape);
             let column = |cell: usize| mesh.centre(grid.cells[1] * cell)[0];
             assert!((column(0) + column(11) - 150.0).abs() < 1e-12);
-            // The first line lies at ½ (2/12)² of the length; that of the first pair at ½ (2/6)².
-            let first = [75.0 / 72.0, 75.0 / 36.0][together - 1];
+            // The first line lies at ½ (2/12)² of the length; that of the first pair at ½ (2/6)², that of the first three at ½ (2/4)².
+            let first = [75.0 / 72.0, 75.0 / 36.0, 75.0 / 8.0 * lobatto(3)[1]][together - 1];
             assert!((column(0) - first).abs() < 1e-12);
             assert!((mesh.cell_size(0)[0] - 2.0 * first).abs() < 1e-12);
             for cell in 0..mesh.cell_count() {

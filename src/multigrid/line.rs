@@ -1,23 +1,12 @@
 //! One line of a grid's operator: its coefficients, its residual and its smoothing in vectors of numbers.
 
-use pulp::{NullaryFnOnce, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::blocks::{EAST, INVERSE, ITSELF, NORTH, NORTH_EAST, SOUTH_EAST, transposed};
 use super::vector::{Pair, VECTOR};
 
 /// Coefficients kept for a node, see [`blocks`](super::blocks).
 pub const COEFFICIENTS: usize = 20;
-
-/// P₁₁, P₁₂, P₂₂, Q₁₁, Q₁₂, Q₂₂, R₁₁, R₁₂, R₂₁, R₂₂ of the cells of one column, with a cell of no stiffness at either end.
-#[derive(Clone, Debug)]
-pub struct CellStiffness(pub [Vec<f32>; 10]);
-
-impl CellStiffness {
-    /// Zeros for a column of so many cells.
-    pub fn zeros(cells: usize) -> Self {
-        Self(std::array::from_fn(|_| vec![0.0; cells + 2]))
-    }
-}
 
 /// The coefficients of one line.
 #[derive(Clone, Copy)]
@@ -42,154 +31,6 @@ impl<'a> LineStencil<'a> {
             load::<S>(self.array(c), place),
             load::<S>(self.array(d), place),
         ]
-    }
-}
-
-/// Puts a line together from the cells on both sides.
-pub struct AssembleLine<'a> {
-    pub left: &'a CellStiffness,
-    pub right: &'a CellStiffness,
-    pub target: &'a mut [f32],
-    pub stride: usize,
-    pub nodes: usize,
-}
-
-impl NullaryFnOnce for AssembleLine<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self {
-            left,
-            right,
-            target,
-            stride,
-            nodes,
-        } = self;
-        let beside = Beside { left, right, nodes };
-        let mut arrays = target.chunks_exact_mut(stride);
-        let mut next = || &mut arrays.next().expect("an array a coefficient")[1..=nodes];
-        for numbers in SYMMETRIC {
-            beside.own(numbers, next());
-        }
-        for numbers in FULL {
-            beside.north(numbers, next());
-        }
-        for numbers in FULL {
-            beside.east(numbers, next());
-        }
-        for above in [true, false] {
-            for numbers in SYMMETRIC {
-                beside.corner(numbers, above, next());
-            }
-        }
-        invert(target, stride, nodes);
-    }
-}
-
-/// Numbers of P, Q, R and Rᵀ in [`CellStiffness`] for each coefficient of a symmetric block, and of any block.
-const SYMMETRIC: [[usize; 4]; 3] = [[0, 3, 6, 6], [1, 4, 7, 8], [2, 5, 9, 9]];
-const FULL: [[usize; 4]; 4] = [[0, 3, 6, 6], [1, 4, 7, 8], [1, 4, 8, 7], [2, 5, 9, 9]];
-const THIRD: f32 = 1.0 / 3.0;
-const SIXTH: f32 = 1.0 / 6.0;
-
-/// The columns of cells on both sides of a line.
-struct Beside<'a> {
-    left: &'a CellStiffness,
-    right: &'a CellStiffness,
-    nodes: usize,
-}
-
-impl<'a> Beside<'a> {
-    /// A number of the cells below and above each node, to the left; of the cells beside node j, cell j lies below it
-    /// and cell j + 1 above it.
-    #[inline(always)]
-    fn left(&self, k: usize) -> (&'a [f32], &'a [f32]) {
-        (
-            &self.left.0[k][..self.nodes],
-            &self.left.0[k][1..=self.nodes],
-        )
-    }
-
-    /// The same to the right.
-    #[inline(always)]
-    fn right(&self, k: usize) -> (&'a [f32], &'a [f32]) {
-        (
-            &self.right.0[k][..self.nodes],
-            &self.right.0[k][1..=self.nodes],
-        )
-    }
-
-    /// Own block, symmetric: Σ (P + Q)/3 + s (R + Rᵀ), s = sx sy.
-    #[inline(always)]
-    fn own(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
-        let ((pa, pb), (pc, pd)) = (self.left(p), self.right(p));
-        let ((qa, qb), (qc, qd)) = (self.left(q), self.right(q));
-        let ((ra, rb), (rc, rd)) = (self.left(r), self.right(r));
-        let ((ta, tb), (tc, td)) = (self.left(t), self.right(t));
-        for j in 0..self.nodes {
-            let both = (pa[j] + pb[j]) + (pc[j] + pd[j]) + (qa[j] + qb[j]) + (qc[j] + qd[j]);
-            let mixed = (ra[j] - rb[j]) - (rc[j] - rd[j]) + ((ta[j] - tb[j]) - (tc[j] - td[j]));
-            out[j] = THIRD * both + mixed;
-        }
-    }
-
-    /// N: P/6 − Q/3, and −R + Rᵀ of the cell to the right, R − Rᵀ of that to the left.
-    #[inline(always)]
-    fn north(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
-        let ((_, pb), (_, pd)) = (self.left(p), self.right(p));
-        let ((_, qb), (_, qd)) = (self.left(q), self.right(q));
-        let ((_, rb), (_, rd)) = (self.left(r), self.right(r));
-        let ((_, tb), (_, td)) = (self.left(t), self.right(t));
-        for j in 0..self.nodes {
-            let mixed = (rb[j] - tb[j]) - (rd[j] - td[j]);
-            out[j] = SIXTH * (pb[j] + pd[j]) - THIRD * (qb[j] + qd[j]) + mixed;
-        }
-    }
-
-    /// E: −P/3 + Q/6, and R − Rᵀ of the cell above, −R + Rᵀ of that below.
-    #[inline(always)]
-    fn east(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
-        let ((pc, pd), (qc, qd)) = (self.right(p), self.right(q));
-        let ((rc, rd), (tc, td)) = (self.right(r), self.right(t));
-        for j in 0..self.nodes {
-            let mixed = (rd[j] - td[j]) - (rc[j] - tc[j]);
-            out[j] = SIXTH * (qc[j] + qd[j]) - THIRD * (pc[j] + pd[j]) + mixed;
-        }
-    }
-
-    /// NE: −(P + Q)/6 − (R + Rᵀ) of the cell above; SE: −(P + Q)/6 + (R + Rᵀ) of that below.
-    #[inline(always)]
-    fn corner(&self, numbers: [usize; 4], above: bool, out: &mut [f32]) {
-        let pick = |k: usize| {
-            if above {
-                self.right(k).1
-            } else {
-                self.right(k).0
-            }
-        };
-        let [p, q, r, t] = numbers.map(pick);
-        let sign = if above { -1.0 } else { 1.0 };
-        for j in 0..self.nodes {
-            out[j] = sign * (r[j] + t[j]) - SIXTH * (p[j] + q[j]);
-        }
-    }
-}
-
-/// The inverse of the own block of each node, behind the blocks.
-#[inline(always)]
-fn invert(target: &mut [f32], stride: usize, nodes: usize) {
-    let (blocks, inverses) = target.split_at_mut(INVERSE[0] * stride);
-    let own = |k: usize| &blocks[k * stride + 1..][..nodes];
-    let (a, b, c) = (own(0), own(1), own(2));
-    let mut arrays = inverses.chunks_exact_mut(stride);
-    let mut next = || &mut arrays.next().expect("three arrays")[1..=nodes];
-    let (first, second, third) = (next(), next(), next());
-    for j in 0..nodes {
-        let inverse = 1.0 / (a[j] * c[j] - b[j] * b[j]);
-        first[j] = c[j] * inverse;
-        second[j] = -b[j] * inverse;
-        third[j] = a[j] * inverse;
     }
 }
 

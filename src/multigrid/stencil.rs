@@ -16,10 +16,9 @@ use std::cell::RefCell;
 use pulp::Arch;
 use rayon::prelude::*;
 
+use super::assembled_line::{AssembleLine, CellStiffness};
 use super::blocks::{EAST, ITSELF, NORTH, NORTH_EAST, SOUTH_EAST};
-use super::line::{
-    AssembleLine, COEFFICIENTS, CellStiffness, LineResidual, LineStencil, SmoothLine,
-};
+use super::line::{COEFFICIENTS, LineResidual, LineStencil, SmoothLine};
 use super::vector::{Lines, Neighbours, Vector};
 
 /// The order of a sweep over all lines.

@@ -21,21 +21,25 @@ impl Interpolation {
         Self::lagrange(nodes, places, 4.min(nodes.len()))
     }
 
+    /// By the polynomials of a degree through the nodes of each element.
+    pub fn of_elements(nodes: &[f64], places: &[f64], degree: usize) -> Self {
+        let last = (nodes.len() - 1) / degree - 1;
+        let share = |place: &f64| {
+            let after = nodes.partition_point(|node| node <= place);
+            let first = (after.saturating_sub(1) / degree).min(last) * degree;
+            (first, shares(&nodes[first..=first + degree], *place))
+        };
+        Self {
+            shares: places.iter().map(share).collect(),
+            width: degree + 1,
+        }
+    }
+
     fn lagrange(nodes: &[f64], places: &[f64], width: usize) -> Self {
         let share = |place: &f64| {
             let after = nodes.partition_point(|node| node <= place);
             let first = after.saturating_sub(width / 2).min(nodes.len() - width);
-            let mut shares = [0.0; 4];
-            for (i, share) in shares[..width].iter_mut().enumerate() {
-                let own = nodes[first + i];
-                let others = (0..width)
-                    .filter(|other| *other != i)
-                    .map(|other| nodes[first + other]);
-                *share = others
-                    .map(|other| (place - other) / (own - other))
-                    .product();
-            }
-            (first, shares)
+            (first, shares(&nodes[first..first + width], *place))
         };
         Self {
             shares: places.iter().map(share).collect(),
@@ -53,6 +57,18 @@ impl Interpolation {
         let (first, shares) = &self.shares[place];
         (*first, &shares[..self.width])
     }
+}
+
+/// The shares of up to four nodes at a place, by the polynomial through them.
+fn shares(nodes: &[f64], place: f64) -> [f64; 4] {
+    let mut shares = [0.0; 4];
+    for (i, (share, own)) in shares.iter_mut().zip(nodes).enumerate() {
+        let others = nodes.iter().enumerate().filter(|(other, _)| *other != i);
+        *share = others
+            .map(|(_, other)| (place - other) / (own - other))
+            .product();
+    }
+    shares
 }
 
 /// The linear prolongation between two grids, along one axis, and its transpose.

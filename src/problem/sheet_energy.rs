@@ -92,9 +92,15 @@ impl SheetEnergy {
                 energy.reserve(mesh.cell_count());
             }
         }
+        energy.with_places(mesh.nodes.clone())
+    }
+
+    /// The same energy with the places of its nodes: large systems are eliminated in an order by places.
+    #[must_use]
+    pub fn with_places(self, nodes: Vec<[f64; 2]>) -> Self {
         Self {
-            connectivity: energy.connectivity.with_places(mesh.nodes.clone()),
-            ..energy
+            connectivity: self.connectivity.with_places(nodes),
+            ..self
         }
     }
 

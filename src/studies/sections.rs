@@ -98,7 +98,7 @@ pub fn need_of_cells(cells: [usize; 2], unknowns: f64, states: usize) -> Need {
 fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
     let aspect = aspect(size, cells);
     if aspect > LARGEST_ASPECT {
-        let [along, across] = nearly_square_cells(size, cells[0]);
+        let [along, across] = nearly_square_cells(size, cells[0], 2);
         section.fault(
             "cells",
             &format!("the sides of a cell have the ratio {aspect:.2}; springs need less than √3"),
@@ -113,30 +113,35 @@ fn aspect(size: [f64; 2], cells: [usize; 2]) -> f64 {
     (sides[0] / sides[1]).max(sides[1] / sides[0])
 }
 
-/// The even numbers of cells next to some numbers, of which springs can make a lattice.
-pub fn even_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
-    let up = cells.map(|n| n.next_multiple_of(2).min(MOST_CELLS));
-    let down = cells.map(|n| (n - n % 2).max(2));
+/// The multiples of two numbers next to some numbers of cells, of which springs can make a lattice.
+pub fn multiples_of_cells(size: [f64; 2], cells: [usize; 2], multiples: [usize; 2]) -> [usize; 2] {
+    let both = |axis: usize| {
+        let (n, of) = (cells[axis], multiples[axis]);
+        let most = MOST_CELLS - MOST_CELLS % of;
+        [n.next_multiple_of(of).min(most), (n - n % of).max(of)]
+    };
+    let [[up_x, down_x], [up_y, down_y]] = [both(0), both(1)];
+    let (up, down) = ([up_x, up_y], [down_x, down_y]);
     let nearest = [up, [up[0], down[1]], [down[0], up[1]], down];
     let mut usable = nearest.into_iter().filter(|cells| {
         aspect(size, *cells) < LARGEST_ASPECT && cells[0] * cells[1] <= Budget::USUAL.cells as usize
     });
     usable
         .next()
-        .unwrap_or_else(|| nearly_square_cells(size, cells[0]))
+        .unwrap_or_else(|| nearly_square_cells(size, cells[0], multiples[0].max(multiples[1])))
 }
 
-/// Even numbers of nearly square cells, about as many along the plate as are wanted and no more than a study may have.
-fn nearly_square_cells(size: [f64; 2], along: usize) -> [usize; 2] {
-    let even = |number: f64| 2 * ((number / 2.0).round().max(1.0) as usize);
+/// Multiples of a number of nearly square cells, about as many along the plate as are wanted and no more than a study may have.
+fn nearly_square_cells(size: [f64; 2], along: usize, of: usize) -> [usize; 2] {
+    let next = |number: f64| {
+        let count = (number / of as f64).round().max(1.0) as usize;
+        of * count.min(MOST_CELLS / of)
+    };
     let ratio = size[0] / size[1];
-    let most = (0.98 * Budget::USUAL.cells * ratio).sqrt();
+    let most = (0.95 * Budget::USUAL.cells * ratio).sqrt();
     let most = most.min(0.98 * MOST_CELLS as f64 * ratio.min(1.0));
-    let across = even((along as f64).min(most) / ratio);
-    [
-        even(ratio * across as f64).min(MOST_CELLS),
-        across.min(MOST_CELLS),
-    ]
+    let across = next((along.max(of) as f64).min(most) / ratio);
+    [next(ratio * across as f64), across]
 }
 
 /// Warns of stretches outside the range of the card, or beyond the stability of its law.
@@ -231,23 +236,24 @@ impl Tolerances {
 mod tests {
     use super::*;
 
+    fn advise(size: [f64; 2], along: usize, of: usize) {
+        let cells = nearly_square_cells(size, along, of);
+        let told = format!("{size:?}, {along}, {of}: {cells:?}");
+        assert!(aspect(size, cells) < LARGEST_ASPECT, "{told}");
+        let fits = |n: &usize| n.is_multiple_of(of) && *n <= MOST_CELLS;
+        assert!(cells.iter().all(fits), "{told}");
+        let all = cells[0] * cells[1];
+        assert!(all <= Budget::USUAL.cells as usize, "{told}");
+    }
+
     #[test]
     fn advised_numbers_of_cells_are_accepted() {
         for length in [1.0, 3.0, 10.0, 37.0, 150.0, 700.0] {
             for width in [1.0, 2.5, 10.0, 50.0, 333.0] {
                 for along in [2, 3, 7, 20, 61, 500, 2000] {
-                    let cells = nearly_square_cells([length, width], along);
-                    let aspect = aspect([length, width], cells);
-                    let told = format!("{length} × {width}, {along}: {cells:?}");
-                    assert!(aspect < LARGEST_ASPECT, "{told}");
-                    assert!(
-                        cells.iter().all(|n| n % 2 == 0 && *n <= MOST_CELLS),
-                        "{told}"
-                    );
-                    assert!(
-                        cells[0] * cells[1] <= Budget::USUAL.cells as usize,
-                        "{told}"
-                    );
+                    for of in [2, 6] {
+                        advise([length, width], along, of);
+                    }
                 }
             }
         }

@@ -73,19 +73,36 @@ impl Ascent {
     }
 
     /// The size of the change from the interpolated field before to one on a finer grid, and the ratio of changes that follows.
-    fn change_to(&self, level: &Level, field: &Field, interpolated: &Field) -> [f64; 2] {
-        let mut change = field.clone();
-        change.add(-1.0, interpolated);
-        let size = level.size_of(&change);
+    ///
+    /// Cubics are more exact at their nodes than between them: they are compared at the nodes of the grid before.
+    fn change_to(
+        &self,
+        [coarse, fine]: [&Level; 2],
+        field: &Field,
+        interpolated: &Field,
+    ) -> [f64; 2] {
+        let size = match fine.grid.has_cubics() {
+            true => {
+                let mut change = field.onto(&fine.grid, &coarse.grid);
+                change.add(-1.0, &self.field);
+                change.size()
+            }
+            false => {
+                let mut change = field.clone();
+                change.add(-1.0, interpolated);
+                fine.size_of(&change)
+            }
+        };
         [size, self.ratios.told([self.size, size], self.ratio)]
     }
 
     /// Sets the field of a finer grid; `interpolated` is the one before on it.
-    fn take(&mut self, level: &Level, field: Field, mut interpolated: Field) {
-        [self.size, self.ratio] = self.change_to(level, &field, &interpolated);
+    fn take(&mut self, levels: &[Level], index: usize, field: Field, mut interpolated: Field) {
+        let pair = [self.index, index].map(|index| &levels[index]);
+        [self.size, self.ratio] = self.change_to(pair, &field, &interpolated);
         interpolated.scale(-1.0);
         interpolated.add(1.0, &field);
-        (self.index, self.field, self.change) = (level.index, field, Some(interpolated));
+        (self.index, self.field, self.change) = (index, field, Some(interpolated));
     }
 
     /// Whether a change is known, and all changes are between consecutive grids.
@@ -127,7 +144,7 @@ impl Climb<'_> {
             discretisation_error: ascent.discretisation_error(),
             error_is_sure: ascent.follows_all_grids() && self.tells_error(),
             field: ascent.field,
-            change: ascent.change,
+            change: ascent.change.map(|change| (change, ascent.size)),
             iteration_error: ascent.iteration_error,
             corrections: ascent.corrections,
             work: ascent.work,
@@ -159,7 +176,7 @@ impl Climb<'_> {
         }
         let reached = found?;
         self.weakest = reached.fall.weakest;
-        ascent.take(&self.levels[index], field, interpolated);
+        ascent.take(&self.levels, index, field, interpolated);
         ascent.iteration_error = reached.fall.left();
         ascent.corrections = reached.fall.corrections;
         ascent
@@ -189,7 +206,8 @@ impl Climb<'_> {
         };
         let mut reached = self.solve(index, field, &enough)?;
         for _ in 0..if finest { AGAIN } else { 0 } {
-            let [change, ratio] = ascent.change_to(&self.levels[index], field, interpolated);
+            let pair = [ascent.index, index].map(|index| &self.levels[index]);
+            let [change, ratio] = ascent.change_to(pair, field, interpolated);
             let limit = SURE * tolerance * geometric_tail(change, ratio);
             if reached.fall.left() <= limit {
                 break;
@@ -207,7 +225,7 @@ impl Climb<'_> {
         self.write_operators(&found);
         let [coarse, fine] = [ascent.index, found.index].map(|index| &self.levels[index].grid);
         let interpolated = ascent.field.onto(coarse, fine);
-        ascent.take(&self.levels[found.index], found.field, interpolated);
+        ascent.take(&self.levels, found.index, found.field, interpolated);
         ascent.work.push((fine.nodes(), Work::default()));
         ascent.note_load_path(found.left, fine.cells());
         Ok(())

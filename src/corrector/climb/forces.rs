@@ -5,11 +5,13 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::grid::{Field, Grid, Rule};
+use super::grid::{Field, Grid};
+use crate::corrector::sampling::Rule;
 use crate::material::HyperelasticLaw;
 
-/// Elements that are evaluated together: their numbers stay in the nearest cache.
-const BLOCK: usize = 32;
+/// Most elements that are evaluated together, and most of their points: their numbers stay in the nearest cache.
+const MOST: usize = 32;
+const CAPACITY: usize = 9 * MOST;
 
 /// Numbers of double precision in the widest vector of present machines.
 const VECTOR: usize = 8;
@@ -113,19 +115,23 @@ impl Columns {
     }
 }
 
-/// Most points of an element, and most nodes.
-const POINTS: usize = 9;
+/// Elements with so many nodes along each axis that are evaluated together: whole vectors.
+const fn block(nodes: usize) -> usize {
+    let elements = CAPACITY / (nodes * nodes) / VECTOR * VECTOR;
+    assert!(elements > 0);
+    if elements < MOST { elements } else { MOST }
+}
 
 /// A block of elements: numbers of one kind lie side by side, one for each element. It is on the stack, so that an evaluation allocates nothing.
 struct Workspace<const NODES: usize> {
     /// Displacements of axis, line and node along Y.
-    displacements: [f64; 2 * POINTS * BLOCK],
+    displacements: [f64; 2 * CAPACITY],
     /// Forces of axis, line and node along Y.
-    forces: [f64; 2 * POINTS * BLOCK],
-    gradients: [[f64; POINTS * BLOCK]; 4],
-    stresses: [[f64; POINTS * BLOCK]; 4],
+    forces: [f64; 2 * CAPACITY],
+    gradients: [[f64; CAPACITY]; 4],
+    stresses: [[f64; CAPACITY]; 4],
     /// Sides of the elements along X and Y in mm.
-    sides: [[f64; BLOCK]; 2],
+    sides: [[f64; MOST]; 2],
 }
 
 /// The numbers of a vector that begin at a place.
@@ -154,14 +160,15 @@ fn combine<S: Simd, const NODES: usize>(
 }
 
 impl<const NODES: usize> Workspace<NODES> {
+    const BLOCK: usize = block(NODES);
+
     fn new() -> Self {
-        const { assert!(NODES * NODES <= POINTS) };
         Self {
-            displacements: [0.0; 2 * POINTS * BLOCK],
-            forces: [0.0; 2 * POINTS * BLOCK],
-            gradients: [[0.0; POINTS * BLOCK]; 4],
-            stresses: [[0.0; POINTS * BLOCK]; 4],
-            sides: [[1.0; BLOCK]; 2],
+            displacements: [0.0; 2 * CAPACITY],
+            forces: [0.0; 2 * CAPACITY],
+            gradients: [[0.0; CAPACITY]; 4],
+            stresses: [[0.0; CAPACITY]; 4],
+            sides: [[1.0; MOST]; 2],
         }
     }
 
@@ -175,8 +182,8 @@ impl<const NODES: usize> Workspace<NODES> {
     ) -> bool {
         let elements = columns.count * columns.elements;
         let mut admissible = true;
-        for first in (0..elements).step_by(BLOCK) {
-            let block = first..(first + BLOCK).min(elements);
+        for first in (0..elements).step_by(Self::BLOCK) {
+            let block = first..(first + Self::BLOCK).min(elements);
             let padded = block.len().next_multiple_of(VECTOR);
             for run in columns.runs(block.clone()) {
                 self.gather(grid, u, columns.column(&run), &run);
@@ -219,7 +226,7 @@ impl<const NODES: usize> Workspace<NODES> {
             let node = (run.first + element) * order;
             *height = grid.span(1, node, node + order);
         }
-        let mut kinds = self.displacements.chunks_exact_mut(BLOCK);
+        let mut kinds = self.displacements.chunks_exact_mut(Self::BLOCK);
         for component in &u.components {
             for line in 0..NODES {
                 let line = &component[(column * order + line) * u.width..][..u.width];
@@ -235,7 +242,7 @@ impl<const NODES: usize> Workspace<NODES> {
 
     /// Repeats the last of some elements to fill a whole vector.
     fn pad(&mut self, count: usize, padded: usize) {
-        let displacements = self.displacements.chunks_exact_mut(BLOCK);
+        let displacements = self.displacements.chunks_exact_mut(Self::BLOCK);
         let kinds = displacements.take(2 * NODES * NODES);
         for kind in kinds.chain(self.sides.iter_mut().map(|side| &mut side[..])) {
             let last = kind[count - 1];
@@ -253,7 +260,7 @@ impl<const NODES: usize> Workspace<NODES> {
                 let target = &mut forces[column + line * width..][..run.count * order + 1];
                 for node in (0..NODES).rev() {
                     let kind = (axis * NODES + line) * NODES + node;
-                    let own = &self.forces[kind * BLOCK + run.lane..][..run.count];
+                    let own = &self.forces[kind * Self::BLOCK + run.lane..][..run.count];
                     let target = target[node..].iter_mut().step_by(order);
                     target.zip(own).for_each(|(sum, force)| *sum += force);
                 }
@@ -265,7 +272,7 @@ impl<const NODES: usize> Workspace<NODES> {
 struct Gradients<'a, const NODES: usize> {
     rule: &'a Rule<NODES>,
     padded: usize,
-    sides: &'a [[f64; BLOCK]; 2],
+    sides: &'a [[f64; MOST]; 2],
     displacements: &'a [f64],
     gradients: [&'a mut [f64]; 4],
 }
@@ -294,7 +301,7 @@ impl<const NODES: usize> WithSimd for Gradients<'_, NODES> {
                         let mut u = [zero; NODES];
                         for (line, u) in u.iter_mut().enumerate() {
                             let kind = (axis * NODES + line) * NODES + node;
-                            *u = load::<S>(self.displacements, kind * BLOCK + first);
+                            *u = load::<S>(self.displacements, kind * block(NODES) + first);
                         }
                         slopes[node] = combine(simd, &derivatives[across], u);
                         means[node] = combine(simd, &values[across], u);
@@ -316,7 +323,7 @@ struct NodalForces<'a, const NODES: usize> {
     rule: &'a Rule<NODES>,
     thickness: f64,
     padded: usize,
-    sides: &'a [[f64; BLOCK]; 2],
+    sides: &'a [[f64; MOST]; 2],
     stresses: [&'a [f64]; 4],
     forces: &'a mut [f64],
 }
@@ -354,7 +361,7 @@ impl<const NODES: usize> WithSimd for NodalForces<'_, NODES> {
                             combine(simd, &values[line], y),
                         );
                         let kind = (axis * NODES + line) * NODES + node;
-                        store::<S>(self.forces, kind * BLOCK + first, sum);
+                        store::<S>(self.forces, kind * block(NODES) + first, sum);
                     }
                 }
             }

@@ -1,84 +1,33 @@
 //! A plate's grid: the coordinates of its nodes, and fields on them.
 
 use super::sweep::Part;
-use crate::mesh;
+use crate::mesh::{self, lobatto};
 use crate::multigrid::{Interpolation, Lines};
-
-/// The points at which the energy of an element is sampled along one axis, and the functions there.
-///
-/// ```text
-/// one cell         two nodes along each axis, sampled at the corners or at 2 × 2 Gauss points
-/// two by two cells three nodes along each axis, sampled at 3 × 3 Gauss points
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct Rule<const NODES: usize> {
-    /// Share of the element's length.
-    pub weights: [f64; NODES],
-    /// Values of the functions: point, node.
-    pub values: [[f64; NODES]; NODES],
-    /// Their derivatives with respect to the element's unit coordinate.
-    pub derivatives: [[f64; NODES]; NODES],
-}
-
-impl Rule<2> {
-    /// Linear functions at both ends.
-    pub fn corners() -> Self {
-        Self {
-            weights: [0.5; 2],
-            values: [[1.0, 0.0], [0.0, 1.0]],
-            derivatives: [[-1.0, 1.0]; 2],
-        }
-    }
-
-    /// Linear functions at two Gauss points.
-    pub fn linear() -> Self {
-        let gauss = 0.5 / 3.0_f64.sqrt();
-        let points = [0.5 - gauss, 0.5 + gauss];
-        Self {
-            weights: [0.5; 2],
-            values: points.map(|x| [1.0 - x, x]),
-            derivatives: [[-1.0, 1.0]; 2],
-        }
-    }
-}
-
-impl Rule<3> {
-    /// Quadratic functions at three Gauss points.
-    pub fn quadratic() -> Self {
-        let gauss = 0.5 * 0.6_f64.sqrt();
-        let points = [0.5 - gauss, 0.5, 0.5 + gauss];
-        Self {
-            weights: [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0],
-            values: points.map(|x| {
-                [
-                    (1.0 - x) * (1.0 - 2.0 * x),
-                    4.0 * x * (1.0 - x),
-                    x * (2.0 * x - 1.0),
-                ]
-            }),
-            derivatives: points.map(|x| [4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0]),
-        }
-    }
-}
 
 /// Places and lengths that differ by less are equal.
 const SAME: f64 = 1e-9;
+
+/// The degree from which on elements' own polynomials interpolate as well as cubics.
+const CUBIC: usize = 3;
 
 /// The nodes of a plate along both axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// Coordinates in mm.
     pub coordinates: [Vec<f64>; 2],
+    /// The degree of the elements between them: cells along their sides.
+    pub degree: usize,
 }
 
 impl Grid {
-    /// A grid whose element boundaries are the given coordinates, each element with `side` cells of one size along
-    /// each axis.
-    pub fn new(boundaries: [&[f64]; 2], side: usize) -> Self {
+    /// A grid whose element boundaries are the given coordinates, each element with the nodes of a degree along each axis; see
+    /// [`lobatto`].
+    pub fn new(boundaries: [&[f64]; 2], degree: usize) -> Self {
+        let nodes = &lobatto(degree)[..degree];
         let divide = |boundaries: &[f64]| {
             let within = |pair: &[f64]| -> Vec<f64> {
-                let step = (pair[1] - pair[0]) / side as f64;
-                (0..side).map(|part| pair[0] + part as f64 * step).collect()
+                let length = pair[1] - pair[0];
+                nodes.iter().map(|node| pair[0] + node * length).collect()
             };
             let mut nodes: Vec<f64> = boundaries.windows(2).flat_map(within).collect();
             nodes.extend(boundaries.last());
@@ -86,6 +35,7 @@ impl Grid {
         };
         Self {
             coordinates: boundaries.map(divide),
+            degree,
         }
     }
 
@@ -103,7 +53,13 @@ impl Grid {
         let grid = mesh::Grid::new(size, cells, grading);
         Self {
             coordinates: [0, 1].map(|axis| grid.lines(axis)),
+            degree: 1,
         }
+    }
+
+    /// Whether its elements have cubics of their own.
+    pub fn has_cubics(&self) -> bool {
+        self.degree >= CUBIC
     }
 
     /// The grid's lines.
@@ -129,8 +85,12 @@ impl Grid {
         })
     }
 
-    /// The nodes along both axes that a coarser grid has too, if they are at least a third of the coarser grid's nodes.
+    /// The nodes along both axes that a coarser grid has too, if they are at least a third of the coarser grid's nodes and
+    /// interpolation between them adds an error of its own.
     pub fn shared_with(&self, coarser: &Self) -> Option<[Vec<usize>; 2]> {
+        if self.has_cubics() {
+            return None;
+        }
         let shared = [0, 1].map(|axis| -> Vec<usize> {
             let (own, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);
             let near = SAME * own[own.len() - 1];
@@ -243,10 +203,16 @@ impl Field {
         self.width..self.components[0].len() - self.width
     }
 
-    /// Interpolates the field on `grid` at the nodes of `finer` by cubics.
+    /// Interpolates the field on `grid` at the nodes of `finer` by cubics: those of its elements if they have them, otherwise those through
+    /// the four nodes around each.
     pub fn onto(&self, grid: &Grid, finer: &Grid) -> Self {
-        let [along_x, along_y] = [0, 1]
-            .map(|axis| Interpolation::cubic(&grid.coordinates[axis], &finer.coordinates[axis]));
+        let [along_x, along_y] = [0, 1].map(|axis| {
+            let [nodes, places] = [grid, finer].map(|grid| &grid.coordinates[axis]);
+            match grid.has_cubics() {
+                true => Interpolation::of_elements(nodes, places, grid.degree),
+                false => Interpolation::cubic(nodes, places),
+            }
+        });
         let mut field = Self::zeros(finer);
         let (own, width) = (self.width, field.width);
         for (from, to) in self.components.iter().zip(&mut field.components) {

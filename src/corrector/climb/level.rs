@@ -1,12 +1,10 @@
 //! One grid of the climb: its equation, and the iteration that solves it.
 
 use super::fall::Fall;
-use super::forces::forces;
-use super::grid::{Field, Grid, Rule};
+use super::grid::{Field, Grid};
+use super::sheet::{Inverted, Sheet};
 use super::sweep::{Part, sum};
 use super::tangents::linearise;
-use crate::corrector::DifferenceScheme;
-use crate::material::HyperelasticLaw;
 use crate::multigrid::{Multigrid, Vector};
 
 /// Most iterations of a linear system.
@@ -14,36 +12,6 @@ const LINEAR_ITERATIONS: usize = 200;
 
 /// Step size of a difference of F, relative to the displacements.
 const DIFFERENCE: f64 = 1e-7;
-
-/// The sheet whose equation is solved.
-#[derive(Clone, Copy, Debug)]
-pub struct Sheet<'a> {
-    /// The material.
-    pub law: &'a dyn HyperelasticLaw,
-    /// Thickness in mm.
-    pub thickness: f64,
-    /// Its difference scheme.
-    pub scheme: DifferenceScheme,
-}
-
-impl Sheet<'_> {
-    /// F(u) in N at all nodes of a grid.
-    fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
-        let Sheet { law, thickness, .. } = self;
-        let admissible = match self.scheme {
-            DifferenceScheme::Corners => forces(law, thickness, grid, &Rule::corners(), u, target),
-            DifferenceScheme::Gauss => forces(law, thickness, grid, &Rule::linear(), u, target),
-            DifferenceScheme::Biquadratic => {
-                forces(law, thickness, grid, &Rule::quadratic(), u, target)
-            }
-        };
-        admissible.then_some(()).ok_or(Inverted)
-    }
-}
-
-/// A field turned a cell inside out: J is not positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Inverted;
 
 /// A grid with the vectors of its iteration.
 #[derive(Debug)]

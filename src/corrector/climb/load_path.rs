@@ -5,9 +5,9 @@
 //! are shifted where they are not positive definite, load steps that are halved where they fail, and a diagnosis of
 //! why a path ends.
 
-use super::grid::{Field, Grid, Rule};
+use super::Climb;
+use super::grid::{Field, Grid};
 use super::start::contracted_stretch;
-use super::{Climb, DifferenceScheme};
 use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
@@ -141,7 +141,7 @@ impl Climb<'_> {
 
     fn load_path(&self, index: usize, stretch: f64) -> Result<Equilibrium, PathEnd> {
         let grid = &self.levels[index].grid;
-        let energy = energy(self.problem, self.scheme, grid);
+        let energy = self.scheme.energy_between(self.problem, &grid.coordinates);
         let loading = GridLoading {
             problem: self.problem,
             grid,
@@ -165,7 +165,7 @@ impl Climb<'_> {
     /// A [`SolveFault`] when K cannot be factorised.
     pub(super) fn solve_by_factor(&self, u: &Field, b: &Field) -> Result<Field, SolveFault> {
         let grid = self.grid();
-        let energy = energy(self.problem, self.scheme, grid);
+        let energy = self.scheme.energy_between(self.problem, &grid.coordinates);
         let loading = GridLoading {
             problem: self.problem,
             grid,
@@ -187,68 +187,4 @@ impl Climb<'_> {
         }
         Ok(Field::of_nodes(grid, &x))
     }
-}
-
-/// The energy of a grid's elements in the scheme of the climb.
-fn energy(problem: &ClampedPlate, scheme: DifferenceScheme, grid: &Grid) -> SheetEnergy {
-    match scheme {
-        DifferenceScheme::Corners => sampled(problem, grid, &Rule::corners()),
-        DifferenceScheme::Gauss => sampled(problem, grid, &Rule::linear()),
-        DifferenceScheme::Biquadratic => sampled(problem, grid, &Rule::quadratic()),
-    }
-}
-
-/// Π = Σ t hx hy wₐ w_b Ψ(H) over the points (a, b) of all elements, nodes line by line.
-fn sampled<const NODES: usize>(
-    problem: &ClampedPlate,
-    grid: &Grid,
-    rule: &Rule<NODES>,
-) -> SheetEnergy {
-    let order = NODES - 1;
-    let width = grid.lines().nodes;
-    let [columns, rows] = [0, 1].map(|axis| (grid.coordinates[axis].len() - 1) / order);
-    let places = (0..columns).flat_map(|column| (0..rows).map(move |row| [column, row]));
-    let nodes = |[column, row]: [usize; 2]| -> Vec<usize> {
-        let lines = column * order..=(column + 1) * order;
-        let on_line =
-            |line: usize| (row * order..=(row + 1) * order).map(move |j| line * width + j);
-        lines.flat_map(on_line).collect()
-    };
-    let law = std::sync::Arc::clone(&problem.law);
-    let mut energy = SheetEnergy::new(law, grid.nodes());
-    for [column, row] in places {
-        let sides = [
-            grid.span(0, column * order, (column + 1) * order),
-            grid.span(1, row * order, (row + 1) * order),
-        ];
-        for place in (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b])) {
-            push_point(&mut energy, rule, place, sides, problem.thickness);
-        }
-        energy.push_cell(&nodes([column, row]));
-    }
-    energy
-}
-
-/// One point of an element with given sides: ∂φ/∂X = φ′ φ/hx, ∂φ/∂Y = φ φ′/hy of its nodes, line by line.
-fn push_point<const NODES: usize>(
-    energy: &mut SheetEnergy,
-    rule: &Rule<NODES>,
-    [a, b]: [usize; 2],
-    [hx, hy]: [f64; 2],
-    thickness: f64,
-) {
-    let Rule {
-        weights,
-        values,
-        derivatives,
-    } = rule;
-    let pairs = (0..NODES).flat_map(|line| (0..NODES).map(move |node| [line, node]));
-    let gradient = |[line, node]: [usize; 2]| {
-        [
-            derivatives[a][line] * values[b][node] / hx,
-            values[a][line] * derivatives[b][node] / hy,
-        ]
-    };
-    let volume = thickness * hx * hy * weights[a] * weights[b];
-    energy.push_point(pairs.map(gradient), volume);
 }

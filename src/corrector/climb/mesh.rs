@@ -3,24 +3,32 @@
 use std::sync::Arc;
 
 use super::{Climb, ClimbSolution, Grid};
+use crate::corrector::DifferenceScheme;
 use crate::mesh::{CellShape, Mesh, Side};
 use crate::problem::DeformedSheet;
 
 impl Climb<'_> {
-    /// The mesh of the finest grid: its nodes in the order of [`Field::to_nodes`](super::Field::to_nodes), its cells
-    /// those of the difference scheme, its groups the sides `left`, `right`, `bottom`, `top`.
-    pub fn mesh(&self) -> Mesh {
-        self.grid().mesh(self.scheme.side())
-    }
-
-    /// A climbed field, to be evaluated at any point of the plate.
+    /// A climbed field, to be evaluated at any point of the plate. Its cells are those of the difference scheme, its nodes in the order of
+    /// [`Field::to_nodes`](super::Field::to_nodes), and its groups the sides `left`, `right`, `bottom`, `top`; nine-node cells pass
+    /// through the bicubic scheme's field at further nodes half way between the grid's.
     pub fn deformed(&self, climbed: &ClimbSolution) -> DeformedSheet {
-        let law = Arc::clone(&self.problem.law);
-        DeformedSheet::new(self.mesh(), climbed.field.to_nodes(), law)
+        let (grid, scheme) = (self.grid(), self.scheme);
+        let mesh = match scheme {
+            DifferenceScheme::Bicubic => grid.halved().mesh(2),
+            _ => grid.mesh(scheme.side()),
+        };
+        let nodes = climbed.field.to_nodes();
+        let displacement = scheme.between_lines(&nodes, &grid.coordinates);
+        DeformedSheet::new(mesh, displacement, Arc::clone(&self.problem.law))
     }
 }
 
 impl Grid {
+    /// The grid with further lines half way between its own.
+    fn halved(&self) -> Self {
+        Self::new(self.coordinates.each_ref().map(|places| &places[..]), 2)
+    }
+
     /// The mesh of cells with `side` spans of the grid along each axis, one (four nodes) or two (nine nodes).
     fn mesh(&self, side: usize) -> Mesh {
         let [x, y] = &self.coordinates;
@@ -53,7 +61,52 @@ impl Grid {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::corrector::climb::{ClimbSettings, Field};
+    use crate::material::Card;
+    use crate::problem::ClampedPlate;
+
+    /// On few elements the sheet of the bicubic scheme is what the scheme takes its field for at any point; nodes of others are kept.
+    #[test]
+    fn the_sheet_of_a_bicubic_field_passes_through_its_cubics() {
+        let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+        let problem = ClampedPlate {
+            size: [30.0, 12.0],
+            thickness: 1.0,
+            law: card.law,
+            stretches: vec![0.3],
+        };
+        let scheme = DifferenceScheme::Bicubic;
+        let mut climb = Climb::graded(&problem, [12, 6], scheme, 2.0, ClimbSettings::FAST);
+        let mut climbed = climb.correct(0.3).unwrap();
+        let grid = climb.grid().clone();
+        let cubic = |[x, y]: [f64; 2]| {
+            [
+                0.01 * x + 1e-4 * x * x * y,
+                2e-4 * x * y * y - 1e-5 * y.powi(3),
+            ]
+        };
+        let [x, y] = &grid.coordinates;
+        let places = x.iter().flat_map(|x| y.iter().map(|y| cubic([*x, *y])));
+        let values: Vec<f64> = places.flatten().collect();
+        climbed.field = Field::of_nodes(&grid, &values);
+        let sheet = climb.deformed(&climbed);
+        for (place, u) in sheet
+            .mesh()
+            .nodes
+            .iter()
+            .zip(sheet.displacement().chunks_exact(2))
+        {
+            let expected = cubic(*place);
+            assert!(
+                (0..2).all(|axis| (u[axis] - expected[axis]).abs() < 1e-13),
+                "{place:?}"
+            );
+        }
+        assert_eq!(sheet.mesh().cell_count(), 12 * 6);
+    }
 
     #[test]
     fn the_mesh_of_an_even_grid_is_that_of_the_plate() {

@@ -81,22 +81,21 @@ const LANES: usize = 8;
 /// Σ f(k) over the numbers of a piece.
 #[inline(always)]
 pub fn sum<const SUMS: usize>(count: usize, term: impl Fn(usize) -> [f64; SUMS]) -> [f64; SUMS] {
-    let mut lanes = [[0.0; LANES]; SUMS];
-    let whole = count / LANES * LANES;
-    for first in (0..whole).step_by(LANES) {
-        for lane in 0..LANES {
-            let terms = term(first + lane);
-            for k in 0..SUMS {
-                lanes[k][lane] += terms[k];
-            }
-        }
-    }
-    let mut sums = lanes.map(|lanes| lanes.iter().sum());
-    for place in whole..count {
+    let mut sums = [[0.0; SUMS]; LANES];
+    let add = |sums: &mut [f64; SUMS], place: usize| {
         let terms = term(place);
-        for k in 0..SUMS {
-            sums[k] += terms[k];
+        sums.iter_mut()
+            .zip(terms)
+            .for_each(|(sum, term)| *sum += term);
+    };
+    let whole = count - count % LANES;
+    for first in (0..whole).step_by(LANES) {
+        for (lane, sums) in sums.iter_mut().enumerate() {
+            add(sums, first + lane);
         }
     }
-    sums
+    for (lane, place) in (whole..count).enumerate() {
+        add(&mut sums[lane], place);
+    }
+    std::array::from_fn(|k| sums.iter().map(|lane| lane[k]).sum())
 }

@@ -158,6 +158,20 @@ fn the_climb_reaches_the_direct_corrector_with_every_scheme_law_and_number_of_ce
             0.2,
             DifferenceScheme::Gauss,
         ),
+        (
+            "pva-10",
+            [150.0, 50.0],
+            [54, 18],
+            1.0,
+            DifferenceScheme::Bicubic,
+        ),
+        (
+            "neo-hooke",
+            [40.0, 60.0],
+            [18, 15],
+            0.3,
+            DifferenceScheme::Bicubic,
+        ),
     ];
     let graded = |case| [1.0, 1.5, 2.5].map(|grading| (case, grading));
     for ((card, size, cells, stretch, scheme), grading) in cases.into_iter().flat_map(graded) {

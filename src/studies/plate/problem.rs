@@ -66,7 +66,7 @@ pub struct Correction {
 impl Correction {
     /// Whether the corrected field has cells of its own, and not the lattice's nodes.
     pub fn is_graded(&self) -> bool {
-        self.grading > 1.0
+        self.grading > 1.0 || self.scheme.has_own_nodes()
     }
 }
 
@@ -128,7 +128,7 @@ impl Study {
     pub fn is_its_own_reference(&self) -> bool {
         let scheme = self.corrector.scheme;
         let element = match scheme {
-            DifferenceScheme::Corners => return false,
+            DifferenceScheme::Corners | DifferenceScheme::Bicubic => return false,
             DifferenceScheme::Gauss => Element::Q1,
             DifferenceScheme::Biquadratic => Element::Q2,
         };

@@ -18,8 +18,8 @@ use crate::studies::card::read_card;
 use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
-    MOST_CELLS, Tolerances, check_range, even_cells, need_of_cells, read_climb, read_newton,
-    read_plate, refuse_climb_with_memory,
+    MOST_CELLS, Tolerances, check_range, multiples_of_cells, need_of_cells, read_climb,
+    read_newton, read_plate, refuse_climb_with_memory,
 };
 use crate::units::Dimension;
 
@@ -177,7 +177,7 @@ fn read_corrector(
 ) -> Option<Correction> {
     let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
     if let Some(scheme) = scheme {
-        check_pairs(plate, scheme, size, cells);
+        check_multiples(plate, scheme, size, cells);
     }
     let grading = section.number_or("automatic", "grading", GRADINGS);
     let climb = section.choice("method", &[("climb", true), ("direct", false)]);
@@ -330,15 +330,31 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
     stretches
 }
 
-/// A scheme that takes cells two by two needs even numbers of them.
-fn check_pairs(plate: &Section, scheme: DifferenceScheme, size: [f64; 2], cells: [usize; 2]) {
-    let side = scheme.side();
-    if let Some(odd) = cells.iter().find(|cells| !cells.is_multiple_of(side)) {
+/// A scheme that takes cells together needs multiples of them, the bicubic one an even number of elements along X, so that nodes lie in
+/// the middle of the plate, where its width is measured.
+fn check_multiples(plate: &Section, scheme: DifferenceScheme, size: [f64; 2], cells: [usize; 2]) {
+    let (multiples, wanted) = match scheme {
+        DifferenceScheme::Corners | DifferenceScheme::Gauss => return,
+        DifferenceScheme::Biquadratic => ([2, 2], "even numbers of cells"),
+        DifferenceScheme::Bicubic => (
+            [6, 3],
+            "a multiple of 6 cells along the length and of 3 along the width",
+        ),
+    };
+    let unfit = (0..2).find(|axis| !cells[*axis].is_multiple_of(multiples[*axis]));
+    if let Some(axis) = unfit {
         let name = name_of(&DifferenceScheme::NAMES, scheme);
-        let [x, y] = even_cells(size, cells);
+        let [x, y] = multiples_of_cells(size, cells, multiples);
+        let fault = match scheme {
+            DifferenceScheme::Biquadratic => "odd",
+            _ => "none",
+        };
         plate.fault(
             "cells",
-            &format!("the scheme \"{name}\" needs even numbers of cells, and {odd} is odd"),
+            &format!(
+                "the scheme \"{name}\" needs {wanted}, and {} is {fault}",
+                cells[axis]
+            ),
             &format!("take [{x}, {y}], or scheme = \"gauss\" under [corrector]"),
         );
     }

@@ -1,6 +1,5 @@
 //! What a reader of a plate's figures must know about them.
 
-use crate::corrector::DifferenceScheme;
 use crate::finite_element::Element;
 use crate::mass_spring;
 use crate::problem::ClampedPlate;
@@ -21,7 +20,7 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     if !study.lattice.area_term {
         all.extend(mass_spring::warning_of_plate(&*study.problem.law));
     }
-    let corrected = study.corrector.scheme != DifferenceScheme::Biquadratic;
+    let corrected = study.corrector.scheme.side() == 1;
     let finite_elements = study.reference.element == Element::Q1;
     let [_, names @ ..] = MODELS;
     let locking = names.into_iter().zip([corrected, finite_elements]);

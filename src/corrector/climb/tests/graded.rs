@@ -24,11 +24,15 @@ fn the_stated_errors_are_true_on_graded_grids() {
             let climbed = climb.correct(stretch).unwrap();
             (climb.grid().clone(), climbed)
         };
-        let (fine, truth) = solve(128, DifferenceScheme::Biquadratic, 2.0, TIGHT);
-        for scheme in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
-            for grading in [1.5, 2.0, 3.0] {
-                let (grid, climbed) = solve(32, scheme, grading, ClimbSettings::FAST);
-                let (_, solved) = solve(32, scheme, grading, TIGHT);
+        let (fine, truth) = solve(144, DifferenceScheme::Bicubic, 3.0, TIGHT);
+        for (scheme, across) in [
+            (DifferenceScheme::Gauss, 32),
+            (DifferenceScheme::Biquadratic, 32),
+            (DifferenceScheme::Bicubic, 36),
+        ] {
+            for grading in [1.5, 2.0, 2.5, 3.0] {
+                let (grid, climbed) = solve(across, scheme, grading, ClimbSettings::FAST);
+                let (_, solved) = solve(across, scheme, grading, TIGHT);
                 let mut iteration = climbed.field.clone();
                 iteration.add(-1.0, &solved.field);
                 let mut error = truth.field.onto(&fine, &grid);

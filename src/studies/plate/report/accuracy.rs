@@ -60,6 +60,8 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
                     ", whose equations are those of bilinear finite elements there",
                 DifferenceScheme::Biquadratic =>
                     ", whose equations are those of biquadratic finite elements there",
+                DifferenceScheme::Bicubic =>
+                    ", whose equations are those of bicubic finite elements there",
                 DifferenceScheme::Corners => "",
             }
         )),

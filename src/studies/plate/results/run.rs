@@ -313,21 +313,23 @@ pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<Mode
     let last = stretches.len() - 1;
     let mut results = run(&study, progress)?;
     let ends = std::mem::take(&mut results.ends);
-    let field = |model, mesh: &Mesh, state: Option<&State>| {
+    let field = |model, mesh: &Mesh, displacement: Option<Vec<f64>>| {
         Some(ModelField {
             model,
             mesh: mesh.clone(),
-            displacement: state?.displacement.clone(),
+            displacement: displacement?,
         })
     };
+    let displacement = |state: Option<&State>| state.map(|state| state.displacement.clone());
     let [springs, corrected, elements] = results.models(last);
     let [lattice, cells, finest] = results.meshes();
     // Between its nodes the corrected field is what its differences take it for.
-    let cells = study.corrector.scheme.mesh(cells);
+    let scheme = study.corrector.scheme;
+    let between = corrected.map(|state| scheme.between_nodes(&state.displacement, cells));
     let fields = [
-        field(FINITE_ELEMENTS.name, finest, elements),
-        field(MASS_SPRING.name, lattice, springs),
-        field(CORRECTED.name, &cells, corrected),
+        field(FINITE_ELEMENTS.name, finest, displacement(elements)),
+        field(MASS_SPRING.name, lattice, displacement(springs)),
+        field(CORRECTED.name, &scheme.mesh(cells), between),
     ];
     let own = results.comparison[last].reference;
     ModelFields::of(fields, ends, own.map(|own| own.displacement_percent))

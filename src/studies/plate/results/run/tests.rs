@@ -51,6 +51,30 @@ fn graded_cells_make_the_corrected_field_more_accurate() {
     }
 }
 
+/// The bicubic scheme has nodes of its own even on equal cells; on graded ones it is more exact than the biquadratic.
+#[test]
+fn bicubic_cells_are_more_exact_by_both_methods() {
+    let solve = |settings: &str| run(&study(settings), Progress::silent()).unwrap();
+    let biquadratic = solve("scheme = \"biquadratic\"");
+    let [climbed, direct] = ["climb", "direct"]
+        .map(|method| solve(&format!("scheme = \"bicubic\"\nmethod = \"{method}\"")));
+    let triples = departures(&climbed).into_iter().zip(departures(&direct));
+    for ((climbed, direct), other) in triples.zip(departures(&biquadratic)) {
+        assert!(1.2 * climbed < other, "{climbed} {other}");
+        assert!((climbed / direct - 1.0).abs() < 5e-3, "{climbed} {direct}");
+    }
+    for (own, other) in climbed.comparison.iter().zip(&biquadratic.comparison) {
+        let [own, other] = [own, other].map(|step| step.mass_spring.unwrap().departure_percent);
+        assert!((own / other - 1.0).abs() < 1e-2, "{own} {other}");
+    }
+    let equal = solve("scheme = \"bicubic\"\ngrading = 1.0");
+    assert_ne!(equal.corrected_mesh.nodes, equal.springs.mesh.nodes);
+    let gauss = solve("scheme = \"gauss\"\ngrading = 1.0");
+    for (own, other) in departures(&equal).iter().zip(departures(&gauss)) {
+        assert!(2.0 * own < other, "{own} {other}");
+    }
+}
+
 #[test]
 fn fields_and_pictures_are_on_the_mesh_of_their_model() {
     let study = study("grading = 2.0");

@@ -1,0 +1,41 @@
+//! The sheet whose governing equation the climb solves.
+
+use super::forces::forces;
+use super::grid::{Field, Grid};
+use crate::corrector::DifferenceScheme;
+use crate::corrector::sampling::Rule;
+use crate::material::HyperelasticLaw;
+
+/// The sheet whose equation is solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet<'a> {
+    /// The material.
+    pub law: &'a dyn HyperelasticLaw,
+    /// Thickness in mm.
+    pub thickness: f64,
+    /// Its difference scheme.
+    pub scheme: DifferenceScheme,
+}
+
+impl Sheet<'_> {
+    /// F(u) in N at all nodes of a grid.
+    ///
+    /// # Errors
+    /// [`Inverted`].
+    pub fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
+        let Sheet { law, thickness, .. } = self;
+        let admissible = match self.scheme {
+            DifferenceScheme::Corners => forces(law, thickness, grid, &Rule::corners(), u, target),
+            DifferenceScheme::Gauss => forces(law, thickness, grid, &Rule::linear(), u, target),
+            DifferenceScheme::Biquadratic => {
+                forces(law, thickness, grid, &Rule::quadratic(), u, target)
+            }
+            DifferenceScheme::Bicubic => forces(law, thickness, grid, &Rule::cubic(), u, target),
+        };
+        admissible.then_some(()).ok_or(Inverted)
+    }
+}
+
+/// A field turned a cell inside out: J is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inverted;

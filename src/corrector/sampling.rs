@@ -1,0 +1,234 @@
+//! The points at which the energy of a plate's rectangular elements is sampled: products of points along both axes.
+
+use std::sync::Arc;
+
+use crate::mesh::{GAUSS_2, GAUSS_3, GAUSS_4, lobatto};
+use crate::problem::ClampedPlate;
+use crate::problem::sheet_energy::SheetEnergy;
+
+/// The points at which the energy of an element is sampled along one axis, and the functions there.
+///
+/// ```text
+/// corners          linear functions of one cell at both ends
+/// Gauss points     polynomials through N nodes at N points
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Rule<const NODES: usize> {
+    /// Share of the element's length.
+    pub weights: [f64; NODES],
+    /// Values of the functions: point, node.
+    pub values: [[f64; NODES]; NODES],
+    /// Their derivatives with respect to the element's unit coordinate.
+    pub derivatives: [[f64; NODES]; NODES],
+}
+
+impl Rule<2> {
+    /// Linear functions at both ends.
+    pub fn corners() -> Self {
+        Self {
+            weights: [0.5; 2],
+            values: [[1.0, 0.0], [0.0, 1.0]],
+            derivatives: [[-1.0, 1.0]; 2],
+        }
+    }
+
+    /// Linear functions at two Gauss points.
+    pub fn linear() -> Self {
+        Self::gauss(GAUSS_2)
+    }
+}
+
+impl Rule<3> {
+    /// Parabolas at three Gauss points.
+    pub fn quadratic() -> Self {
+        Self::gauss(GAUSS_3)
+    }
+}
+
+impl Rule<4> {
+    /// Cubics at four Gauss points.
+    pub fn cubic() -> Self {
+        Self::gauss(GAUSS_4)
+    }
+}
+
+impl<const NODES: usize> Rule<NODES> {
+    /// Lagrange's polynomials of the nodes, with the points and weights of a rule on −1…1.
+    fn gauss(line: [(f64, f64); NODES]) -> Self {
+        let nodes = lobatto(NODES - 1);
+        let functions = line.map(|(point, _)| lagrange(nodes, 0.5 + 0.5 * point));
+        Self {
+            weights: line.map(|(_, weight)| 0.5 * weight),
+            values: functions.map(|functions| functions.map(|[value, _]| value)),
+            derivatives: functions.map(|functions| functions.map(|[_, slope]| slope)),
+        }
+    }
+}
+
+/// Value and derivative of each node's polynomial, which is one there and zero at the other nodes.
+fn lagrange<const NODES: usize>(nodes: &[f64], place: f64) -> [[f64; 2]; NODES] {
+    std::array::from_fn(|own| {
+        let others = || (0..NODES).filter(move |other| *other != own);
+        let factor = |other: usize| 1.0 / (nodes[own] - nodes[other]);
+        let without = |left_out: usize| -> f64 {
+            let kept = others().filter(|other| *other != left_out);
+            kept.map(|other| (place - nodes[other]) * factor(other))
+                .product()
+        };
+        let slope = others().map(|other| factor(other) * without(other)).sum();
+        [without(own), slope]
+    })
+}
+
+/// The displacements of bicubic elements at their nodes and half way between them: ux, uy of node after node.
+pub fn cubics_half_way(displacement: &[f64], coordinates: &[Vec<f64>; 2]) -> Vec<f64> {
+    let [x, y] = coordinates.each_ref().map(|places| cubics(places));
+    let width = coordinates[1].len();
+    let line = |(first, shares): &Cubic| -> Vec<f64> {
+        let sum = |place: usize| -> f64 {
+            let lines = shares.iter().enumerate();
+            lines
+                .map(|(line, share)| share * displacement[2 * (first + line) * width + place])
+                .sum()
+        };
+        (0..2 * width).map(sum).collect()
+    };
+    let on_line = |line: Vec<f64>| -> Vec<f64> {
+        let at = |(first, shares): &Cubic, axis: usize| -> f64 {
+            let nodes = shares.iter().enumerate();
+            nodes
+                .map(|(node, share)| share * line[2 * (first + node) + axis])
+                .sum()
+        };
+        y.iter()
+            .flat_map(|place| [at(place, 0), at(place, 1)])
+            .collect()
+    };
+    x.iter().flat_map(|place| on_line(line(place))).collect()
+}
+
+/// The first of the four nodes of an element, and their shares at a place in it.
+type Cubic = (usize, [f64; 4]);
+
+/// The shares at all nodes and half way between them.
+fn cubics(places: &[f64]) -> Vec<Cubic> {
+    let nodes = lobatto(3);
+    let steps = 2 * (places.len() - 1);
+    let share = |step: usize| {
+        let element = (step / 6).min(steps / 6 - 1);
+        let part = step - 6 * element;
+        let [before, after] = [part / 2, part.div_ceil(2)].map(|node| nodes[node]);
+        let functions: [[f64; 2]; 4] = lagrange(nodes, 0.5 * (before + after));
+        (3 * element, functions.map(|[value, _]| value))
+    };
+    (0..=steps).map(share).collect()
+}
+
+/// A plate with the lines of its nodes, whose numbers run line by line along Y.
+pub struct LinedPlate<'a> {
+    /// The plate.
+    pub problem: &'a ClampedPlate,
+    /// The places of the lines along X and Y in mm.
+    pub coordinates: &'a [Vec<f64>; 2],
+}
+
+impl LinedPlate<'_> {
+    /// Π = Σ t hx hy wₐ w_b Ψ(H) over the points (a, b) of all elements.
+    ///
+    /// # Panics
+    /// When the number of cells is no multiple of those of an element.
+    pub fn energy<const NODES: usize>(&self, rule: &Rule<NODES>) -> SheetEnergy {
+        let order = NODES - 1;
+        let [x, y] = self.coordinates;
+        let [columns, rows] = [x, y].map(|places| {
+            assert!(
+                (places.len() - 1).is_multiple_of(order),
+                "cells taken together"
+            );
+            (places.len() - 1) / order
+        });
+        let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
+        let mut energy = SheetEnergy::new(Arc::clone(&self.problem.law), x.len() * y.len());
+        for [column, row] in (0..columns).flat_map(|column| (0..rows).map(move |row| [column, row]))
+        {
+            let first = [column * order, row * order];
+            let sides = [0, 1].map(|axis| {
+                let places = &self.coordinates[axis];
+                places[first[axis] + order] - places[first[axis]]
+            });
+            self.push_points(&mut energy, rule, sides);
+            let on_line =
+                |line: usize| (first[1]..=first[1] + order).map(move |j| line * y.len() + j);
+            let nodes: Vec<usize> = (first[0]..=first[0] + order).flat_map(on_line).collect();
+            energy.push_cell(&nodes);
+        }
+        energy.with_places(nodes)
+    }
+
+    /// The points of an element with given sides: ∂φ/∂X = φ′ φ/hx, ∂φ/∂Y = φ φ′/hy of its nodes, line by line.
+    fn push_points<const NODES: usize>(
+        &self,
+        energy: &mut SheetEnergy,
+        rule: &Rule<NODES>,
+        [hx, hy]: [f64; 2],
+    ) {
+        let Rule {
+            weights,
+            values,
+            derivatives,
+        } = rule;
+        let pairs = || (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b]));
+        for [a, b] in pairs() {
+            let gradient = |[line, node]: [usize; 2]| {
+                [
+                    derivatives[a][line] * values[b][node] / hx,
+                    values[a][line] * derivatives[b][node] / hy,
+                ]
+            };
+            let volume = self.problem.thickness * hx * hy * weights[a] * weights[b];
+            energy.push_point(pairs().map(gradient), volume);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Polynomials of the degree of a rule are reproduced with their slopes, and integrals of twice the degree are exact.
+    fn check<const NODES: usize>(rule: &Rule<NODES>, points: [(f64, f64); NODES]) {
+        let nodes = lobatto(NODES - 1);
+        let power = |x: f64, n: usize| x.powi(n as i32);
+        for degree in 0..NODES {
+            for (point, (at, _)) in points.iter().enumerate() {
+                let x = 0.5 + 0.5 * at;
+                let sum = |shares: &[f64; NODES]| -> f64 {
+                    let pairs = shares.iter().zip(nodes);
+                    pairs
+                        .map(|(share, node)| share * power(*node, degree))
+                        .sum()
+                };
+                let slope = match degree {
+                    0 => 0.0,
+                    _ => degree as f64 * power(x, degree - 1),
+                };
+                assert!((sum(&rule.values[point]) - power(x, degree)).abs() < 1e-14);
+                assert!((sum(&rule.derivatives[point]) - slope).abs() < 1e-13);
+            }
+        }
+        for degree in 0..2 * NODES {
+            let values = points.iter().zip(rule.weights);
+            let sum: f64 = values
+                .map(|((at, _), weight)| weight * power(0.5 + 0.5 * at, degree))
+                .sum();
+            assert!((sum - 1.0 / (degree + 1) as f64).abs() < 1e-14, "{degree}");
+        }
+    }
+
+    #[test]
+    fn rules_are_exact_for_polynomials() {
+        check(&Rule::linear(), GAUSS_2);
+        check(&Rule::quadratic(), GAUSS_3);
+        check(&Rule::cubic(), GAUSS_4);
+    }
+}
