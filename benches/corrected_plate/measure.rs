@@ -77,7 +77,7 @@ struct Exact {
 }
 
 /// What is left of the solution of a grid's equations at most, relative to the departure from affine, ten times over.
-const EXACT: f64 = 1e-8;
+const EXACT: f64 = 1e-11;
 
 /// Turns at least and at most, the time after which no more are begun, and the time of every contestant in a turn.
 const TURNS: std::ops::Range<usize> = 2..8;

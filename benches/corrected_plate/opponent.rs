@@ -71,7 +71,11 @@ impl<'a> Opponent<'a> {
         Self {
             problem,
             layout,
-            grid: layout.grid(problem.size, scheme.side()),
+            // Between meshes, cubics through the four nodes around each place are smoother than the elements' own.
+            grid: Grid {
+                degree: 1,
+                ..layout.grid(problem.size, scheme.side())
+            },
             scheme,
             cholesky: cholesky.expect("enough memory"),
             assembly,

@@ -17,7 +17,7 @@
 //! | corners | 1 | one-sided, along one edge each | 0.062 %, 0.88 %, 0.11 % |
 //! | Gauss | ⅓ | both edges, weighted | 0.028 %, 0.39 %, 0.05 % |
 //! | biquadratic | 0, ⅗ | over two by two cells, 3 × 3 points | 0.013 %, 0.18 %, 0.02 % |
-//! | bicubic | | over three by three cells, 4 × 4 points | BICUBIC |
+//! | bicubic | 0.116, 0.742 | over three by three cells, 4 × 4 points | 0.009 %, 0.12 %, 0.01 % (60 × 21 cells) |
 //!
 //! The Gauss points integrate the energy of the cell to third order. The equations are then those of the
 //! bilinear finite element: the corrector needs no more of that method than this stencil. The biquadratic scheme

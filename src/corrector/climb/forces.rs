@@ -6,6 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::grid::{Field, Grid};
+use super::sweep::Part;
 use crate::corrector::sampling::Rule;
 use crate::material::HyperelasticLaw;
 
@@ -32,8 +33,10 @@ pub fn forces<const NODES: usize>(
     let order = NODES - 1;
     let columns = (grid.coordinates[0].len() - 1) / order;
     let [f_x, f_y] = &mut forces.components;
-    f_x.fill(0.0);
-    f_y.fill(0.0);
+    Part::all(grid.lines()).sweep([f_x, f_y], [], &|_, changed, []| {
+        changed.into_iter().for_each(|numbers| numbers.fill(0.0));
+        []
+    });
     // Columns share their border lines: first the even ones, then the odd ones, so that each sum has two terms.
     let mut admissible = true;
     for colour in [0, 1] {

@@ -1,6 +1,6 @@
 //! A plate's grid: the coordinates of its nodes, and fields on them.
 
-use super::sweep::Part;
+use super::sweep::{Part, sum};
 use crate::mesh::{self, lobatto};
 use crate::multigrid::{Interpolation, Lines};
 
@@ -155,26 +155,47 @@ impl Field {
 
     /// Multiplies all values.
     pub fn scale(&mut self, factor: f64) {
-        for component in &mut self.components {
-            component.iter_mut().for_each(|u| *u *= factor);
-        }
+        let part = self.part();
+        let [x, y] = &mut self.components;
+        part.sweep([x, y], [], &|_, changed, []| {
+            for u in changed.into_iter().flatten() {
+                *u *= factor;
+            }
+            []
+        });
     }
 
     /// Adds another field, multiplied.
     pub fn add(&mut self, factor: f64, other: &Self) {
+        let part = self.part();
         for (own, other) in self.components.iter_mut().zip(&other.components) {
-            for (u, other) in own.iter_mut().zip(other) {
-                *u += factor * other;
-            }
+            part.sweep([own], [other], &|_, [own], [other]| {
+                for (u, other) in own.iter_mut().zip(other) {
+                    *u += factor * other;
+                }
+                []
+            });
         }
+    }
+
+    /// All nodes, to be swept over.
+    fn part(&self) -> Part {
+        Part::all(Lines {
+            count: self.components[0].len() / self.width,
+            nodes: self.width,
+        })
     }
 
     /// The sum of products of all values.
     pub fn product(&self, other: &Self) -> f64 {
         let pairs = self.components.iter().zip(&other.components);
-        pairs
-            .map(|(own, other)| own.iter().zip(other).map(|(a, b)| a * b).sum::<f64>())
-            .sum()
+        let of_component = |(own, other): (&Vec<f64>, &Vec<f64>)| {
+            let [of_pairs] = self.part().sweep([], [own, other], &|_, [], [own, other]| {
+                sum(own.len(), |k| [own[k] * other[k]])
+            });
+            of_pairs
+        };
+        pairs.map(of_component).sum()
     }
 
     /// The root mean square over the nodes.

@@ -171,7 +171,7 @@ impl Level {
             share = found.steepness / before;
             fall.push(found.size, length, share);
         }
-        self.add_to(u, -1.0, &self.correction);
+        u.add(-1.0, &self.correction);
         Ok(Iteration { fall, work })
     }
 
@@ -219,19 +219,6 @@ impl Level {
         Preconditioned {
             steepness: product,
             size: (squares / self.grid.nodes() as f64).sqrt(),
-        }
-    }
-
-    /// u += s p.
-    fn add_to(&self, u: &mut Field, factor: f64, direction: &Field) {
-        for (u, p) in u.components.iter_mut().zip(&direction.components) {
-            let part = Part::all(self.grid.lines());
-            part.sweep([u], [p], &|_, [u], [p]| {
-                for (u, p) in u.iter_mut().zip(p) {
-                    *u += factor * p;
-                }
-                []
-            });
         }
     }
 

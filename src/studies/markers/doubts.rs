@@ -10,7 +10,7 @@ use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::results::{BESIDE_CORNERS, Stretches, number, small_strain};
+use crate::results::{BESIDE_CORNERS, Stretches, decimals, number, small_strain};
 use crate::statistics::{Estimate, median, small_probability};
 
 impl MarkerStudy {
@@ -42,8 +42,9 @@ impl MarkerStudy {
     fn unknown_edge(&self, estimate: &FieldEstimate) -> Option<Doubt> {
         let gap = self.unknown_gap.filter(|_| !estimate.is_explained())?;
         let message = format!(
-            "the free edges are known only to within {gap:.4} mm, because only the markers define them; with precise data even a smaller \
-             offset leads to rejection"
+            "the free edges are known only to within {} mm, because only the markers define them; with precise data even a smaller \
+             offset leads to rejection",
+            decimals(gap, 4)
         );
         Some((
             message,
@@ -89,7 +90,8 @@ impl MarkerStudy {
             format!("{:.0} times as much as in most frames", noise / usual)
         };
         let message = format!(
-            "the markers scatter by {noise:.4} mm, {reason}: markers were lost or matched wrongly"
+            "the markers scatter by {} mm, {reason}: markers were lost or matched wrongly",
+            decimals(noise, 4)
         );
         Some((
             message,
@@ -185,8 +187,8 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
 fn hidden_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
     has_hidden(estimate).then(|| {
         let message = format!(
-            "half of the markers lie much closer to the field than a noise of {:.4} mm suggests: many are gross errors, and intervals are meaningless",
-            estimate.noise
+            "half of the markers lie much closer to the field than a noise of {} mm suggests: many are gross errors, and intervals are meaningless",
+            decimals(estimate.noise, 4)
         );
         let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which down-weights outlying markers";
         (message, hint)
@@ -270,12 +272,12 @@ fn forces(estimate: &FieldEstimate) -> Vec<Doubt> {
     let doubt = |check: &crate::corrector::estimation::ForceCheck| {
         let measured = &check.measured;
         let message = format!(
-            "the force measured on {} along {}, {} ± {} N, contradicts the field's {:.4} N by {:.1} standard errors",
+            "the force measured on {} along {}, {} ± {} N, contradicts the field's {} N by {:.1} standard errors",
             measured.edge,
             ["x", "y"][measured.axis],
             number(measured.force),
             number(measured.standard_deviation),
-            check.found,
+            decimals(check.found, 4),
             check.standardised.abs()
         );
         (

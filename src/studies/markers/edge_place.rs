@@ -4,6 +4,7 @@ use super::request::Request;
 use crate::error::Diagnostic;
 use crate::markers::Understood;
 use crate::mesh::{Outline, OutlineFault};
+use crate::results::decimals;
 
 /// What is known of the edge.
 pub(super) enum EdgePlace {
@@ -73,7 +74,10 @@ impl EdgePlace {
         match self {
             Self::Given { gap, .. } if *gap > 0.0 => format!(", widened by {gap} mm"),
             Self::Subset { half, words, .. } => {
-                format!(", widened by {half:.4} mm, half a subset ({words})")
+                format!(
+                    ", widened by {} mm, half a subset ({words})",
+                    decimals(*half, 4)
+                )
             }
             _ => String::new(),
         }
@@ -89,7 +93,8 @@ impl EdgePlace {
             } => (
                 format!(
                     "the edge is assumed to lie {gap} mm outside the outermost markers, but the markers form a grid and the specimen is not a \
-                     rectangle along it: beside curved or inclined edges rows end up to {step:.4} mm farther inside"
+                     rectangle along it: beside curved or inclined edges rows end up to {} mm farther inside",
+                    decimals(*step, 4)
                 ),
                 "give the true edges with --outline or --mesh; force intervals between free edges, and stress errors beside them, include an edge up \
                  to that much farther out; where no edge is free, forces are those through the outline"
@@ -97,12 +102,14 @@ impl EdgePlace {
             ),
             Self::Subset { half, step, words } => (
                 format!(
-                    "the specimen's edge is assumed to lie {half:.4} mm outside the outermost markers, half a subset: {words}"
+                    "the specimen's edge is assumed to lie {} mm outside the outermost markers, half a subset: {words}",
+                    decimals(*half, 4)
                 ),
                 format!(
                     "state the edge with --edge-gap LENGTH, --outline or --mesh; subsets end inside the specimen, less than one step from its edge, so force \
-                     intervals between free edges, and stress errors beside them, include an edge up to {step:.4} mm farther out; without free edges, forces \
-                     are those through the outline"
+                     intervals between free edges, and stress errors beside them, include an edge up to {} mm farther out; without free edges, forces \
+                     are those through the outline",
+                    decimals(*step, 4)
                 ),
             ),
             Self::Unknown(_) => (

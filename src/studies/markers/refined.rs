@@ -5,6 +5,7 @@ use crate::corrector::estimation::{FieldEstimate, MOST_REFINED_CELLS};
 use crate::error::{Diagnostic, Error};
 use crate::markers::Frame;
 use crate::material::Card;
+use crate::results::decimals;
 
 /// Share of the area on which the mesh's own error may be the larger part of the error of stress.
 const COARSE: f64 = 0.05;
@@ -29,7 +30,7 @@ impl MarkerStudy {
                     "leave out --refine (refine), or the mesh",
                 ));
             };
-            told(&format!("cells of {size:.4} mm"));
+            told(&format!("cells of {} mm", decimals(size, 4)));
             let found = study.estimate_frame(study.most_moved()?)?;
             let share = found.coarse_share(&study.mesh);
             let asked = found.verdict.asks_for_finer_mesh();
@@ -47,7 +48,7 @@ impl MarkerStudy {
                 Diagnostic::warning("", format!("{still}: {reason}"))
             };
             if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
-                let reason = format!("cells smaller than {size:.4} mm are too many");
+                let reason = format!("cells smaller than {} mm are too many", decimals(size, 4));
                 study.warnings.push(coarse(&reason));
                 return Ok(study);
             }
@@ -82,7 +83,8 @@ pub(super) fn told(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<S
     (share > COARSE).then(|| {
         let remedy = match field.cell_size {
             Some(size) => format!(
-                "cells smaller than {size:.4} mm make intervals narrower there (--refine, or --cell-size)"
+                "cells smaller than {} mm make intervals narrower there (--refine, or --cell-size)",
+                decimals(size, 4)
             ),
             None => "a finer mesh makes intervals narrower there".to_owned(),
         };

@@ -2,7 +2,7 @@
 
 use super::{noise, reading, refined, scale, verdict};
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::results::Block;
+use crate::results::{Block, decimals};
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 
@@ -30,8 +30,9 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         for (key, unit, found) in &estimate.parameters {
             let interval = interval(found, estimate.is_explained(), 6);
             text += &format!(
-                "{key} in frame {}: {:.6} {unit}{interval}\n",
-                frame.number, found.value
+                "{key} in frame {}: {} {unit}{interval}\n",
+                frame.number,
+                decimals(found.value, 6)
             );
         }
     }
@@ -95,14 +96,16 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
 }
 
 fn newtons(force: &Estimate, explained: bool) -> String {
-    format!("{:.4} N{}", force.value, interval(force, explained, 4))
+    let value = decimals(force.value, 4);
+    format!("{value} N{}", interval(force, explained, 4))
 }
 
 /// The interval behind a value, which only an explained field has.
 fn interval(found: &Estimate, explained: bool, digits: usize) -> String {
     let [low, high] = found.interval;
+    let written = [low, high].map(|end| decimals(end, digits));
     match (explained, low < high) {
-        (true, true) => format!(" ({low:.digits$} … {high:.digits$})"),
+        (true, true) => format!(" ({})", written.join(" … ")),
         (false, true) => " (no interval: not explained)".to_owned(),
         _ => String::new(),
     }
@@ -196,7 +199,10 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks.extend(field.unknown_gap.map(|gap| {
         let free = estimates.iter().any(|estimate| estimate.growth > 0.0);
         let then = match free {
-            true => format!("intervals of forces and moduli, and errors of displacement and stress, include an edge up to {gap:.4} mm farther out than the mesh"),
+            true => format!(
+                "intervals of forces and moduli, and errors of displacement and stress, include an edge up to {} mm farther out than the mesh",
+                decimals(gap, 4)
+            ),
             false => "no edge is free, so forces and their intervals are those through the outline of the mesh".to_owned(),
         };
         Block::paragraph(format!("The specimen's edge is known only from the markers: {then}."))
@@ -234,8 +240,8 @@ fn transferred_frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block
         vec![
             frame.number.to_string(),
             used(estimate).to_string(),
-            format!("{:.5}", left(estimate)),
-            format!("{:.5}", largest_correction(estimate)),
+            decimals(left(estimate), 5),
+            decimals(largest_correction(estimate), 5),
         ]
     });
     Block::table(&head, rows)
@@ -260,7 +266,7 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             frame.number.to_string(),
             used(estimate).to_string(),
             outliers(estimate).to_string(),
-            format!("{:.5}", estimate.noise),
+            decimals(estimate.noise, 5),
             if estimate.known_noise {
                 "given"
             } else if estimate.noise_ratio.is_some() {
@@ -269,10 +275,10 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
                 "estimated"
             }
             .to_owned(),
-            format!("{:.5}", left(estimate)),
+            decimals(left(estimate), 5),
             format!("{:.1}", estimate.effective_parameters),
             match estimate.is_explained() {
-                true => format!("{:.5}", largest_error(estimate)),
+                true => decimals(largest_error(estimate), 5),
                 false => "not explained".to_owned(),
             },
             estimate.whiteness.as_ref().map_or(String::new(), |found| {
@@ -309,14 +315,14 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.parameters.iter().map(move |(key, unit, found)| {
             let error = match estimate.is_explained() {
-                true => format!("{:.6}", found.standard_error),
+                true => decimals(found.standard_error, 6),
                 false => String::new(),
             };
             vec![
                 frame.number.to_string(),
                 key.to_string(),
                 unit.to_string(),
-                format!("{:.6}", found.value),
+                decimals(found.value, 6),
                 error,
                 interval(found, estimate.is_explained(), 6),
             ]

@@ -8,6 +8,7 @@ use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
+use crate::results::decimals;
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -156,7 +157,8 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     let (outline, edge) = edge.outline(outline, spacing).map_err(refuse)?;
     let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!(
-        "made inside the outline of the markers, which are about {spacing:.4} mm apart{}",
+        "made inside the outline of the markers, which are about {} mm apart{}",
+        decimals(spacing, 4),
         edge.origin()
     );
     warnings.extend(edge.warning());
@@ -206,8 +208,10 @@ fn made(
         .cell_size
         .unwrap_or(spacing.min(across / LEAST_ACROSS).max(smallest(MOST_CELLS)));
     if size > across / 2.0 {
-        let message =
-            format!("cells of {size} mm are too large for a specimen {across:.4} mm wide");
+        let message = format!(
+            "cells of {size} mm are too large for a specimen {} mm wide",
+            decimals(across, 4)
+        );
         return Err(Error::input(message, "choose a smaller --cell-size"));
     }
     let triangles = outline.area() / (size * size * cell_area);

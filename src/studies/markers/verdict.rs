@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::MarkerStudy;
 use crate::corrector::estimation::{Answer, FieldEstimate, Trial, Verdict};
-use crate::results::Block;
+use crate::results::{Block, decimals};
 use crate::statistics::extremes;
 
 /// Freedoms that are told in the terminal.
@@ -51,10 +51,9 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
         text += &format!("frame {}: {}\n", frame.number, reasons(&found.verdict));
         text += &found.verdict.worst.map_or(String::new(), |worst| {
-            let ([x, y], [ux, uy]) = (worst.place, worst.misfit);
-            format!(
-                "largest misfit near ({x:.4}, {y:.4}) mm: mean residual ({ux:.5}, {uy:.5}) mm\n"
-            )
+            let [x, y] = worst.place.map(|place| decimals(place, 4));
+            let [ux, uy] = worst.misfit.map(|misfit| decimals(misfit, 5));
+            format!("largest misfit near ({x}, {y}) mm: mean residual ({ux}, {uy}) mm\n")
         });
         if found.verdict.trials.is_empty() {
             text += match found.holds_mesh_error {
@@ -97,7 +96,10 @@ fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
 /// What is said where the cells are why data are not explained.
 fn finer_mesh(field: &MarkerStudy, verdict: &Verdict) -> Option<String> {
     let remedy = match field.cell_size {
-        Some(size) => format!("use cells smaller than {size:.4} mm (--refine or --cell-size)"),
+        Some(size) => format!(
+            "use cells smaller than {} mm (--refine or --cell-size)",
+            decimals(size, 4)
+        ),
         None => "use a finer one".to_owned(),
     };
     verdict.asks_for_finer_mesh().then(|| {
@@ -117,9 +119,9 @@ fn reasons(verdict: &Verdict) -> String {
 fn words(trial: &Trial) -> String {
     match trial.left.is_finite() {
         true => format!(
-            "{}: the residual would be {:.5} mm",
+            "{}: the residual would be {} mm",
             trial.alternative.words(),
-            trial.left
+            decimals(trial.left, 5)
         ),
         false => trial.alternative.words(),
     }
@@ -142,7 +144,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         vec![
             frame.number.to_string(),
             found.verdict.answer.words().to_owned(),
-            of(|one| format!("{:.4}", one.length)),
+            of(|one| decimals(one.length, 4)),
             of(|one| format!("{:.2}", one.share)),
             of(|one| format!("{:.1}", one.independent)),
             reasons(&found.verdict),
@@ -172,7 +174,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         )));
         let rows = found.verdict.trials.iter().map(|trial| {
             let left = match trial.left.is_finite() {
-                true => format!("{:.5}", trial.left),
+                true => decimals(trial.left, 5),
                 false => String::new(),
             };
             vec![
@@ -195,7 +197,7 @@ fn variogram(found: &FieldEstimate) -> Option<Block> {
     let whiteness = found.whiteness.as_ref()?;
     let rows = whiteness.variogram.iter().map(|bin| {
         vec![
-            format!("{:.4}", bin.distance),
+            decimals(bin.distance, 4),
             bin.pairs.to_string(),
             format!("{:.3}", bin.of_components[0]),
             format!("{:.3}", bin.of_components[1]),

@@ -115,9 +115,12 @@ impl Study {
             true => format!(" graded by {}", self.reference.grading),
             false => String::new(),
         };
+        let stretches = match self.problem.stretches.len() {
+            1 => "1 stretch".to_owned(),
+            several => format!("{several} stretches"),
+        };
         format!(
-            "{} stretches, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells{graded}, output in {}",
-            self.problem.stretches.len(),
+            "{stretches}, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells{graded}, output in {}",
             self.card.name,
             self.reference.element.name(),
             self.output.folder.display()

@@ -6,7 +6,7 @@ use crate::corrector::estimation::{
 };
 use crate::error::Error;
 use crate::material::Card;
-use crate::results::Block;
+use crate::results::{Block, decimals};
 use crate::statistics::Estimate;
 
 /// A force that was measured: specimen, frame, and what was predicted.
@@ -118,11 +118,11 @@ fn unit(unit: &str) -> &str {
 fn value(estimate: &Estimate, unit: &str, explained: bool) -> String {
     let [low, high] = estimate.interval;
     let interval = match (explained, low < high) {
-        (true, true) => format!(" ({low:.6} … {high:.6})"),
+        (true, true) => format!(" ({} … {})", decimals(low, 6), decimals(high, 6)),
         (false, true) => " (no interval: not explained)".to_owned(),
         _ => " (not determined: initial value)".to_owned(),
     };
-    format!("{:.6} {unit}{interval}", estimate.value)
+    format!("{} {unit}{interval}", decimals(estimate.value, 6))
 }
 
 /// A combination of parameters, in words.
@@ -230,10 +230,10 @@ fn parameters(study: &JointStudy, estimate: &JointEstimate, explained: bool) -> 
             let first = first_value(&study.cards[0], parameter.key);
             vec![
                 parameter.key.to_owned(),
-                format!("{:.6}", value.value),
+                decimals(value.value, 6),
                 parameter.unit().to_owned(),
-                of(format!("{:.6}", value.standard_error)),
-                of(format!("{low:.6} … {high:.6}")),
+                of(decimals(value.standard_error, 6)),
+                of(format!("{} … {}", decimals(low, 6), decimals(high, 6))),
                 first,
             ]
         }),
@@ -253,7 +253,7 @@ fn determined(estimate: &JointEstimate) -> [Block; 3] {
             estimate.directions.iter().map(|direction| {
                 vec![
                     combination(estimate, direction),
-                    format!("{:.4}", direction.relative_error.recip()),
+                    decimals(direction.relative_error.recip(), 4),
                     format!("{:.4}", 100.0 * direction.relative_error),
                     if direction.is_determined() {
                         "yes"
@@ -276,7 +276,7 @@ fn determined(estimate: &JointEstimate) -> [Block; 3] {
 /// The value of a parameter on the card.
 fn first_value(card: &Card, key: &str) -> String {
     let stated = card.parameter(key);
-    stated.map_or(String::new(), |value| format!("{value:.6}"))
+    stated.map_or(String::new(), |value| decimals(value, 6))
 }
 
 fn intervals(estimate: &JointEstimate, explained: bool) -> String {
@@ -312,8 +312,8 @@ fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
             frame.to_string(),
             measured.edge.clone(),
             ["x", "y"][measured.axis].to_owned(),
-            format!("{:.6}", measured.force),
-            format!("{:.6}", measured.standard_deviation),
+            decimals(measured.force, 6),
+            decimals(measured.standard_deviation, 6),
             of(force.predicted, 6),
             of(off, 3),
         ]
@@ -346,7 +346,7 @@ fn ranking(study: &JointStudy, found: &JointResults) -> [Block; 3] {
                 law.name,
                 law.parameters.to_string(),
                 error_words(error),
-                format!("{left:.5}"),
+                decimals(left, 5),
                 format!("{criterion:.1}"),
             ],
             None => vec![
@@ -382,7 +382,7 @@ fn verdicts(specimens: &[CorrectedSpecimen]) -> [Block; 2] {
                 specimen.name.clone(),
                 frame.number.to_string(),
                 found.verdict.answer.words().to_owned(),
-                format!("{:.5}", found.noise),
+                decimals(found.noise, 5),
             ]
         })
     });
