@@ -38,7 +38,7 @@ use terms::{SHARES, TIMES, parameters, transformed};
 ///
 /// # Errors
 /// [`Error::Input`] where a test has no times, where the law has no parameters or changes its volume, when there are too few points,
-/// and as [`fit`].
+/// and as [`fit`](super::fit()).
 pub fn fit_relaxation(
     law: &'static Law,
     tests: &[TestData],

@@ -33,7 +33,7 @@ use search::{judged, minimum};
 /// Fits a law that softens to some tests together.
 ///
 /// # Errors
-/// [`Error::Input`] where the tests never unload, where there are too few points, and as [`fit`].
+/// [`Error::Input`] where the tests never unload, where there are too few points, and as [`fit`](super::fit()).
 pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
     check_measures(tests)?;
     check_cycles(tests)?;

@@ -121,9 +121,9 @@ impl DifferenceScheme {
         };
         match self {
             Self::Corners => plate.energy(&Rule::corners()),
-            Self::Gauss => plate.energy(&Rule::linear()),
-            Self::Biquadratic => plate.energy(&Rule::quadratic()),
-            Self::Bicubic => plate.energy(&Rule::cubic()),
+            Self::Gauss => plate.energy(Rule::linear()),
+            Self::Biquadratic => plate.energy(Rule::quadratic()),
+            Self::Bicubic => plate.energy(Rule::cubic()),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The points at which the energy of a plate's rectangular elements is sampled: products of points along both axes.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use crate::mesh::{GAUSS_2, GAUSS_3, GAUSS_4, lobatto};
 use crate::problem::ClampedPlate;
@@ -33,22 +33,25 @@ impl Rule<2> {
     }
 
     /// Linear functions at two Gauss points.
-    pub fn linear() -> Self {
-        Self::gauss(GAUSS_2)
+    pub fn linear() -> &'static Self {
+        static RULE: LazyLock<Rule<2>> = LazyLock::new(|| Rule::gauss(GAUSS_2));
+        &RULE
     }
 }
 
 impl Rule<3> {
     /// Parabolas at three Gauss points.
-    pub fn quadratic() -> Self {
-        Self::gauss(GAUSS_3)
+    pub fn quadratic() -> &'static Self {
+        static RULE: LazyLock<Rule<3>> = LazyLock::new(|| Rule::gauss(GAUSS_3));
+        &RULE
     }
 }
 
 impl Rule<4> {
     /// Cubics at four Gauss points.
-    pub fn cubic() -> Self {
-        Self::gauss(GAUSS_4)
+    pub fn cubic() -> &'static Self {
+        static RULE: LazyLock<Rule<4>> = LazyLock::new(|| Rule::gauss(GAUSS_4));
+        &RULE
     }
 }
 
@@ -227,8 +230,8 @@ mod tests {
 
     #[test]
     fn rules_are_exact_for_polynomials() {
-        check(&Rule::linear(), GAUSS_2);
-        check(&Rule::quadratic(), GAUSS_3);
-        check(&Rule::cubic(), GAUSS_4);
+        check(Rule::linear(), GAUSS_2);
+        check(Rule::quadratic(), GAUSS_3);
+        check(Rule::cubic(), GAUSS_4);
     }
 }

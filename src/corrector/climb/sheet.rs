@@ -26,11 +26,11 @@ impl Sheet<'_> {
         let Sheet { law, thickness, .. } = self;
         let admissible = match self.scheme {
             DifferenceScheme::Corners => forces(law, thickness, grid, &Rule::corners(), u, target),
-            DifferenceScheme::Gauss => forces(law, thickness, grid, &Rule::linear(), u, target),
+            DifferenceScheme::Gauss => forces(law, thickness, grid, Rule::linear(), u, target),
             DifferenceScheme::Biquadratic => {
-                forces(law, thickness, grid, &Rule::quadratic(), u, target)
+                forces(law, thickness, grid, Rule::quadratic(), u, target)
             }
-            DifferenceScheme::Bicubic => forces(law, thickness, grid, &Rule::cubic(), u, target),
+            DifferenceScheme::Bicubic => forces(law, thickness, grid, Rule::cubic(), u, target),
         };
         admissible.then_some(()).ok_or(Inverted)
     }
