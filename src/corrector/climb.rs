@@ -40,6 +40,7 @@ pub use crate::problem::RigidMotion;
 pub use grid::{Field, Grid};
 pub use level::Work;
 use level::{Ending, Iteration, Level};
+pub use mesh::between_nodes;
 pub use path::{Grips, Interactive};
 pub(super) use ratios::{Ratios, geometric_tail};
 use sheet::{Inverted, Sheet};

@@ -30,7 +30,7 @@ use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
 
-use super::sampling::{LinedPlate, Rule, cubics_half_way};
+use super::sampling::{LinedPlate, Rule};
 
 /// Where in a cell the differences are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -128,7 +128,7 @@ impl DifferenceScheme {
     }
 
     /// Cells whose shape functions tell what the scheme takes a field for between the nodes of a plate's mesh of four-node cells, with
-    /// the values of [`Self::between_nodes`]. Nine-node cells pass through nodes in the middle of the bicubic scheme's cells.
+    /// the values of [`between_nodes`](super::climb::between_nodes). Nine-node cells pass through nodes in the middle of the bicubic scheme's cells.
     pub fn mesh(self, mesh: &Mesh) -> Mesh {
         let grid = mesh.grid();
         match self {
@@ -138,20 +138,6 @@ impl DifferenceScheme {
                 Mesh::of_grid(Grid::new(grid.size, pairs, grid.grading), CellShape::Quad9)
             }
             Self::Bicubic => Mesh::of_grid(grid, CellShape::Quad9),
-        }
-    }
-
-    /// The displacements at the nodes of [`Self::mesh`] from those at the nodes of a plate's mesh of four-node cells.
-    pub fn between_nodes(self, displacement: &[f64], mesh: &Mesh) -> Vec<f64> {
-        let grid = mesh.grid();
-        self.between_lines(displacement, &[0, 1].map(|axis| grid.lines(axis)))
-    }
-
-    /// The same from those at the nodes on given lines.
-    pub fn between_lines(self, displacement: &[f64], coordinates: &[Vec<f64>; 2]) -> Vec<f64> {
-        match self {
-            Self::Bicubic => cubics_half_way(displacement, coordinates),
-            _ => displacement.to_vec(),
         }
     }
 

@@ -83,50 +83,6 @@ fn lagrange<const NODES: usize>(nodes: &[f64], place: f64) -> [[f64; 2]; NODES] 
     })
 }
 
-/// The displacements of bicubic elements at their nodes and half way between them: ux, uy of node after node.
-pub fn cubics_half_way(displacement: &[f64], coordinates: &[Vec<f64>; 2]) -> Vec<f64> {
-    let [x, y] = coordinates.each_ref().map(|places| cubics(places));
-    let width = coordinates[1].len();
-    let line = |(first, shares): &Cubic| -> Vec<f64> {
-        let sum = |place: usize| -> f64 {
-            let lines = shares.iter().enumerate();
-            lines
-                .map(|(line, share)| share * displacement[2 * (first + line) * width + place])
-                .sum()
-        };
-        (0..2 * width).map(sum).collect()
-    };
-    let on_line = |line: Vec<f64>| -> Vec<f64> {
-        let at = |(first, shares): &Cubic, axis: usize| -> f64 {
-            let nodes = shares.iter().enumerate();
-            nodes
-                .map(|(node, share)| share * line[2 * (first + node) + axis])
-                .sum()
-        };
-        y.iter()
-            .flat_map(|place| [at(place, 0), at(place, 1)])
-            .collect()
-    };
-    x.iter().flat_map(|place| on_line(line(place))).collect()
-}
-
-/// The first of the four nodes of an element, and their shares at a place in it.
-type Cubic = (usize, [f64; 4]);
-
-/// The shares at all nodes and half way between them.
-fn cubics(places: &[f64]) -> Vec<Cubic> {
-    let nodes = lobatto(3);
-    let steps = 2 * (places.len() - 1);
-    let share = |step: usize| {
-        let element = (step / 6).min(steps / 6 - 1);
-        let part = step - 6 * element;
-        let [before, after] = [part / 2, part.div_ceil(2)].map(|node| nodes[node]);
-        let functions: [[f64; 2]; 4] = lagrange(nodes, 0.5 * (before + after));
-        (3 * element, functions.map(|[value, _]| value))
-    };
-    (0..=steps).map(share).collect()
-}
-
 /// A plate with the lines of its nodes, whose numbers run line by line along Y.
 pub struct LinedPlate<'a> {
     /// The plate.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Climb, ClimbSolution, Grid};
+use super::{Climb, ClimbSolution, Field, Grid};
 use crate::corrector::DifferenceScheme;
 use crate::mesh::{CellShape, Mesh, Side};
 use crate::problem::DeformedSheet;
@@ -12,21 +12,34 @@ impl Climb<'_> {
     /// [`Field::to_nodes`](super::Field::to_nodes), and its groups the sides `left`, `right`, `bottom`, `top`; nine-node cells pass
     /// through the bicubic scheme's field at further nodes half way between the grid's.
     pub fn deformed(&self, climbed: &ClimbSolution) -> DeformedSheet {
-        let (grid, scheme) = (self.grid(), self.scheme);
-        let mesh = match scheme {
-            DifferenceScheme::Bicubic => grid.halved().mesh(2),
-            _ => grid.mesh(scheme.side()),
-        };
-        let nodes = climbed.field.to_nodes();
-        let displacement = scheme.between_lines(&nodes, &grid.coordinates);
-        DeformedSheet::new(mesh, displacement, Arc::clone(&self.problem.law))
+        let (grid, field) = self.grid().with_cells(&climbed.field);
+        let law = Arc::clone(&self.problem.law);
+        DeformedSheet::new(grid.mesh(grid.degree), field.to_nodes(), law)
     }
 }
 
+/// The displacements at the nodes of [`DifferenceScheme::mesh`] from those at the nodes of a plate's mesh of four-node cells: ux, uy of
+/// node after node.
+pub fn between_nodes(scheme: DifferenceScheme, mesh: &Mesh, displacement: &[f64]) -> Vec<f64> {
+    let lines = mesh.grid();
+    let grid = Grid {
+        coordinates: [0, 1].map(|axis| lines.lines(axis)),
+        degree: scheme.side(),
+    };
+    let field = Field::of_nodes(&grid, displacement);
+    grid.with_cells(&field).1.to_nodes()
+}
+
 impl Grid {
-    /// The grid with further lines half way between its own.
-    fn halved(&self) -> Self {
-        Self::new(self.coordinates.each_ref().map(|places| &places[..]), 2)
+    /// The grid, and a field on it, whose elements are cells of meshes: with further lines half way between its own where they are cubic.
+    fn with_cells(&self, field: &Field) -> (Self, Field) {
+        if !self.has_cubics() {
+            return (self.clone(), field.clone());
+        }
+        let lines = self.coordinates.each_ref().map(|places| &places[..]);
+        let halved = Self::new(lines, 2);
+        let between = field.onto(self, &halved);
+        (halved, between)
     }
 
     /// The mesh of cells with `side` spans of the grid along each axis, one (four nodes) or two (nine nodes).
@@ -64,7 +77,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::corrector::climb::{ClimbSettings, Field};
+    use crate::corrector::climb::ClimbSettings;
     use crate::material::Card;
     use crate::problem::ClampedPlate;
 

@@ -9,7 +9,7 @@ use super::{ReferenceMesh, Results};
 use crate::compare::imported::{ModelField, ModelFields};
 use crate::compare::{Reference, StepComparison};
 use crate::corrector::PlateCorrector;
-use crate::corrector::climb::Climb;
+use crate::corrector::climb::{Climb, between_nodes};
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
 use crate::finite_element::error_estimate::ErrorEstimate;
@@ -325,7 +325,7 @@ pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<Mode
     let [lattice, cells, finest] = results.meshes();
     // Between its nodes the corrected field is what its differences take it for.
     let scheme = study.corrector.scheme;
-    let between = corrected.map(|state| scheme.between_nodes(&state.displacement, cells));
+    let between = corrected.map(|state| between_nodes(scheme, cells, &state.displacement));
     let fields = [
         field(FINITE_ELEMENTS.name, finest, displacement(elements)),
         field(MASS_SPRING.name, lattice, displacement(springs)),
