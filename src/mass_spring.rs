@@ -28,7 +28,6 @@ use crate::material::law::HyperelasticLaw;
 use crate::material::stability::in_plane_poisson_ratio;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{ClampedPlate, Model};
-use crate::solve::vector::gather;
 use crate::solve::{NewtonSettings, Potential, Remembering, State};
 
 pub mod calibration;
@@ -228,7 +227,7 @@ impl MassSpring {
     /// Stretch and force of every spring of a lattice with a history, which is empty for a lattice that was never loaded.
     pub fn spring_states(&self, displacement: &[f64], history: &[f64]) -> Vec<SpringState> {
         let state = |(index, spring): (usize, &Spring)| {
-            let own = gather(self.lattice.element_unknowns(index), displacement);
+            let own = self.lattice.connectivity().values(index, displacement);
             let pose = self.lattice.pose_after(index, &own, history);
             SpringState {
                 stretch: pose.stretch,

@@ -17,6 +17,7 @@ mod plate;
 mod pressure;
 mod reactions;
 mod rigid;
+pub mod sampling_point;
 pub mod sheet_energy;
 mod sheet_forces;
 mod solution;

@@ -37,8 +37,8 @@ fn moved(material: &ViscousMaterial, history: &[[f64; 2]]) -> Vec<f64> {
     let unknowns = energy.element_unknowns(0);
     let displacement = |stretch: f64| -> Vec<f64> {
         let across = stretch.powf(-0.5);
-        let of = |unknown: &usize| {
-            let [x, y] = mesh.nodes[unknown / 2];
+        let of = |unknown: &u32| {
+            let [x, y] = mesh.nodes[*unknown as usize / 2];
             if unknown.is_multiple_of(2) {
                 (stretch - 1.0) * x
             } else {
@@ -70,7 +70,8 @@ fn moved(material: &ViscousMaterial, history: &[[f64; 2]]) -> Vec<f64> {
         sheet.add_element(0, motion, local).unwrap();
         let right = unknowns.iter().zip(&force);
         let right = right
-            .filter(|(unknown, _)| unknown.is_multiple_of(2) && mesh.on(Side::Right, *unknown / 2));
+            .filter(|(unknown, _)| unknown.is_multiple_of(2))
+            .filter(|(unknown, _)| mesh.on(Side::Right, **unknown as usize / 2));
         let viscous: f64 = right.map(|(_, force)| force).sum();
         stresses.push(viscous / 10.0 + law.tension([1.0, 0.0], stretch - 1.0).nominal_stress);
         let mut next = memory.clone();

@@ -261,7 +261,7 @@ pub fn by_multigrid(
 /// Writes the unknowns of the coarser mesh, with their shares, that an unknown of the finer one is made of.
 fn carrying(interpolation: &Interpolation) -> impl Fn(usize, &mut Vec<(usize, f64)>) + '_ {
     |unknown, terms| {
-        let nodes = interpolation.of(unknown / 2).iter();
-        terms.extend(nodes.map(|(node, share)| (2 * node + unknown % 2, *share)));
+        let nodes = interpolation.of(unknown / 2);
+        terms.extend(nodes.map(|(node, share)| (2 * node + unknown % 2, share)));
     }
 }

@@ -4,6 +4,7 @@ use std::sync::{Arc, LazyLock};
 
 use crate::mesh::{GAUSS_2, GAUSS_3, GAUSS_4, lobatto};
 use crate::problem::ClampedPlate;
+use crate::problem::sampling_point::{DerivativeTable, PointMap};
 use crate::problem::sheet_energy::SheetEnergy;
 
 /// The points at which the energy of an element is sampled along one axis, and the functions there.
@@ -66,6 +67,24 @@ impl<const NODES: usize> Rule<NODES> {
             derivatives: functions.map(|functions| functions.map(|[_, slope]| slope)),
         }
     }
+
+    /// The derivatives φ′ φ and φ φ′ of the functions of an element's nodes, line by line, at all points (a, b).
+    fn table(&self) -> DerivativeTable {
+        let Self {
+            values,
+            derivatives,
+            ..
+        } = self;
+        let at = |[a, b]: [usize; 2]| {
+            pairs::<NODES>().map(move |[line, node]| {
+                [
+                    derivatives[a][line] * values[b][node],
+                    values[a][line] * derivatives[b][node],
+                ]
+            })
+        };
+        DerivativeTable::new(NODES * NODES, pairs::<NODES>().flat_map(at))
+    }
 }
 
 /// Value and derivative of each node's polynomial, which is one there and zero at the other nodes.
@@ -108,6 +127,7 @@ impl LinedPlate<'_> {
         });
         let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
         let mut energy = SheetEnergy::new(Arc::clone(&self.problem.law), x.len() * y.len());
+        let table = energy.push_table(rule.table());
         for [column, row] in (0..columns).flat_map(|column| (0..rows).map(move |row| [column, row]))
         {
             let first = [column * order, row * order];
@@ -115,39 +135,31 @@ impl LinedPlate<'_> {
                 let places = &self.coordinates[axis];
                 places[first[axis] + order] - places[first[axis]]
             });
-            self.push_points(&mut energy, rule, sides);
             let on_line =
                 |line: usize| (first[1]..=first[1] + order).map(move |j| line * y.len() + j);
             let nodes: Vec<usize> = (first[0]..=first[0] + order).flat_map(on_line).collect();
-            energy.push_cell(&nodes);
+            energy.push_cell(&nodes, table, self.points(rule, sides));
         }
-        energy.with_places(nodes)
+        energy.complete(nodes)
     }
 
-    /// The points of an element with given sides: ∂φ/∂X = φ′ φ/hx, ∂φ/∂Y = φ φ′/hy of its nodes, line by line.
-    fn push_points<const NODES: usize>(
+    /// The points of an element with given sides, which are the units of its natural coordinates.
+    fn points<const NODES: usize>(
         &self,
-        energy: &mut SheetEnergy,
         rule: &Rule<NODES>,
         [hx, hy]: [f64; 2],
-    ) {
-        let Rule {
-            weights,
-            values,
-            derivatives,
-        } = rule;
-        let pairs = || (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b]));
-        for [a, b] in pairs() {
-            let gradient = |[line, node]: [usize; 2]| {
-                [
-                    derivatives[a][line] * values[b][node] / hx,
-                    values[a][line] * derivatives[b][node] / hy,
-                ]
-            };
-            let volume = self.problem.thickness * hx * hy * weights[a] * weights[b];
-            energy.push_point(pairs().map(gradient), volume);
-        }
+    ) -> impl Iterator<Item = PointMap> {
+        let area = self.problem.thickness * hx * hy;
+        pairs::<NODES>().map(move |[a, b]| PointMap {
+            inverse: [[1.0 / hx, 0.0], [0.0, 1.0 / hy]],
+            volume: area * rule.weights[a] * rule.weights[b],
+        })
     }
+}
+
+/// Pairs of points or nodes along both axes.
+fn pairs<const NODES: usize>() -> impl Iterator<Item = [usize; 2]> + Clone {
+    (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b]))
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
 };
-use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy, add_stiffness};
+use crate::problem::sampling_point::SamplingPoint;
+use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::Inadmissible;
 
 /// The viscous part of a material at the sampling points of an energy. A point stores S∞ and the stress Qᵢ of every branch of the Prony series.
@@ -117,8 +118,7 @@ impl Viscosity for SheetViscosity<'_> {
             point.add_force(&own.stress, local.force);
             if let (Some(sums), Some(tangents)) = (&mut local.tangents, own.tangents) {
                 for (sum, tangent) in sums.iter_mut().zip(tangents) {
-                    let scaled = tangent * point.volume;
-                    add_stiffness(sum, point.gradients, scaled.as_slice());
+                    point.add_stiffness(tangent.as_slice(), sum);
                 }
             }
         }

@@ -1,7 +1,6 @@
 //! The forces of a body in a time step, and their tangent.
 
 use super::viscosity::{ElementMotion, Memory, Viscosity, ViscousLocal};
-use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential, Take, evaluate_by_elements};
 
 /// The forces of a body at given velocities as if they were those of a potential: ∂Π/∂u where it is elastic, and f_v.
@@ -34,7 +33,7 @@ impl StepForces<'_> {
     ) -> Result<(), Inadmissible> {
         let motion = ElementMotion {
             displacement: u,
-            velocity: &gather(self.element_unknowns(element), self.velocity),
+            velocity: &self.connectivity().values(element, self.velocity),
             memory: self.memory.of(element),
             elapsed: self.elapsed,
         };

@@ -1,6 +1,5 @@
 //! Forces that depend on rates and on the past.
 
-use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible};
 
 /// The motion of an element: its own unknowns, their velocities, and its memory.
@@ -99,7 +98,7 @@ impl Memory {
         };
         for element in 0..connectivity.elements() {
             let mut own = vec![0.0; viscosity.memory(element)];
-            let u = gather(connectivity.of(element), displacement);
+            let u = connectivity.values(element, displacement);
             viscosity.relaxed(element, &u, &mut own)?;
             memory.values.extend(own);
             memory.starts.push(memory.values.len());
@@ -131,10 +130,9 @@ impl Memory {
             return Ok(next);
         }
         for element in 0..connectivity.elements() {
-            let unknowns = connectivity.of(element);
             let motion = ElementMotion {
-                displacement: &gather(unknowns, u),
-                velocity: &gather(unknowns, v),
+                displacement: &connectivity.values(element, u),
+                velocity: &connectivity.values(element, v),
                 memory: self.of(element),
                 elapsed,
             };

@@ -7,7 +7,6 @@ use super::spring_law::SpringLaw;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::polygon_area;
-use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential, Remembering};
 
 /// The energy of a lattice: springs, then cells.
@@ -219,7 +218,7 @@ impl Remembering for Lattice {
         }
         history.resize(self.springs.len(), 0.0);
         for (index, most) in history.iter_mut().enumerate() {
-            let own = gather(self.element_unknowns(index), u);
+            let own = self.connectivity.values(index, u);
             *most = most.max(self.pose(index, &own).response.energy);
         }
     }

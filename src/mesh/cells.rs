@@ -72,6 +72,9 @@ impl Mesh {
             connectivity.extend(nodes);
             starts.push(connectivity.len());
         }
+        shapes.shrink_to_fit();
+        starts.shrink_to_fit();
+        connectivity.shrink_to_fit();
         Self {
             nodes,
             shapes,

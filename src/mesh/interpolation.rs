@@ -11,22 +11,24 @@ pub type Place = (usize, [f64; 2]);
 #[derive(Clone, Debug)]
 pub struct Interpolation {
     /// Where the terms of each node begin.
-    starts: Vec<usize>,
-    /// Nodes of the other mesh with their shares.
-    terms: Vec<(usize, f64)>,
+    starts: Vec<u32>,
+    /// Nodes of the other mesh, and their shares.
+    nodes: Vec<u32>,
+    shares: Vec<f64>,
 }
 
 impl Interpolation {
     /// Nodes of the other mesh with their shares in a node.
-    pub fn of(&self, node: usize) -> &[(usize, f64)] {
-        &self.terms[self.starts[node]..self.starts[node + 1]]
+    pub fn of(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let terms = self.starts[node] as usize..self.starts[node + 1] as usize;
+        let nodes = self.nodes[terms.clone()].iter().map(|node| *node as usize);
+        nodes.zip(self.shares[terms].iter().copied())
     }
 
     /// ux, uy of node after node, from those of the other mesh.
     pub fn apply(&self, displacement: &[f64]) -> Vec<f64> {
         let at = |node: usize| {
-            let terms = self.of(node).iter();
-            terms.fold([0.0; 2], |[x, y], (node, share)| {
+            self.of(node).fold([0.0; 2], |[x, y], (node, share)| {
                 [
                     x + share * displacement[2 * node],
                     y + share * displacement[2 * node + 1],
@@ -132,7 +134,9 @@ impl Mesh {
 
     /// The places of another mesh's nodes in this one, both of the same specimen, to interpolate many fields; as [`Self::displacement_on`].
     pub fn interpolation_on(&self, other: &Self) -> Interpolation {
-        let (mut starts, mut terms) = (vec![0], Vec::new());
+        let mut starts = Vec::with_capacity(other.nodes.len() + 1);
+        starts.push(0);
+        let (mut nodes, mut shares) = (Vec::new(), Vec::new());
         let places = self.places_from_own_sides(other);
         let mut cell = 0;
         for (node, place) in other.nodes.iter().enumerate() {
@@ -141,36 +145,35 @@ impl Mesh {
                 Some(places) => places[node],
                 None => self.locate_near(cell, *place),
             };
-            let values = self.shape(cell).values(local);
-            terms.extend(self.cell(cell).iter().copied().zip(values));
-            starts.push(terms.len());
+            shares.extend(self.shape(cell).values(local));
+            nodes.extend(self.cell(cell).iter().map(|node| *node as u32));
+            starts.push(nodes.len() as u32);
         }
-        Interpolation { starts, terms }
+        nodes.shrink_to_fit();
+        shares.shrink_to_fit();
+        Interpolation {
+            starts,
+            nodes,
+            shares,
+        }
     }
 
     /// Gradients ∂Nₐ/∂X of a cell's shape functions in 1/mm, and the Jacobian of its map in mm², at a reference
     /// point.
     pub fn gradients(&self, cell: usize, local: [f64; 2]) -> (Vec<[f64; 2]>, f64) {
         let derivatives = self.shape(cell).derivatives(local);
-        let (gradients, jacobian) = self.transformed(cell, &derivatives);
-        (gradients.collect(), jacobian)
+        let (inverse, jacobian) = self.inverse_map(cell, &derivatives);
+        let transform = |d: &[f64; 2]| [0, 1].map(|k| d[0] * inverse[0][k] + d[1] * inverse[1][k]);
+        (derivatives.iter().map(transform).collect(), jacobian)
     }
 
-    /// Gradients and Jacobian as [`Self::gradients`] where the derivatives with respect to natural coordinates are known.
-    pub fn transformed<'a>(
-        &self,
-        cell: usize,
-        derivatives: &'a [[f64; 2]],
-    ) -> (impl Iterator<Item = [f64; 2]> + use<'a>, f64) {
+    /// ∂ξⱼ/∂Xₖ of a cell in 1/mm, and the Jacobian of its map in mm², where the derivatives of its shape functions with respect to
+    /// natural coordinates are these.
+    pub fn inverse_map(&self, cell: usize, derivatives: &[[f64; 2]]) -> ([[f64; 2]; 2], f64) {
         let map = self.map(cell, derivatives);
         let jacobian = determinant(&map);
-        let transform = move |d: &[f64; 2]| {
-            [
-                (d[0] * map[1][1] - d[1] * map[1][0]) / jacobian,
-                (d[1] * map[0][0] - d[0] * map[0][1]) / jacobian,
-            ]
-        };
-        (derivatives.iter().map(transform), jacobian)
+        let inverse = [[map[1][1], -map[0][1]], [-map[1][0], map[0][0]]];
+        (inverse.map(|row| row.map(|own| own / jacobian)), jacobian)
     }
 
     /// ∂Xᵢ/∂ξⱼ of a cell.

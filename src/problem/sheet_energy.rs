@@ -1,25 +1,16 @@
 //! The strain energy of a sheet as a sum over sampling points, common to the finite elements and the corrector's
 //! difference scheme, which differ in the points and in the gradients alone.
 
+use std::ops::Range;
 use std::sync::Arc;
 
+use super::sampling_point::{DerivativeTable, PointMap, SamplingPoint};
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::stability::is_stable;
 use crate::mesh::{CellShape, Mesh};
-use crate::solve::vector::gather;
 use crate::solve::{
     Connectivity, Inadmissible, Local, Potential, Remembering, Take, evaluate_by_elements,
 };
-
-/// A point at which the energy is sampled: the displacement gradient there as a combination of nodal values.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SamplingPoint<'a> {
-    /// ∂u/∂X = Σ uₐ ⊗ gₐ with one gₐ in 1/mm for each node of the cell.
-    pub gradients: &'a [[f64; 2]],
-    /// Share of the sheet's reference volume in mm³.
-    pub volume: f64,
-}
 
 /// Π(u) = Σ V Ψ(H(u)) over the sampling points of all cells, in mJ.
 #[derive(Clone, Debug)]
@@ -27,14 +18,13 @@ pub struct SheetEnergy {
     law: Arc<dyn HyperelasticLaw>,
     /// The unknowns of each cell: ux, uy of node after node.
     connectivity: Connectivity,
-    /// The gradients of all points, one after the other.
-    gradients: Vec<[f64; 2]>,
-    /// Where the gradients of each cell begin.
-    gradient_starts: Vec<usize>,
-    /// The volumes of all points in mm³.
-    volumes: Vec<f64>,
+    tables: Vec<DerivativeTable>,
+    /// The table of each cell.
+    table_of: Vec<u8>,
+    /// All points, cell by cell.
+    points: Vec<PointMap>,
     /// Where the points of each cell begin.
-    point_starts: Vec<usize>,
+    point_starts: Vec<u32>,
     /// The largest energy of every point so far in mJ/mm³; empty where the body was never loaded, or has no memory.
     history: Vec<f64>,
 }
@@ -45,61 +35,75 @@ impl SheetEnergy {
         Self {
             law,
             connectivity: Connectivity::new(2 * nodes),
-            gradients: Vec::new(),
-            gradient_starts: vec![0],
-            volumes: Vec::new(),
+            tables: Vec::new(),
+            table_of: Vec::new(),
+            points: Vec::new(),
             point_starts: vec![0],
             history: Vec::new(),
         }
     }
 
-    /// Appends a cell of some nodes whose points were pushed before.
-    pub fn push_cell(&mut self, nodes: &[usize]) {
+    /// Adds a table for cells to come; returns its number.
+    pub fn push_table(&mut self, table: DerivativeTable) -> u8 {
+        self.tables.push(table);
+        u8::try_from(self.tables.len() - 1).expect("few kinds of cells")
+    }
+
+    /// Appends a cell of some nodes with its points, whose derivatives are those of a table.
+    ///
+    /// # Panics
+    /// When the nodes or points are not those of the table.
+    pub fn push_cell(
+        &mut self,
+        nodes: &[usize],
+        table: u8,
+        points: impl IntoIterator<Item = PointMap>,
+    ) {
         self.connectivity.push_nodes(nodes);
-        self.gradient_starts.push(self.gradients.len());
-        self.point_starts.push(self.volumes.len());
-    }
-
-    /// Reserves memory for so many cells like the first one.
-    fn reserve(&mut self, cells: usize) {
-        self.gradients.reserve(cells * self.gradients.len());
-        self.gradient_starts.reserve(cells);
-        self.volumes.reserve(cells * self.volumes.len());
-        self.point_starts.reserve(cells);
-    }
-
-    /// Appends a point of the next cell: a gradient for each of its nodes, and its volume in mm³.
-    pub fn push_point(&mut self, gradients: impl IntoIterator<Item = [f64; 2]>, volume: f64) {
-        self.gradients.extend(gradients);
-        self.volumes.push(volume);
+        self.table_of.push(table);
+        let before = self.points.len();
+        self.points.extend(points);
+        self.point_starts.push(self.points.len() as u32);
+        let own = &self.tables[usize::from(table)];
+        let sizes = [own.nodes(), own.points().len()];
+        assert_eq!([nodes.len(), self.points.len() - before], sizes);
     }
 
     /// The energy of the cells of a mesh, integrated by their quadrature: the finite-element method.
     pub fn of_mesh(law: Arc<dyn HyperelasticLaw>, mesh: &Mesh, thickness: f64) -> Self {
         let mut energy = Self::new(law, mesh.nodes.len());
-        let mut rule = (None, Vec::new());
+        let mut kinds: Vec<(CellShape, Vec<f64>)> = Vec::new();
         for cell in 0..mesh.cell_count() {
             let shape = mesh.shape(cell);
-            if rule.0 != Some(shape) {
-                rule = (Some(shape), quadrature(shape));
-            }
-            for (derivatives, weight) in &rule.1 {
-                let (gradients, jacobian) = mesh.transformed(cell, derivatives);
-                energy.push_point(gradients, thickness * jacobian * *weight);
-            }
-            energy.push_cell(mesh.cell(cell));
-            if cell == 0 {
-                energy.reserve(mesh.cell_count());
-            }
+            let known = kinds.iter().position(|(own, _)| *own == shape);
+            let kind = known.unwrap_or_else(|| {
+                let weights = shape.quadrature().into_iter();
+                kinds.push((shape, weights.map(|(_, weight)| weight).collect()));
+                energy.push_table(DerivativeTable::of_shape(shape));
+                kinds.len() - 1
+            });
+            let weights = &kinds[kind].1;
+            let points = energy.tables[kind].points().zip(weights);
+            let points: Vec<PointMap> = points
+                .map(|(derivatives, weight)| {
+                    let (inverse, jacobian) = mesh.inverse_map(cell, derivatives);
+                    let volume = thickness * jacobian * weight;
+                    PointMap { inverse, volume }
+                })
+                .collect();
+            energy.push_cell(mesh.cell(cell), kind as u8, points);
         }
-        energy.with_places(mesh.nodes.clone())
+        energy.complete(mesh.nodes.clone())
     }
 
     /// The same energy with the places of its nodes: large systems are eliminated in an order by places.
     #[must_use]
-    pub fn with_places(self, nodes: Vec<[f64; 2]>) -> Self {
+    pub fn complete(mut self, nodes: Vec<[f64; 2]>) -> Self {
+        self.table_of.shrink_to_fit();
+        self.points.shrink_to_fit();
+        self.point_starts.shrink_to_fit();
         Self {
-            connectivity: self.connectivity.with_places(nodes),
+            connectivity: self.connectivity.with_places(nodes).shared(),
             ..self
         }
     }
@@ -126,48 +130,20 @@ impl SheetEnergy {
 
     /// The sampling points of a cell.
     pub fn cell_points(&self, cell: usize) -> impl ExactSizeIterator<Item = SamplingPoint<'_>> {
-        let nodes = self.element_unknowns(cell).len() / 2;
-        let first = self.gradient_starts[cell];
-        let gradients = &self.gradients[first..self.gradient_starts[cell + 1]];
-        let volumes = &self.volumes[self.point_starts[cell]..self.point_starts[cell + 1]];
-        let points = gradients.chunks_exact(nodes).zip(volumes);
-        points.map(|(gradients, volume)| SamplingPoint {
-            gradients,
-            volume: *volume,
-        })
+        let table = &self.tables[usize::from(self.table_of[cell])];
+        let maps = &self.points[self.points_of(cell)];
+        let points = table.points().zip(maps);
+        points.map(|(derivatives, map)| SamplingPoint::new(derivatives, *map))
+    }
+
+    /// The numbers of a cell's sampling points among all.
+    pub fn points_of(&self, cell: usize) -> Range<usize> {
+        self.point_starts[cell] as usize..self.point_starts[cell + 1] as usize
     }
 
     /// The material.
     pub fn law(&self) -> &dyn HyperelasticLaw {
         &*self.law
-    }
-}
-
-impl SamplingPoint<'_> {
-    /// ∂u/∂X, or ∂u̇/∂X, from nodal values: components 11, 12, 21, 22.
-    pub fn gradient(&self, u: &[f64]) -> PlaneTensor {
-        let mut h = PlaneTensor::zeros();
-        for (g, u) in self.gradients.iter().zip(u.chunks_exact(2)) {
-            h[0] += u[0] * g[0];
-            h[1] += u[0] * g[1];
-            h[2] += u[1] * g[0];
-            h[3] += u[1] * g[1];
-        }
-        h
-    }
-
-    /// Adds the nodal forces of a first Piola–Kirchhoff stress in MPa.
-    pub fn add_force(&self, stress: &PlaneTensor, force: &mut [f64]) {
-        let traction = stress * self.volume;
-        for (r, g) in force.chunks_exact_mut(2).zip(self.gradients) {
-            r[0] += traction[0] * g[0] + traction[1] * g[1];
-            r[1] += traction[2] * g[0] + traction[3] * g[1];
-        }
-    }
-
-    /// Kinematics with the nodal displacements `u`.
-    fn kinematics(&self, u: &[f64]) -> Result<Kinematics, ()> {
-        Kinematics::new(&self.gradient(u)).map_err(|_| ())
     }
 }
 
@@ -218,7 +194,7 @@ impl Remembering for SheetEnergy {
         history: &[f64],
     ) -> Result<f64, Inadmissible> {
         let softening = self.law.softening().filter(|_| !history.is_empty());
-        let softening = softening.map(|own| (own, &history[self.point_starts[element]..]));
+        let softening = softening.map(|own| (own, &history[self.points_of(element)]));
         let mut energy = 0.0;
         for (index, point) in self.cell_points(element).enumerate() {
             let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
@@ -231,12 +207,11 @@ impl Remembering for SheetEnergy {
                     let virgin = self.law.response(&kinematics);
                     let response =
                         softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
-                    let tangent = response.tangent * point.volume;
-                    add_stiffness(stiffness, point.gradients, tangent.as_slice());
+                    point.add_stiffness(response.tangent.as_slice(), stiffness);
                     (response.energy, response.first_piola_kirchhoff_stress)
                 }
             };
-            energy += point.volume * density;
+            energy += point.volume() * density;
             point.add_force(&stress, local.residual);
         }
         if energy.is_finite() {
@@ -251,11 +226,11 @@ impl Remembering for SheetEnergy {
         if self.law.softening().is_none() {
             return;
         }
-        history.resize(self.volumes.len(), 0.0);
+        history.resize(self.points.len(), 0.0);
         for element in 0..self.elements() {
-            let own = gather(self.element_unknowns(element), u);
-            let first = self.point_starts[element];
-            for (most, point) in history[first..].iter_mut().zip(self.cell_points(element)) {
+            let own = self.connectivity.values(element, u);
+            let points = &mut history[self.points_of(element)];
+            for (most, point) in points.iter_mut().zip(self.cell_points(element)) {
                 if let Ok(kinematics) = point.kinematics(&own) {
                     *most = most.max(self.law.stress(&kinematics).0);
                 }
@@ -267,8 +242,8 @@ impl Remembering for SheetEnergy {
         let Some(softening) = self.law.softening() else {
             return 0.0;
         };
-        let points = self.volumes.iter().zip(history);
-        let parts = points.map(|(volume, most)| volume * softening.dissipated(*most));
+        let points = self.points.iter().zip(history);
+        let parts = points.map(|(own, most)| own.volume * softening.dissipated(*most));
         parts.sum()
     }
 
@@ -277,33 +252,10 @@ impl Remembering for SheetEnergy {
     }
 }
 
-/// The derivatives of a shape's functions by natural coordinates at the points of its quadrature, with their weights.
-fn quadrature(shape: CellShape) -> Vec<(Vec<[f64; 2]>, f64)> {
-    let points = shape.quadrature().into_iter();
-    points
-        .map(|(local, weight)| (shape.derivatives(local), weight))
-        .collect()
-}
-
-/// K_(a i)(b k) += gₐ_J A_(i J)(k L) g_b_L over the lower triangle; `a` is symmetric, 4 × 4.
-pub fn add_stiffness(stiffness: &mut [f64], gradients: &[[f64; 2]], a: &[f64]) {
-    let size = 2 * gradients.len();
-    for (b, g) in gradients.iter().enumerate() {
-        for k in 0..2 {
-            let column: [f64; 4] =
-                std::array::from_fn(|row| a[row + 8 * k] * g[0] + a[row + 8 * k + 4] * g[1]);
-            for (node, g) in gradients.iter().enumerate().skip(b) {
-                let row = 2 * node;
-                stiffness[row * size + 2 * b + k] += g[0] * column[0] + g[1] * column[1];
-                stiffness[(row + 1) * size + 2 * b + k] += g[0] * column[2] + g[1] * column[3];
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::sheet::{Kinematics, PlaneTensor};
     use crate::material::{MooneyRivlin, NeoHooke};
     use crate::mesh::CellShape;
     use crate::solve::assembly::derivative_errors;

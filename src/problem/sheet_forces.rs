@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::sheet_energy::{SheetEnergy, add_stiffness};
+use super::sheet_energy::SheetEnergy;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::COMPONENTS;
 use crate::solve::{Inadmissible, Potential, Take};
@@ -58,7 +58,7 @@ impl SheetEnergy {
             let mut place = 0;
             for cell in cells {
                 let own = (place..).zip(self.cell_points(cell));
-                let terms = own.map(|(index, point)| point.volume * points.made[0][index]);
+                let terms = own.map(|(index, point)| point.volume() * points.made[0][index]);
                 energy += terms.sum::<f64>();
                 points.add_forces(self, cell, place, 1, forces);
                 if let Some(take) = &mut take {
@@ -117,7 +117,8 @@ impl<const N: usize> Points<N> {
     fn push(&mut self, energy: &SheetEnergy, cell: usize, u: &[f64]) {
         let unknowns = energy.element_unknowns(cell).iter();
         self.cell.clear();
-        self.cell.extend(unknowns.map(|unknown| u[*unknown]));
+        self.cell
+            .extend(unknowns.map(|unknown| u[*unknown as usize]));
         let points = energy.cell_points(cell);
         let begin = self.gradients[0].len();
         let [xx, xy, yx, yy] = self.gradients.each_mut().map(|component| {
@@ -158,7 +159,7 @@ impl<const N: usize> Points<N> {
             point.add_force(&stress.into(), &mut self.cell);
         }
         for (unknown, force) in unknowns.iter().zip(&self.cell) {
-            forces[*unknown] += force;
+            forces[*unknown as usize] += force;
         }
     }
 }
@@ -170,8 +171,7 @@ impl Points<COMPONENTS> {
         stiffness.clear();
         stiffness.resize(size * size, 0.0);
         for (index, point) in (place..).zip(energy.cell_points(cell)) {
-            let tangent = self.tangent(index).map(|a| a * point.volume);
-            add_stiffness(stiffness, point.gradients, &tangent);
+            point.add_stiffness(&self.tangent(index), stiffness);
         }
     }
 

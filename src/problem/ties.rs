@@ -22,16 +22,18 @@ impl<'a> TiedPotential<'a> {
     /// Ties unknowns (keys) to others.
     pub fn new(potential: Box<dyn Potential + 'a>, ties: &'a BTreeMap<usize, usize>) -> Self {
         let mut connectivity = Connectivity::new(potential.unknowns());
+        connectivity.reserve_as(potential.connectivity());
         let mut tied = BTreeMap::new();
         for element in 0..potential.elements() {
             let own = potential.element_unknowns(element);
-            if !own.iter().any(|unknown| ties.contains_key(unknown)) {
-                connectivity.push(own.iter().copied());
+            let own = own.iter().map(|unknown| *unknown as usize);
+            if !own.clone().any(|unknown| ties.contains_key(&unknown)) {
+                connectivity.push(own);
                 continue;
             }
             let (mut unknowns, mut places) = (Vec::new(), Vec::new());
             for unknown in own {
-                let unknown = *ties.get(unknown).unwrap_or(unknown);
+                let unknown = *ties.get(&unknown).unwrap_or(&unknown);
                 let known = unknowns.iter().position(|known| *known == unknown);
                 places.push(known.unwrap_or(unknowns.len()));
                 if known.is_none() {

@@ -1,6 +1,6 @@
 //! The assembly of a potential: its residual, and its stiffness over the free unknowns.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::connectivity::Connectivity;
 use super::dissection::dissection;
@@ -13,16 +13,40 @@ use super::vector::{dot, moved, norm};
 /// The sum of element contributions into a sparse matrix over the free unknowns.
 #[derive(Debug)]
 pub struct Assembly {
-    /// Position of each unknown among the free ones.
-    free_index: Vec<Option<usize>>,
+    free_index: FreeIndex,
     /// The free unknowns, ascending.
     free: Vec<usize>,
     /// The free unknowns of each element.
     elements: Connectivity,
     /// Computed when it is first needed.
     sparse: OnceLock<(SymmetricPattern, Scatter)>,
-    /// The place of each free unknown, if all are known.
-    places: Option<Vec<[f64; 2]>>,
+    /// The places of the nodes, as far as they are known.
+    nodes: Arc<[[f64; 2]]>,
+}
+
+/// Position of each unknown among the free ones.
+#[derive(Clone, Debug)]
+pub struct FreeIndex(Vec<u32>);
+
+impl FreeIndex {
+    fn new(unknowns: usize, free: &[usize]) -> Self {
+        let mut positions = vec![NOWHERE; unknowns];
+        for (index, unknown) in free.iter().enumerate() {
+            positions[*unknown] = index as u32;
+        }
+        Self(positions)
+    }
+
+    /// Position of an unknown; `None` where it is held.
+    pub fn of(&self, unknown: usize) -> Option<usize> {
+        let position = self.0[unknown];
+        (position != NOWHERE).then_some(position as usize)
+    }
+
+    /// Gives an unknown the position of another one.
+    pub fn tie(&mut self, unknown: usize, master: usize) {
+        self.0[unknown] = self.0[master];
+    }
 }
 
 /// Unknowns from which on nested dissection pays: its analysis takes half the time of one by least degree, and from
@@ -33,19 +57,16 @@ impl Assembly {
     /// Prepares the assembly of `potential` with the unknowns marked in `fixed` held.
     pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Self {
         let free: Vec<usize> = (0..fixed.len()).filter(|i| !fixed[*i]).collect();
-        let mut free_index = vec![None; fixed.len()];
-        free.iter()
-            .enumerate()
-            .for_each(|(index, unknown)| free_index[*unknown] = Some(index));
-        let mut elements = Connectivity::new(free.len());
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element).iter();
-            elements.push(unknowns.map(|unknown| free_index[*unknown].unwrap_or(NOWHERE)));
-        }
+        let free_index = FreeIndex::new(fixed.len(), &free);
         let connectivity = potential.connectivity();
-        let places = free.iter().map(|unknown| connectivity.place(*unknown));
+        let mut elements = Connectivity::new(free.len());
+        elements.reserve_as(connectivity);
+        for element in 0..connectivity.elements() {
+            let unknowns = connectivity.of(element).iter();
+            elements.push(unknowns.map(|unknown| free_index.0[*unknown as usize] as usize));
+        }
         Self {
-            places: places.collect(),
+            nodes: Arc::clone(connectivity.nodes()),
             free_index,
             free,
             elements,
@@ -54,7 +75,7 @@ impl Assembly {
     }
 
     /// Position of each unknown among the free ones.
-    pub fn free_indices(&self) -> &[Option<usize>] {
+    pub fn free_indices(&self) -> &FreeIndex {
         &self.free_index
     }
 
@@ -65,12 +86,14 @@ impl Assembly {
 
     /// Position of an unknown among the free ones.
     pub fn free_index(&self, unknown: usize) -> Option<usize> {
-        self.free_index[unknown]
+        self.free_index.of(unknown)
     }
 
     /// The place of each free unknown, if all are known.
-    pub fn places(&self) -> Option<&[[f64; 2]]> {
-        self.places.as_deref()
+    pub fn places(&self) -> Option<impl Iterator<Item = [f64; 2]> + Clone> {
+        let last = self.free.last().map_or(0, |unknown| unknown / 2);
+        let places = self.free.iter().map(|unknown| self.nodes[unknown / 2]);
+        (last < self.nodes.len()).then_some(places)
     }
 
     /// Pattern of the stiffness over the free unknowns.
@@ -93,9 +116,10 @@ impl Assembly {
     /// # Errors
     /// [`FactorFault`] when the pattern cannot be analysed because memory runs out.
     pub fn analyse(&self) -> Result<Cholesky, FactorFault> {
-        match &self.places {
-            Some(places) if places.len() >= WORTH_DISSECTION => {
-                let order = dissection(self.pattern(), places);
+        match self.places() {
+            Some(places) if self.free.len() >= WORTH_DISSECTION => {
+                let places: Vec<[f64; 2]> = places.collect();
+                let order = dissection(self.pattern(), &places);
                 Cholesky::analyse_in_order(self.pattern().clone(), &order)
             }
             _ => Cholesky::analyse(self.pattern().clone()),
@@ -128,7 +152,7 @@ impl Assembly {
         let mut own = ElementTerms::default();
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
-            if unknowns.iter().all(|unknown| motion[*unknown] == 0.0) {
+            if (unknowns.iter()).all(|unknown| motion[*unknown as usize] == 0.0) {
                 continue;
             }
             let size = unknowns.len();
@@ -136,7 +160,8 @@ impl Assembly {
             for row in 0..size {
                 for column in 0..size {
                     let stiffness = own.stiffness[row.max(column) * size + row.min(column)];
-                    forces[unknowns[row]] += stiffness * motion[unknowns[column]];
+                    let [row, column] = [row, column].map(|own| unknowns[own] as usize);
+                    forces[row] += stiffness * motion[column];
                 }
             }
         }
@@ -165,7 +190,7 @@ impl Assembly {
                 let values = &own[row * size..=row * size + row];
                 for (value, place) in values.iter().zip(&mut places) {
                     if *place != NOWHERE {
-                        stiffness[*place] += value;
+                        stiffness[*place as usize] += value;
                     }
                 }
             }

@@ -72,9 +72,7 @@ impl<'a> Sum<'a> {
     /// Π₁ + Π₂; the places of the unknowns are taken from the first potential.
     pub fn new(first: impl Potential + 'a, second: impl Potential + 'a) -> Self {
         let mut connectivity = first.connectivity().clone();
-        for element in 0..second.elements() {
-            connectivity.push(second.element_unknowns(element).iter().copied());
-        }
+        connectivity.append(second.connectivity());
         Self {
             first: Box::new(first),
             second: Box::new(second),

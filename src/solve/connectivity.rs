@@ -1,26 +1,56 @@
 //! Which unknowns each element depends on.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
-/// The unknowns of the elements of a sum, one element after the other.
+/// The unknowns of the elements of a sum, one element after the other. Copies of a finished list share its memory.
 #[derive(Clone, Debug)]
 pub struct Connectivity {
     unknowns: usize,
-    element_unknowns: Vec<usize>,
-    /// Where the unknowns of each element begin.
-    starts: Vec<usize>,
+    /// Elements that others may have too, followed by elements of this sum alone.
+    common: Arc<Elements>,
+    own: Elements,
     /// The places of the nodes, with two unknowns each, if known.
-    nodes: Vec<[f64; 2]>,
+    nodes: Arc<[[f64; 2]]>,
+}
+
+/// The unknowns of some elements.
+#[derive(Clone, Debug)]
+struct Elements {
+    unknowns: Vec<u32>,
+    /// Where the unknowns of each element begin.
+    starts: Vec<u32>,
+}
+
+impl Elements {
+    fn none() -> Self {
+        Self {
+            unknowns: Vec::new(),
+            starts: vec![0],
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn of(&self, element: usize) -> &[u32] {
+        let [start, end] = [element, element + 1].map(|own| self.starts[own] as usize);
+        &self.unknowns[start..end]
+    }
 }
 
 impl Connectivity {
     /// An empty list of elements over so many unknowns.
+    ///
+    /// # Panics
+    /// When there are more than 2³² − 2 unknowns.
     pub fn new(unknowns: usize) -> Self {
+        assert!(unknowns < u32::MAX as usize, "{unknowns} unknowns");
         Self {
             unknowns,
-            element_unknowns: Vec::new(),
-            starts: vec![0],
-            nodes: Vec::new(),
+            common: Arc::new(Elements::none()),
+            own: Elements::none(),
+            nodes: Arc::new([]),
         }
     }
 
@@ -36,25 +66,60 @@ impl Connectivity {
 
     /// Adds the places of the nodes: large systems are eliminated in an order by places.
     #[must_use]
-    pub fn with_places(self, nodes: Vec<[f64; 2]>) -> Self {
-        Self { nodes, ..self }
+    pub fn with_places(self, nodes: impl Into<Arc<[[f64; 2]]>>) -> Self {
+        Self {
+            nodes: nodes.into(),
+            ..self
+        }
     }
 
     /// Adds the places of the nodes as far as `other` has them.
     #[must_use]
     pub fn with_places_of(self, other: &Self) -> Self {
-        self.with_places(other.nodes.clone())
+        self.with_places(Arc::clone(&other.nodes))
+    }
+
+    /// The same elements, of which all copies share the memory.
+    ///
+    /// # Panics
+    /// When the elements of a copy are to be shared again.
+    #[must_use]
+    pub fn shared(mut self) -> Self {
+        assert_eq!(self.common.count(), 0, "shared before");
+        self.own.unknowns.shrink_to_fit();
+        self.own.starts.shrink_to_fit();
+        Self {
+            common: Arc::new(self.own),
+            own: Elements::none(),
+            ..self
+        }
+    }
+
+    /// Reserves memory for the elements of another list.
+    pub fn reserve_as(&mut self, other: &Self) {
+        let unknowns = other.common.unknowns.len() + other.own.unknowns.len();
+        self.own.unknowns.reserve_exact(unknowns);
+        self.own.starts.reserve_exact(other.elements());
     }
 
     /// Appends an element that depends on some unknowns.
     pub fn push(&mut self, unknowns: impl IntoIterator<Item = usize>) {
-        self.element_unknowns.extend(unknowns);
-        self.starts.push(self.element_unknowns.len());
+        let own = &mut self.own;
+        own.unknowns
+            .extend(unknowns.into_iter().map(|own| own as u32));
+        own.starts.push(own.unknowns.len() as u32);
     }
 
     /// Appends an element that depends on the displacements of some nodes: unknowns 2 n and 2 n + 1 of node n.
     pub fn push_nodes(&mut self, nodes: &[usize]) {
         self.push(nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]));
+    }
+
+    /// Appends the elements of another list.
+    pub fn append(&mut self, other: &Self) {
+        for element in 0..other.elements() {
+            self.push(other.of(element).iter().map(|own| *own as usize));
+        }
     }
 
     /// Number of unknowns.
@@ -64,16 +129,25 @@ impl Connectivity {
 
     /// Number of elements.
     pub fn elements(&self) -> usize {
-        self.starts.len() - 1
+        self.common.count() + self.own.count()
     }
 
     /// The unknowns that an element depends on.
-    pub fn of(&self, element: usize) -> &[usize] {
-        &self.element_unknowns[self.starts[element]..self.starts[element + 1]]
+    pub fn of(&self, element: usize) -> &[u32] {
+        match element.checked_sub(self.common.count()) {
+            None => self.common.of(element),
+            Some(own) => self.own.of(own),
+        }
     }
 
-    /// The place of an unknown in the body, if known.
-    pub fn place(&self, unknown: usize) -> Option<[f64; 2]> {
-        self.nodes.get(unknown / 2).copied()
+    /// The values of the unknowns that an element depends on.
+    pub fn values(&self, element: usize, u: &[f64]) -> Vec<f64> {
+        let unknowns = self.of(element).iter();
+        unknowns.map(|unknown| u[*unknown as usize]).collect()
+    }
+
+    /// The places of the nodes, with two unknowns each; none if they are not known.
+    pub fn nodes(&self) -> &Arc<[[f64; 2]]> {
+        &self.nodes
     }
 }

@@ -110,7 +110,7 @@ fn critical(
 /// The first element that is unstable by itself, and its state.
 fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, String)> {
     (0..potential.elements()).find_map(|element| {
-        let own = gather(potential.element_unknowns(element), u);
+        let own = potential.connectivity().values(element, u);
         Some((element, potential.instability(element, &own)?))
     })
 }

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use super::aggregation::blocks::Blocks;
 use super::aggregation::level::{Level, Operator, Prolongation};
 use super::aggregation::single_precision;
-use super::assembly::Assembly;
+use super::assembly::{Assembly, FreeIndex};
 use super::nodal::Nodes;
 use super::potential::Potential;
 use super::sparse::{Cholesky, FactorFault};
@@ -41,7 +41,7 @@ pub struct Ladder {
     cycle: Nested,
     nodes: Nodes,
     /// Position of each unknown of the finest one among the free ones.
-    free_index: Vec<Option<usize>>,
+    free_index: FreeIndex,
 }
 
 impl Ladder {
@@ -69,7 +69,7 @@ impl Ladder {
         Self {
             cycle,
             nodes,
-            free_index: assembly.free_indices().to_vec(),
+            free_index: assembly.free_indices().clone(),
         }
     }
 
@@ -77,7 +77,7 @@ impl Ladder {
     #[must_use]
     pub fn tied(mut self, ties: &BTreeMap<usize, usize>) -> Self {
         for (unknown, master) in ties {
-            self.free_index[*unknown] = self.free_index[*master];
+            self.free_index.tie(*unknown, *master);
         }
         self
     }
@@ -104,7 +104,7 @@ impl Ladder {
             terms.clear();
             carry(*unknown, &mut terms);
             for (coarse, share) in &terms {
-                let Some(index) = self.free_index[*coarse] else {
+                let Some(index) = self.free_index.of(*coarse) else {
                     continue;
                 };
                 if share.abs() < LEAST {
@@ -175,9 +175,8 @@ impl Nested {
     /// # Errors
     /// [`FactorFault::NotPositiveDefinite`] where a block on its diagonal is not.
     pub fn take(&mut self, matrix: &Blocks<2, 2>) -> Result<(), FactorFault> {
-        let operator = Operator::of(matrix).ok_or(FactorFault::NotPositiveDefinite)?;
-        self.finest().take(operator.0);
-        Ok(())
+        let taken = self.finest().take(matrix);
+        taken.ok_or(FactorFault::NotPositiveDefinite)
     }
 
     /// z = M r by one V-cycle.

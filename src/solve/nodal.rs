@@ -23,13 +23,16 @@ pub struct Nodes {
 
 impl Nodes {
     /// The nodes of some unknowns, ascending, with their places: unknowns 2 n and 2 n + 1 belong to node n.
-    pub fn new(unknowns: &[usize], all_places: &[[f64; 2]]) -> Self {
-        let (mut of, mut places, mut free) = (Vec::new(), Vec::new(), Vec::<[bool; 2]>::new());
+    pub fn new(unknowns: &[usize], all_places: impl Iterator<Item = [f64; 2]>) -> Self {
+        let mut of = Vec::with_capacity(unknowns.len());
+        let count = unknowns.chunk_by(|a, b| a / 2 == b / 2).count();
+        let mut places = Vec::with_capacity(count);
+        let mut free = Vec::<[bool; 2]>::with_capacity(count);
         let mut last = usize::MAX;
         for (unknown, place) in unknowns.iter().zip(all_places) {
             if unknown / 2 != last {
                 last = unknown / 2;
-                places.push(*place);
+                places.push(place);
                 free.push([false; 2]);
             }
             let node = free.len() - 1;

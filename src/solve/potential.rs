@@ -92,7 +92,7 @@ pub trait Potential: Sync {
     }
 
     /// The unknowns that an element depends on.
-    fn element_unknowns(&self, element: usize) -> &[usize] {
+    fn element_unknowns(&self, element: usize) -> &[u32] {
         self.connectivity().of(element)
     }
 }
@@ -140,7 +140,7 @@ pub fn evaluate_by_elements<P: Potential + ?Sized>(
         energy += own.evaluate(potential, element, u, take.is_some())?;
         let unknowns = potential.element_unknowns(element);
         for (unknown, force) in unknowns.iter().zip(&own.residual) {
-            forces[*unknown] += force;
+            forces[*unknown as usize] += force;
         }
         if let Some(take) = &mut take {
             take(element, &own.stiffness);
@@ -174,7 +174,7 @@ impl ElementTerms {
         let size = unknowns.len();
         self.values.clear();
         self.values
-            .extend(unknowns.iter().map(|unknown| u[*unknown]));
+            .extend(unknowns.iter().map(|unknown| u[*unknown as usize]));
         self.residual.clear();
         self.residual.resize(size, 0.0);
         if with_stiffness {

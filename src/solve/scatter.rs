@@ -4,13 +4,13 @@ use super::connectivity::Connectivity;
 use super::pattern::SymmetricPattern;
 
 /// No free unknown, or no place.
-pub const NOWHERE: usize = usize::MAX;
+pub const NOWHERE: u32 = u32::MAX;
 
 /// Where the entries of element matrices are added.
 #[derive(Debug, Default)]
 pub struct Scatter {
     /// For each element, for each entry of its lower triangle, row by row: its place, or [`NOWHERE`].
-    places: Vec<usize>,
+    places: Vec<u32>,
     starts: Vec<usize>,
 }
 
@@ -34,24 +34,26 @@ impl Scatter {
         let (mut starts, mut rows) = (vec![0], Vec::new());
         // The column in which a row was seen last, and where it is stored there.
         let mut seen = vec![(NOWHERE, NOWHERE); free];
-        for column in 0..free {
+        for column in 0..free as u32 {
             let first = rows.len();
-            rows.push(column);
-            seen[column].0 = column;
+            rows.push(column as usize);
+            seen[column as usize].0 = column;
             for (element, _) in around.of_unknown(column) {
-                for row in elements.of(*element) {
-                    if *row != NOWHERE && *row > column && seen[*row].0 != column {
-                        seen[*row].0 = column;
-                        rows.push(*row);
+                for row in elements.of(*element as usize) {
+                    let beyond = *row != NOWHERE && *row > column;
+                    if beyond && seen[*row as usize].0 != column {
+                        seen[*row as usize].0 = column;
+                        rows.push(*row as usize);
                     }
                 }
             }
             rows[first..].sort_unstable();
-            for (place, row) in (first..).zip(&rows[first..]) {
+            for (place, row) in (first as u32..).zip(&rows[first..]) {
                 seen[*row].1 = place;
             }
             for (element, local) in around.of_unknown(column) {
-                own.put(elements.of(*element), *element, column, *local, &seen);
+                let [element, local] = [*element, *local].map(|own| own as usize);
+                own.put(elements.of(element), element, column, local, &seen);
             }
             starts.push(rows.len());
         }
@@ -61,23 +63,23 @@ impl Scatter {
     /// Records the positions of one local column of an element, below the diagonal of the whole.
     fn put(
         &mut self,
-        unknowns: &[usize],
+        unknowns: &[u32],
         element: usize,
-        column: usize,
+        column: u32,
         local: usize,
-        seen: &[(usize, usize)],
+        seen: &[(u32, u32)],
     ) {
         let start = self.starts[element];
         for (other, row) in unknowns.iter().enumerate() {
             if *row != NOWHERE && *row >= column {
                 let (high, low) = (local.max(other), local.min(other));
-                self.places[start + high * (high + 1) / 2 + low] = seen[*row].1;
+                self.places[start + high * (high + 1) / 2 + low] = seen[*row as usize].1;
             }
         }
     }
 
     /// The places of the lower triangle of an element, row by row.
-    pub fn of(&self, element: usize) -> &[usize] {
+    pub fn of(&self, element: usize) -> &[u32] {
         &self.places[self.starts[element]..self.starts[element + 1]]
     }
 }
@@ -85,7 +87,7 @@ impl Scatter {
 /// The elements around each free unknown, with its position in them.
 struct Around {
     starts: Vec<usize>,
-    elements: Vec<(usize, usize)>,
+    elements: Vec<(u32, u32)>,
 }
 
 impl Around {
@@ -97,7 +99,7 @@ impl Around {
         };
         let mut starts = vec![0; free + 1];
         for (_, unknown) in (0..elements.elements()).flat_map(own) {
-            starts[unknown + 1] += 1;
+            starts[*unknown as usize + 1] += 1;
         }
         for unknown in 0..free {
             starts[unknown + 1] += starts[unknown];
@@ -106,8 +108,9 @@ impl Around {
         let mut around = vec![(0, 0); starts[free]];
         for element in 0..elements.elements() {
             for (local, unknown) in own(element) {
-                around[next[*unknown]] = (element, local);
-                next[*unknown] += 1;
+                let next = &mut next[*unknown as usize];
+                around[*next] = (element as u32, local as u32);
+                *next += 1;
             }
         }
         Self {
@@ -116,7 +119,8 @@ impl Around {
         }
     }
 
-    fn of_unknown(&self, unknown: usize) -> &[(usize, usize)] {
+    fn of_unknown(&self, unknown: u32) -> &[(u32, u32)] {
+        let unknown = unknown as usize;
         &self.elements[self.starts[unknown]..self.starts[unknown + 1]]
     }
 }

@@ -95,8 +95,8 @@ impl Loading for GridLoading<'_> {
 
     fn describe(&self, element: usize) -> String {
         let unknowns = self.energy.element_unknowns(element);
-        let [[x, y], [to_x, to_y]] =
-            [unknowns[0], unknowns[unknowns.len() - 1]].map(|unknown| self.place(unknown / 2));
+        let [[x, y], [to_x, to_y]] = [unknowns[0], unknowns[unknowns.len() - 1]]
+            .map(|unknown| self.place(unknown as usize / 2));
         let (x, y) = (0.5 * (x + to_x), 0.5 * (y + to_y));
         format!("cell {element} near ({x:.1}, {y:.1}) mm")
     }

@@ -191,9 +191,10 @@ fn internal_forces(
 
 /// The longer side of a box around the free unknowns in mm; 1 where their places are not known.
 fn extent(assembly: &Assembly) -> f64 {
-    let places = assembly.places().unwrap_or(&[[0.0; 2], [1.0; 2]]);
-    let [low, high] = bounding_box(places.iter().copied());
-    (high[0] - low[0]).max(high[1] - low[1])
+    assembly.places().map_or(1.0, |places| {
+        let [low, high] = bounding_box(places);
+        (high[0] - low[0]).max(high[1] - low[1])
+    })
 }
 
 /// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d, which is given as

@@ -112,7 +112,7 @@ pub fn on<'a>(
 /// Writes the unknowns of the coarser mesh, with their shares, that make up an unknown of the finer one.
 pub fn carrying(interpolation: &Interpolation) -> impl Fn(usize, &mut Vec<(usize, f64)>) + '_ {
     |unknown, terms| {
-        let nodes = interpolation.of(unknown / 2).iter();
-        terms.extend(nodes.map(|(node, share)| (2 * node + unknown % 2, *share)));
+        let nodes = interpolation.of(unknown / 2);
+        terms.extend(nodes.map(|(node, share)| (2 * node + unknown % 2, share)));
     }
 }

@@ -76,29 +76,39 @@ impl<const N: usize> Operator<N> {
         }
     }
 
-    /// The operator of a matrix, and the inverses in double precision; `None` where a block on the diagonal has none.
-    pub fn of(matrix: &Blocks<N, N>) -> Option<(Self, Vec<[[f64; N]; N]>)> {
-        let mut below = Blocks {
-            starts: vec![0],
-            ..Blocks::default()
-        };
-        let mut inverses = Vec::with_capacity(matrix.rows());
-        for row in 0..matrix.rows() {
-            for (column, block) in matrix.row(row).take_while(|(column, _)| *column <= row) {
-                if column == row {
-                    inverses.push(inverse(block)?);
-                } else {
-                    below.columns.push(column as u32);
-                    below.values.push(rounded(block));
-                }
+    /// Takes the values of another matrix, and passes on the inverse of each block on its diagonal in double precision; `None` where one
+    /// has no inverse.
+    pub fn take(
+        &mut self,
+        matrix: &Blocks<N, N>,
+        mut pass_on: impl FnMut([[f64; N]; N]),
+    ) -> Option<()> {
+        let Self { below, inverses } = self;
+        let rows = matrix.rows();
+        let is_below = |row: usize| matrix.row(row).filter(move |(column, _)| *column < row);
+        if below.columns.is_empty() {
+            let count = (0..rows).map(|row| is_below(row).count()).sum();
+            below.columns.reserve_exact(count);
+            below.values.reserve_exact(count);
+            below.starts.reserve_exact(rows + 1);
+        }
+        below.starts.clear();
+        below.starts.push(0);
+        below.columns.clear();
+        below.values.clear();
+        inverses.clear();
+        for row in 0..rows {
+            for (column, block) in is_below(row) {
+                below.columns.push(column as u32);
+                below.values.push(rounded(block));
             }
             below.starts.push(below.columns.len());
+            let mut diagonal = matrix.row(row).filter(|(column, _)| *column == row);
+            let inverse = inverse(diagonal.next()?.1)?;
+            inverses.push(rounded(&inverse));
+            pass_on(inverse);
         }
-        let operator = Self {
-            below,
-            inverses: inverses.iter().map(rounded).collect(),
-        };
-        (operator.inverses.len() == matrix.rows()).then_some((operator, inverses))
+        Some(())
     }
 
     /// x of one row of a sweep, (b − L x) D⁻¹, of what L x of the columns before is not in `sum` yet; what this x is for the rows before,
@@ -132,7 +142,9 @@ impl<const N: usize> Operator<N> {
 impl<const N: usize> Level<N, 3> {
     /// A level with the operator `matrix` and what comes below it; `None` where a block on the diagonal has no inverse.
     pub fn aggregated(matrix: &Blocks<N, N>, motions: &[Motions<N>]) -> Option<(Self, Coarser)> {
-        let (operator, inverses) = Operator::of(matrix)?;
+        let mut operator = Operator::none(matrix.rows());
+        let mut inverses = Vec::with_capacity(matrix.rows());
+        operator.take(matrix, |inverse| inverses.push(inverse))?;
         let aggregates = Aggregates::of(matrix, STRONG[usize::from(N > 2)]);
         let (rigid, coarse_motions) = tentative(&aggregates, motions);
         let prolongation = smoothed(matrix, &inverses, &aggregates, &rigid);
@@ -161,14 +173,14 @@ impl<const N: usize, const M: usize, P: Prolongation<N, M>> Level<N, M, P> {
         }
     }
 
-    /// Takes another operator of the same nodes.
-    pub fn take(&mut self, operator: Operator<N>) {
-        self.operator = operator;
+    /// Takes another matrix of the same nodes; `None` where a block on its diagonal has no inverse.
+    pub fn take(&mut self, matrix: &Blocks<N, N>) -> Option<()> {
+        self.operator.take(matrix, |_| ())
     }
 
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
-        self.operator.inverses.len()
+        self.x.len()
     }
 
     /// Smooths from zero, forward, and writes the right-hand side of the next coarser level.

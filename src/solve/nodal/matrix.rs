@@ -24,7 +24,7 @@ pub struct NodalMatrix {
 #[derive(Default)]
 struct ElementBlocks {
     pairs: Vec<u32>,
-    starts: Vec<usize>,
+    starts: Vec<u32>,
 }
 
 /// A block with components that are no unknowns, and which of its entries belong to unknowns.
@@ -167,14 +167,19 @@ impl NodalMatrix {
 
 impl ElementBlocks {
     fn new(blocks: &Blocks<2, 2>, rows: &[u32], potential: &dyn Potential) -> Self {
-        let mut own = Self {
-            pairs: Vec::new(),
-            starts: vec![0],
+        let count = |element: usize| {
+            let nodes = potential.element_unknowns(element).len() / 2;
+            nodes * (nodes + 1) / 2
         };
+        let mut own = Self {
+            pairs: Vec::with_capacity((0..potential.elements()).map(count).sum()),
+            starts: Vec::with_capacity(potential.elements() + 1),
+        };
+        own.starts.push(0);
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
             if has_both_unknowns_in_turn(unknowns) {
-                let row = |node: usize| rows[unknowns[2 * node] / 2];
+                let row = |node: usize| rows[unknowns[2 * node] as usize / 2];
                 for a in 0..unknowns.len() / 2 {
                     for b in 0..=a {
                         own.pairs.push(match [row(a), row(b)] {
@@ -185,20 +190,20 @@ impl ElementBlocks {
                     }
                 }
             }
-            own.starts.push(own.pairs.len());
+            own.starts.push(own.pairs.len() as u32);
         }
         own
     }
 
     fn of(&self, element: usize) -> &[u32] {
-        &self.pairs[self.starts[element]..self.starts[element + 1]]
+        &self.pairs[self.starts[element] as usize..self.starts[element + 1] as usize]
     }
 }
 
 /// Whether unknowns are both of one node, both of another one, and so on.
-fn has_both_unknowns_in_turn(unknowns: &[usize]) -> bool {
+fn has_both_unknowns_in_turn(unknowns: &[u32]) -> bool {
     let nodes = unknowns.chunks(2);
-    let both = |own: &[usize]| own.len() == 2 && own[0].is_multiple_of(2) && own[1] == own[0] + 1;
+    let both = |own: &[u32]| own.len() == 2 && own[0].is_multiple_of(2) && own[1] == own[0] + 1;
     let other = |place: usize| !unknowns[..place].contains(&unknowns[place]);
     nodes.clone().all(both) && (0..unknowns.len()).step_by(2).all(other)
 }
@@ -210,7 +215,7 @@ fn pattern(count: usize, rows: &[u32], potential: &dyn Potential) -> Blocks<2, 2
     for element in 0..potential.elements() {
         let begin = members.len();
         for unknown in potential.element_unknowns(element) {
-            let row = rows[unknown / 2];
+            let row = rows[*unknown as usize / 2];
             if row != NONE && !members[begin..].contains(&row) {
                 members.push(row);
                 around[row as usize + 1] += 1;
@@ -246,6 +251,7 @@ fn pattern(count: usize, rows: &[u32], potential: &dyn Potential) -> Blocks<2, 2
         columns.push(row);
         starts.push(columns.len());
     }
+    columns.shrink_to_fit();
     Blocks {
         values: vec![[[0.0; 2]; 2]; columns.len()],
         starts,
@@ -286,10 +292,11 @@ fn add_pairs(blocks: &mut Blocks<2, 2>, pairs: &[u32], size: usize, stiffness: &
 }
 
 /// The same of an element with any unknowns.
-fn add_each(blocks: &mut Blocks<2, 2>, rows: &[u32], unknowns: &[usize], stiffness: &[f64]) {
+fn add_each(blocks: &mut Blocks<2, 2>, rows: &[u32], unknowns: &[u32], stiffness: &[f64]) {
     let size = unknowns.len();
     for (i, from) in unknowns.iter().enumerate() {
         for (k, to) in unknowns.iter().enumerate() {
+            let [from, to] = [*from, *to].map(|unknown| unknown as usize);
             let [row, column] = [rows[from / 2], rows[to / 2]];
             if row != NONE && column != NONE && row >= column {
                 let place = find(blocks, row as usize, column as usize);
