@@ -210,29 +210,6 @@ pub fn or_dash(value: Option<f64>, write: impl FnOnce(f64) -> String) -> String 
     value.map_or("–".to_owned(), write)
 }
 
-/// A number with so many decimals; where these would leave fewer than three digits, as [`number`] writes it.
-pub fn decimals(value: f64, decimals: usize) -> String {
-    const ROUNDING: f64 = 1e-12;
-    let least = 10_f64.powi(2 - decimals as i32);
-    match (ROUNDING..least).contains(&value.abs()) {
-        true => number(value),
-        false => format!("{value:.decimals$}"),
-    }
-}
-
-/// A number as a table shows it: five significant digits, or powers of ten where it is far from one.
-pub fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let exponent = value.abs().log10().floor();
-    if (-3.0..5.0).contains(&exponent) {
-        let digits = (4.0 - exponent).max(0.0) as usize;
-        return format!("{value:.digits$}");
-    }
-    format!("{value:.2e}")
-}
-
 /// A limit as a person would write it.
 pub fn limit(value: f64) -> String {
     match value.abs() {

@@ -5,10 +5,12 @@
 
 use std::fmt;
 
+mod figures;
 mod linear;
 mod ranges;
 mod remedy;
 
+pub use figures::{decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
 pub use remedy::bare_ratio;

@@ -27,6 +27,16 @@ fn an_identified_law_is_taken_by_a_study() {
         printed.contains("K(·) in N/mm") && printed.contains("misfit: "),
         "{printed}"
     );
+    // With another mass, spring and dashpot explain nothing.
+    let wrong = [
+        "identify",
+        "spring.csv",
+        "--mass",
+        "400 g",
+        "--output",
+        "wrong",
+    ];
+    gelbench(here, &wrong).code(5);
     for ending in ["png", "json"] {
         assert!(here.join("law/spring").with_extension(ending).exists());
     }

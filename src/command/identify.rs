@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, save, warn};
+use super::terminal::{NOT_EXPLAINED, Outcome, Printed, print, print_report, save, warn};
 use crate::budget::Need;
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
@@ -17,7 +17,8 @@ use crate::identification::{
     identify, law_text,
 };
 use crate::output::{self, ResultFolder};
-use crate::results::{identification_json, identification_picture, number};
+use crate::results::{identification_json, identification_picture};
+use crate::units::number;
 
 /// Memory of an instant of a recording: 2.1 kB were measured with 300,000 of them.
 const BYTES_OF_AN_INSTANT: f64 = 3000.0;
@@ -178,7 +179,11 @@ pub fn run(options: Options) -> Outcome {
         message(&found, &recording, &path),
         folder.join(format!("{stem}.toml")).display()
     ))?;
-    Ok(0)
+    Ok(if found.is_explained() {
+        0
+    } else {
+        NOT_EXPLAINED
+    })
 }
 
 /// Writes law, figures and picture; returns a warning where the picture cannot be drawn.

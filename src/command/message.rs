@@ -9,7 +9,8 @@ use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::{Mode, far_end};
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::results::{Check, Results, Wanted, limit, number};
+use crate::results::{Check, Results, Wanted, limit};
+use crate::units::number;
 
 /// A finding with the lines of the file that it is about.
 pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {

@@ -16,6 +16,9 @@ use crate::results::End;
 /// What a command comes to: its exit code, or the fault that decides on it.
 pub type Outcome = Result<u8, Error>;
 
+/// The exit code where a model and its conditions do not explain the measured data.
+pub const NOT_EXPLAINED: u8 = 5;
+
 /// What of a report is printed.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Printed {

@@ -16,6 +16,7 @@ use crate::markers::unit_ratio;
 use crate::mesh::geometry::bounding_box;
 use crate::mesh::{ImportedField, Mesh, NodalField, import_field};
 use crate::problem::RigidMotion;
+use crate::units::{decimals, extents};
 
 mod table;
 
@@ -138,8 +139,8 @@ const NEAR_SIZE: f64 = 0.02;
 pub enum Mismatch {
     /// Meshes of different sizes in mm.
     #[error(
-        "the field's mesh measures {:.4} × {:.4} mm, the specimen {:.4} × {:.4} mm",
-        .found[0], .found[1], .expected[0], .expected[1]
+        "the field's mesh measures {}, the specimen {}",
+        extents(*.found), extents(*.expected)
     )]
     Size {
         /// Length and width of the field's mesh.
@@ -149,7 +150,8 @@ pub enum Mismatch {
     },
     /// Points and specimen appear to be in two units of length.
     #[error(
-        "the points span {found:.4} mm and the specimen {expected:.4} mm: about a factor of {ratio}, as between two units of length"
+        "the points span {} mm and the specimen {} mm: about a factor of {ratio}, as between two units of length",
+        decimals(*.found, 4), decimals(*.expected, 4)
     )]
     Unit {
         /// The size of the points in mm.
@@ -160,7 +162,7 @@ pub enum Mismatch {
         ratio: f64,
     },
     /// A place that only one of the two has.
-    #[error("{what} at ({:.4}, {:.4}) mm", .place[0], .place[1])]
+    #[error("{what} at ({}, {}) mm", decimals(.place[0], 4), decimals(.place[1], 4))]
     Outside {
         /// The part that does not cover the other.
         what: &'static str,
@@ -262,16 +264,17 @@ impl Sites {
     /// What is to be said of sites that cover a window of the specimen alone.
     pub fn window(&self, specimen: &Mesh) -> Option<String> {
         const WHOLE: f64 = 0.9;
-        let extents = |places: &[[f64; 2]]| {
+        let sides = |places: &[[f64; 2]]| {
             let [low, high] = bounding_box(places.iter().copied());
             [0, 1].map(|axis| high[axis] - low[axis])
         };
-        let [own, whole] = [&self.places, &specimen.nodes].map(|places| extents(places));
+        let [own, whole] = [&self.places, &specimen.nodes].map(|places| sides(places));
         let is_window = (0..2).any(|axis| own[axis] < WHOLE * whole[axis]);
-        let ([x, y], [length, width]) = (own, whole);
         is_window.then(|| {
             format!(
-                "the points span {x:.4} × {y:.4} mm of the specimen's {length:.4} × {width:.4} mm, and the models are compared there alone"
+                "the points span {} of the specimen's {}, and the models are compared there alone",
+                extents(own),
+                extents(whole)
             )
         })
     }

@@ -23,6 +23,12 @@ impl Identification {
             ("D", "N·s/mm", &self.damping),
         ]
     }
+
+    /// Whether a spring and a dashpot explain the recording: what they leave of it beside the noise is smaller than the noise.
+    pub fn is_explained(&self) -> bool {
+        const MOST: f64 = 2.0;
+        self.misfit <= MOST
+    }
 }
 
 impl Default for IdentificationSettings {

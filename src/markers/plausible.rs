@@ -4,6 +4,7 @@ use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::check_size;
+use crate::units::{decimals, extents};
 
 /// Displacements of more than so many sizes of the specimen are taken to be in another unit.
 const LARGEST: f64 = 20.0;
@@ -29,8 +30,8 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
     let across = extent[0].min(extent[1]);
     (thickness > THICK * across).then(|| {
         let message = format!(
-            "the specimen measures {:.4} × {:.4} mm and is {thickness} mm thick: it is not a thin sheet",
-            extent[0], extent[1]
+            "the specimen measures {} and is {thickness} mm thick: it is not a thin sheet",
+            extents(extent)
         );
         let hint = "check the units of the thickness and of the field; --unit corrects that of the field (such as --unit m)";
         Diagnostic::warning("", message).hint(hint)
@@ -72,14 +73,17 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
     if size > 0.0 && largest > LARGEST * size {
         return Err(Error::input(
             format!(
-                "the displacement reaches {largest:.4} mm, but the points span {size:.4} mm: they are in different units"
+                "the displacement reaches {} mm, but the points span {} mm: they are in different units",
+                decimals(largest, 4),
+                decimals(size, 4)
             ),
             "write the unit of every column in its header, as in x [mm], ux [um]",
         ));
     }
     if largest < SMALLEST * size {
         let message = format!(
-            "the displacement reaches only {largest:.3e} mm, but the points span {size:.4} mm"
+            "the displacement reaches only {largest:.3e} mm, but the points span {} mm",
+            decimals(size, 4)
         );
         let hint = "check that positions and displacements are in the same unit";
         warnings.push(Diagnostic::warning("", message).hint(hint));
@@ -135,8 +139,9 @@ pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Err
         });
     }
     let sizes = format!(
-        "the mesh measures {:.4} × {:.4} mm and the points span {:.4} × {:.4} mm",
-        measures[0], measures[1], spanned[0], spanned[1]
+        "the mesh measures {} and the points span {}",
+        extents(measures),
+        extents(spanned)
     );
     Err(match unit {
         Some(unit) => Error::input(

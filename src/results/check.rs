@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::{Block, limit, number};
+use super::{Block, limit};
 use crate::compare::judgement::Judgement;
+use crate::units::number;
 
 /// The requirement on a computed value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -216,7 +217,6 @@ pub fn requirements(checks: &[Check]) -> Block {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::number;
 
     #[test]
     fn checks_pass_and_fail_as_they_should() {

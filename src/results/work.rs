@@ -1,7 +1,8 @@
 //! What is stored in a sheet that softens, and what was dissipated.
 
-use super::{Block, decimals, or_dash};
+use super::{Block, or_dash};
 use crate::problem::Work;
+use crate::units::decimals;
 
 /// A table of the work on the material in some models at all steps, with a heading; a dash where a model has none.
 pub fn work_blocks(

@@ -9,9 +9,10 @@ use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::softened_law::check_memory;
+use crate::results::Outcome;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
-use crate::results::{Outcome, number};
 use crate::studies::{Computation, Kind, Loaded, Progress, SOUND};
+use crate::units::number;
 
 mod between;
 mod corrected;

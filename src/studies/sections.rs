@@ -15,7 +15,7 @@ use crate::material::stability::{SEARCHED, stable_range};
 use crate::material::{Card, HyperelasticLaw, NeoHooke, PlaneState};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
-use crate::units::Dimension;
+use crate::units::{Dimension, extents};
 
 /// Cells of a plate in one direction at most; how many fit into the budget is asked besides.
 pub const MOST_CELLS: usize = 100_000;
@@ -80,8 +80,8 @@ pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], ca
     let thin = card.is_none_or(|card| card.law.plane_state() == PlaneState::Stress);
     if thin && thickness > THICK * size[0].min(size[1]) {
         let message = format!(
-            "{thickness} mm for a sheet of {:.4} × {:.4} mm: plane stress assumes a thin sheet",
-            size[0], size[1]
+            "{thickness} mm for a sheet of {}: plane stress assumes a thin sheet",
+            extents(size)
         );
         let hint = "check the units of the lengths; a body that cannot strain across its thickness is in plane strain";
         section.warning("thickness", &message, hint);

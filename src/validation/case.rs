@@ -10,8 +10,9 @@ use crate::results::Wanted;
 use crate::results::{Line, Stroke, mesh_outlines};
 use crate::statistics::{larger, median};
 
-pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit, number};
+pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit};
 pub use crate::studies::{Computation, Progress};
+pub use crate::units::number;
 
 /// Reads a section and reports its unknown keys.
 pub fn section<'a, T>(

@@ -1,6 +1,7 @@
 //! The validation report: all checks in one table, the publication's claims, the cases.
 
-use crate::results::{Block, Check, Figure, Results, Wanted, claims, limit, number};
+use crate::results::{Block, Check, Figure, Results, Wanted, claims, limit};
+use crate::units::number;
 
 /// The report of one or several cases, and its pictures.
 pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {

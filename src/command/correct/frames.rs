@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::command::interrupt;
 use crate::command::progress::{Progress, tell_files};
-use crate::command::terminal::{print, warn};
+use crate::command::terminal::{NOT_EXPLAINED, print, warn};
 use crate::corrector::estimation::{Answer, FieldEstimate};
 use crate::error::Error;
 use crate::markers::Frame;
@@ -82,9 +82,6 @@ pub fn finish(folder: ResultFolder, results: &Results) -> Result<(), Error> {
         path.display()
     ))
 }
-
-/// The exit code where the data are not explained.
-const NOT_EXPLAINED: u8 = 5;
 
 /// The estimates of frames, and the numbers of those that could not be corrected with the reasons.
 type Estimates = (Vec<FieldEstimate>, Vec<(usize, Error)>);

@@ -10,8 +10,9 @@ use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::results::{BESIDE_CORNERS, Stretches, decimals, number, small_strain};
+use crate::results::{BESIDE_CORNERS, Stretches, small_strain};
 use crate::statistics::{Estimate, median, small_probability};
+use crate::units::{decimals, number};
 
 impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.

@@ -1,10 +1,10 @@
 //! Where a specimen's edge lies outside of its outermost markers.
 
 use super::request::Request;
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, Error};
 use crate::markers::Understood;
 use crate::mesh::{Outline, OutlineFault};
-use crate::results::decimals;
+use crate::units::{decimals, extents};
 
 /// What is known of the edge.
 pub(super) enum EdgePlace {
@@ -42,6 +42,25 @@ impl EdgePlace {
                 }
             }
             (None, None) => Self::Unknown(spacing),
+        }
+    }
+
+    /// Checks a gap that the user gives against the extents of the markers' outline in mm.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it is longer.
+    pub fn check(&self, [length, width]: [f64; 2]) -> Result<(), Error> {
+        match self {
+            Self::Given { gap, .. } if *gap > length.max(width) => Err(Error::input(
+                format!(
+                    "an edge gap of {} mm is larger than the field of the markers, which measures {}",
+                    decimals(*gap, 4),
+                    extents([length, width])
+                ),
+                "check the unit of --edge-gap (edge_gap), the distance from the outermost markers to the specimen's edge, or give the true edges with \
+                 --outline or --mesh",
+            )),
+            _ => Ok(()),
         }
     }
 

@@ -8,8 +8,8 @@
 
 use crate::corrector::estimation::{FieldEstimate, FoundParameter};
 use crate::error::Diagnostic;
-use crate::results::number;
 use crate::statistics::{Estimate, chi_squared_tail, cochran, extremes, small_probability};
+use crate::units::number;
 
 /// The probability by noise below which parameters of frames exclude one another.
 const LEVEL: f64 = 1e-3;

@@ -5,7 +5,7 @@ use crate::corrector::estimation::{FieldEstimate, MOST_REFINED_CELLS};
 use crate::error::{Diagnostic, Error};
 use crate::markers::Frame;
 use crate::material::Card;
-use crate::results::decimals;
+use crate::units::decimals;
 
 /// Share of the area on which the mesh's own error may be the larger part of the error of stress.
 const COARSE: f64 = 0.05;

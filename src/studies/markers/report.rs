@@ -2,9 +2,10 @@
 
 use super::{noise, reading, refined, scale, verdict};
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::results::{Block, decimals};
+use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
+use crate::units::decimals;
 
 /// How many frames are shown in the terminal at the begin and at the end, and how many doubts.
 pub const SHOWN: usize = 12;

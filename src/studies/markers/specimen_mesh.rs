@@ -8,7 +8,7 @@ use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
-use crate::results::decimals;
+use crate::units::decimals;
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -154,6 +154,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     let spacing = found.spacing;
     let beside_grid = is_beside_grid(&places, &outline, spacing);
     let edge = EdgePlace::of(request, &field.understood, spacing, beside_grid);
+    edge.check(outline.extents())?;
     let (outline, edge) = edge.outline(outline, spacing).map_err(refuse)?;
     let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!(

@@ -4,8 +4,9 @@ use serde_json::{Value, json};
 
 use super::MarkerStudy;
 use crate::corrector::estimation::{Answer, FieldEstimate, Trial, Verdict};
-use crate::results::{Block, decimals};
+use crate::results::Block;
 use crate::statistics::extremes;
+use crate::units::decimals;
 
 /// Freedoms that are told in the terminal.
 const TOLD: usize = 5;

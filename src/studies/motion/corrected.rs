@@ -6,8 +6,8 @@ use crate::corrector::DifferenceScheme;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{Instant, Motion, SheetViscosity, Viscosity};
 use crate::error::{Error, SolveFault};
-use crate::results::number;
 use crate::studies::Progress;
+use crate::units::number;
 
 /// The corrected motion at the instants that are written.
 pub struct CorrectedInstants {

@@ -9,8 +9,9 @@ use crate::dynamics::{EnergyBalance, Instant};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 use crate::results::{
     Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
-    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number, sheet_figures,
+    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, sheet_figures,
 };
+use crate::units::number;
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];

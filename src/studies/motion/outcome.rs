@@ -13,7 +13,8 @@ use super::warnings::warnings;
 use crate::compare::judgement::{judge_by_margin, percent};
 use crate::dynamics::Instant;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted, number};
+use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted};
+use crate::units::number;
 
 /// Instants in the table of deviations.
 const ROWS: usize = 12;

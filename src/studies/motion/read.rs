@@ -19,11 +19,11 @@ use crate::material::registry::SWELLING;
 use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
-use crate::results::number;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
 use crate::units::Dimension;
+use crate::units::number;
 
 /// The plate's material in motion.
 struct Material {

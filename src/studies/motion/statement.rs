@@ -6,7 +6,8 @@ use super::deviations::OwnError;
 use super::problem::{MovingPlate, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
-use crate::results::{Block, number};
+use crate::results::Block;
+use crate::units::number;
 
 /// The plate, what moves and loads it, what springs and dashpots follow.
 pub fn blocks(plate: &MovingPlate) -> Vec<Block> {

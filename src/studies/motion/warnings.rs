@@ -6,9 +6,8 @@ use crate::finite_element::Element;
 use crate::mass_spring::{self, SpringLaw};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS};
 use crate::results::wrinkling::{Wrinkling, of_parts};
-use crate::results::{
-    FAR_BESIDE_CORNERS, Stretches, cell_states, locking, number, small_strain, strained,
-};
+use crate::results::{FAR_BESIDE_CORNERS, Stretches, cell_states, locking, small_strain, strained};
+use crate::units::number;
 
 /// The warnings about plates that move, at the given instants in s: a lattice of another ν, compression, a law of small strains, locking, and a
 /// material beyond the range of its card or not stable.

@@ -7,8 +7,8 @@ use super::results::models::Models;
 use crate::document::write_records;
 use crate::problem::{GroupState, Solution};
 use crate::results::Block;
-use crate::results::number;
 use crate::statistics::larger;
+use crate::units::number;
 
 /// A table of all groups in all models at all load factors.
 pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {

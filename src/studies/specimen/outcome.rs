@@ -12,7 +12,8 @@ use super::{forces, statement, work};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
 use crate::problem::Solution;
-use crate::results::{Block, Check, Content, Material, Outcome, Step, decimals, number};
+use crate::results::{Block, Check, Content, Material, Outcome, Step};
+use crate::units::{decimals, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {

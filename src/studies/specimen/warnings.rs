@@ -7,8 +7,9 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
 use crate::results::{
-    is_one_of_several, locking, number, one_of_several, small_strain, strained, wrinkling,
+    is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
 };
+use crate::units::number;
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {

@@ -317,7 +317,7 @@ pub fn colour_bar(ui: &Ui, name: &str, [low, high]: [f64; 2], area: Rect) {
     let ink = ui.visuals().text_color();
     let font = || FontId::proportional(12.0);
     let below = bar.bottom() + 2.0;
-    let number = gelbench::results::number;
+    let number = gelbench::units::number;
     painter.text(
         pos2(bar.left(), below),
         Align2::LEFT_TOP,

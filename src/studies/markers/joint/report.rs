@@ -6,8 +6,9 @@ use crate::corrector::estimation::{
 };
 use crate::error::Error;
 use crate::material::Card;
-use crate::results::{Block, decimals};
+use crate::results::Block;
 use crate::statistics::Estimate;
+use crate::units::decimals;
 
 /// A force that was measured: specimen, frame, and what was predicted.
 pub type ForceRow<'a> = (&'a str, usize, &'a ForcePrediction);

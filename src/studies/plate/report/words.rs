@@ -1,7 +1,8 @@
 //! Numbers and stretches as a report writes them.
 
 use crate::problem::ClampedPlate;
-use crate::results::{decimals, or_dash};
+use crate::results::or_dash;
+use crate::units::decimals;
 
 /// A figure with so many decimals; a dash where there is none.
 pub fn figure(value: Option<f64>, decimals: usize) -> String {

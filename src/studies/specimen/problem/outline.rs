@@ -2,7 +2,7 @@
 
 use crate::budget::Need;
 use crate::mesh::{CellShape, Mesh, Misfit, Shape};
-use crate::results::number;
+use crate::units::number;
 
 use super::Refinement;
 

@@ -4,9 +4,10 @@ use super::measured::Measured;
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, Model};
-use crate::results::{Block, Grid, GridSeries, Outcome, decimals};
+use crate::results::{Block, Grid, GridSeries, Outcome};
 use crate::solve::{PathEnd, State};
 use crate::studies::specimen::problem::Specimen;
+use crate::units::decimals;
 
 /// Where the path of one model ended, and why.
 pub struct End {
