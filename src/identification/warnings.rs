@@ -56,6 +56,33 @@ fn is_steady(motion: &FittedMotion) -> bool {
     within < SHARE * all
 }
 
+/// The warnings about functions that are negative, or not distinguished from zero.
+fn signs(found: &Identification) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (name, _, function) in found.functions() {
+        let estimates: Vec<_> = function
+            .places(41)
+            .into_iter()
+            .map(|x| function.at(x))
+            .collect();
+        let negative = |estimate: &Estimate| estimate.interval[1] < 0.0;
+        if estimates.iter().all(negative) {
+            warnings.push(format!(
+                "{name}(·) is negative: reverse the sign of the force or of the extension"
+            ));
+        } else if estimates.iter().any(negative) {
+            warnings.push(format!(
+                "{name}(·) is negative somewhere: impossible for a passive spring or dashpot"
+            ));
+        } else if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
+            warnings.push(format!(
+                "the recording does not distinguish {name}(·) from zero"
+            ));
+        }
+    }
+    warnings
+}
+
 /// The warnings of an identification from the splines of extension and force, and the number of the motion's corners.
 pub fn warnings(
     found: &Identification,
@@ -96,27 +123,7 @@ pub fn warnings(
         bridged_parts(&recording.times),
     ];
     warnings.extend(gap(&recording.times, parts));
-    for (name, _, function) in found.functions() {
-        let estimates: Vec<_> = function
-            .places(41)
-            .into_iter()
-            .map(|x| function.at(x))
-            .collect();
-        let negative = |estimate: &Estimate| estimate.interval[1] < 0.0;
-        if estimates.iter().all(negative) {
-            warnings.push(format!(
-                "{name}(·) is negative: reverse the sign of the force or of the extension"
-            ));
-        } else if estimates.iter().any(negative) {
-            warnings.push(format!(
-                "{name}(·) is negative somewhere: impossible for a passive spring or dashpot"
-            ));
-        } else if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
-            warnings.push(format!(
-                "the recording does not distinguish {name}(·) from zero"
-            ));
-        }
-    }
+    warnings.extend(signs(found));
     if recording.mass == 0.0 {
         warnings.push("no mass is stated: inertia is left out".to_owned());
     }

@@ -53,8 +53,7 @@ impl EdgePlace {
         match self {
             Self::Given { gap, .. } if *gap > length.max(width) => Err(Error::input(
                 format!(
-                    "an edge gap of {} mm is larger than the field of the markers, which measures {}",
-                    decimals(*gap, 4),
+                    "an edge gap of {gap} mm is larger than the field of the markers, which measures {}",
                     extents([length, width])
                 ),
                 "check the unit of --edge-gap (edge_gap), the distance from the outermost markers to the specimen's edge, or give the true edges with \
