@@ -147,7 +147,7 @@ impl Mesh {
             };
             shares.extend(self.shape(cell).values(local));
             nodes.extend(self.cell(cell).iter().map(|node| *node as u32));
-            starts.push(nodes.len() as u32);
+            starts.push(u32::try_from(nodes.len()).expect("fewer than 2³² terms"));
         }
         nodes.shrink_to_fit();
         shares.shrink_to_fit();

@@ -63,7 +63,8 @@ impl SheetEnergy {
         self.table_of.push(table);
         let before = self.points.len();
         self.points.extend(points);
-        self.point_starts.push(self.points.len() as u32);
+        let end = u32::try_from(self.points.len());
+        self.point_starts.push(end.expect("fewer than 2³² points"));
         let own = &self.tables[usize::from(table)];
         let sizes = [own.nodes(), own.points().len()];
         assert_eq!([nodes.len(), self.points.len() - before], sizes);

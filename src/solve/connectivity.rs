@@ -103,11 +103,15 @@ impl Connectivity {
     }
 
     /// Appends an element that depends on some unknowns.
+    ///
+    /// # Panics
+    /// When all elements together have 2³² unknowns or more.
     pub fn push(&mut self, unknowns: impl IntoIterator<Item = usize>) {
         let own = &mut self.own;
         own.unknowns
             .extend(unknowns.into_iter().map(|own| own as u32));
-        own.starts.push(own.unknowns.len() as u32);
+        let end = u32::try_from(own.unknowns.len());
+        own.starts.push(end.expect("fewer than 2³² unknowns"));
     }
 
     /// Appends an element that depends on the displacements of some nodes: unknowns 2 n and 2 n + 1 of node n.

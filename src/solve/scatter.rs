@@ -17,6 +17,9 @@ pub struct Scatter {
 impl Scatter {
     /// The pattern over the free unknowns, and where the entries of each element are added; `elements` are over the free unknowns,
     /// with [`NOWHERE`] for those that are not free.
+    ///
+    /// # Panics
+    /// When the pattern has 2³² entries or more.
     pub fn new(elements: &Connectivity) -> (SymmetricPattern, Self) {
         let free = elements.unknowns();
         let around = Around::of(elements);
@@ -57,6 +60,7 @@ impl Scatter {
             }
             starts.push(rows.len());
         }
+        assert!(rows.len() < NOWHERE as usize, "fewer than 2³² entries");
         (SymmetricPattern::of_columns(starts, rows), own)
     }
 

@@ -175,6 +175,7 @@ impl ElementBlocks {
             pairs: Vec::with_capacity((0..potential.elements()).map(count).sum()),
             starts: Vec::with_capacity(potential.elements() + 1),
         };
+        assert!(own.pairs.capacity() < NONE as usize, "fewer than 2³² pairs");
         own.starts.push(0);
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
