@@ -78,8 +78,8 @@ impl Shape {
     /// The blocks of its mesh, with at least so many cells beside a hole.
     fn blocks(self, across: usize, beside: usize) -> Vec<Block<'static>> {
         match self {
-            Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
-                strip(size, across, move |x| self.half_width(x))
+            Self::Strip { .. } | Self::NotchedStrip { .. } | Self::DogBone { .. } => {
+                strip(&self.joints(), across, move |x| self.half_width(x))
             }
             Self::StripWithHole { size, radius } => with_hole(size, radius, across, beside),
             Self::RingSector { radii, angle } => {
@@ -148,6 +148,32 @@ impl Shape {
             }
             _ => None,
         }
+    }
+
+    /// The places along a strip where its outline has a corner or passes into an arc, from its beginning to its end, with its middle.
+    fn joints(self) -> Vec<f64> {
+        let (length, from_middle) = match self {
+            Self::NotchedStrip {
+                size, half_length, ..
+            } => (size[0], vec![half_length]),
+            Self::DogBone {
+                size,
+                narrow,
+                shoulder,
+            } => {
+                let begin = 0.5 * narrow[0];
+                (size[0], vec![begin, begin + shoulder])
+            }
+            Self::Strip { size } | Self::StripWithHole { size, .. } => (size[0], Vec::new()),
+            Self::RingSector { radii, angle } => (angle * radii[1], Vec::new()),
+        };
+        let middle = 0.5 * length;
+        let before = from_middle.iter().rev().map(|own| middle - own);
+        let after = from_middle.iter().map(|own| middle + own);
+        let inner = before.chain([middle]).chain(after);
+        let mut joints: Vec<f64> = [0.0].into_iter().chain(inner).chain([length]).collect();
+        joints.dedup();
+        joints
     }
 
     /// Half the width of a strip, with notches or of a dumb-bell, at a place along it.
@@ -295,6 +321,46 @@ mod tests {
                 exact.is_nan() || (found / exact - 1.0).abs() < 1e-5,
                 "{shape:?}: {found} {exact}"
             );
+        }
+    }
+
+    /// The corners of notches and of wide ends are nodes of every mesh; chords across them would leave out some of the load on an edge.
+    #[test]
+    fn corners_of_the_outline_are_nodes() {
+        let [notched, dog_bone] = [SHAPES[2], SHAPES[3]];
+        // An arc of a circle with a height on half a chord.
+        let arc = |half_chord: f64, height: f64| {
+            let radius = (half_chord * half_chord + height * height) / (2.0 * height);
+            radius * (half_chord / radius).asin()
+        };
+        let of_notched = 22.0 + 2.0 * arc(4.0, 2.0);
+        let of_dog_bone = 75.0 - 16.0 + 2.0 * arc(8.0, 4.25);
+        let cases = [
+            (notched, [11.0, 5.0], of_notched),
+            (dog_bone, [17.0, 6.25], of_dog_bone),
+        ];
+        for (shape, corner, length) in cases {
+            for across in 2..24 {
+                for (name, kind) in CellShape::NAMES {
+                    let mesh = shape.mesh(across, kind);
+                    assert!(mesh.nodes.contains(&corner), "{shape:?} {name} {across}");
+                    let edges = mesh.groups()["top"].edges.iter();
+                    let chord = |edge: &Vec<usize>| {
+                        let [[x, y], [to_x, to_y]] =
+                            [edge[0], edge[1]].map(|node| mesh.nodes[node]);
+                        (to_x - x).hypot(to_y - y)
+                    };
+                    let short = 1.0 - edges.map(chord).sum::<f64>() / length;
+                    assert!(
+                        (0.0..0.04).contains(&short),
+                        "{shape:?} {name} {across}: {short}"
+                    );
+                    assert!(
+                        across < 20 || short < 4e-4,
+                        "{shape:?} {name} {across}: {short}"
+                    );
+                }
+            }
         }
     }
 

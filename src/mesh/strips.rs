@@ -1,6 +1,7 @@
 //! Strips of varying width, and strips with a hole, as curved blocks.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::rc::Rc;
 
 use super::blocks::Block;
 
@@ -15,22 +16,39 @@ pub fn lengths(length: f64, half_width: &impl Fn(f64) -> f64) -> f64 {
     Lengths::new(length, half_width).total()
 }
 
-/// A strip whose half width varies along it, as one block.
+/// A strip whose half width varies along it, as blocks between some places along it, from its beginning to its end: the corners of its
+/// outline, which have to be nodes.
 pub fn strip<'a>(
-    size: [f64; 2],
+    joints: &[f64],
     across: usize,
-    half_width: impl Fn(f64) -> f64 + 'a,
+    half_width: impl Fn(f64) -> f64 + Copy + 'a,
 ) -> Vec<Block<'a>> {
-    let lengths = Lengths::new(size[0], &half_width);
-    let along = 2 * count(lengths.total() * across as f64 / 2.0);
-    vec![Block {
-        map: Box::new(move |[s, t]| {
-            let x = lengths.place(s);
-            [x, (2.0 * t - 1.0) * half_width(x)]
-        }),
-        cells: [along, across],
-        sides: ["bottom", "right", "top", "left"],
-    }]
+    let last = joints.len() - 1;
+    let lengths = Rc::new(Lengths::new(joints[last], &half_width));
+    let pairs = joints.windows(2).enumerate();
+    let blocks = pairs.map(|(own, pair)| {
+        let [from, to] = [pair[0], pair[1]];
+        let [before, after] = [from, to].map(|x| lengths.up_to(x));
+        let lengths = Rc::clone(&lengths);
+        Block {
+            map: Box::new(move |[s, t]| {
+                let x = match s {
+                    0.0 => from,
+                    1.0 => to,
+                    _ => lengths.place(before + s * (after - before)),
+                };
+                [x, (2.0 * t - 1.0) * half_width(x)]
+            }),
+            cells: [count((after - before) * across as f64), across],
+            sides: [
+                "bottom",
+                if own + 1 == last { "right" } else { "" },
+                "top",
+                if own == 0 { "left" } else { "" },
+            ],
+        }
+    });
+    blocks.collect()
 }
 
 /// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows by equal amounts between them.
@@ -57,9 +75,18 @@ impl Lengths {
         self.table[self.table.len() - 1][1]
     }
 
-    /// The place at a share of l.
-    fn place(&self, share: f64) -> f64 {
-        let wanted = share * self.total();
+    /// l up to a place.
+    fn up_to(&self, x: f64) -> f64 {
+        let next = self
+            .table
+            .partition_point(|[own, _]| *own < x)
+            .clamp(1, self.table.len() - 1);
+        let [[x0, l0], [x1, l1]] = [self.table[next - 1], self.table[next]];
+        l0 + (l1 - l0) * (x - x0) / (x1 - x0)
+    }
+
+    /// The place with some l.
+    fn place(&self, wanted: f64) -> f64 {
         let next = self
             .table
             .partition_point(|[_, l]| *l < wanted)

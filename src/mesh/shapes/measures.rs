@@ -70,7 +70,7 @@ fn notches(size: [f64; 2], depth: f64, half_length: f64) -> Vec<Demand> {
     const KEY: &str = "notch_depth";
     let rest = "the notches must leave a tenth of the width";
     let short = "the notches must be shorter than nine tenths of the strip";
-    let shallow = "a notch must be shallower than half its length";
+    let shallow = "a notch must be shallower than 0.475 of its length";
     vec![
         (KEY, depth, 0.45 * size[1], rest),
         ("notch_length", 2.0 * half_length, 0.9 * size[0], short),
