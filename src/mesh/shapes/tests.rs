@@ -1,0 +1,163 @@
+//! Outlines, areas and corners of all shapes.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::*;
+
+fn area(mesh: &Mesh) -> f64 {
+    let cell = |cell: usize| -> f64 {
+        let rule = mesh.shape(cell).quadrature().into_iter();
+        rule.map(|(point, weight)| weight * mesh.gradients(cell, point).1)
+            .sum()
+    };
+    (0..mesh.cell_count()).map(cell).sum()
+}
+
+const SHAPES: [Shape; 5] = [
+    Shape::Strip { size: [30.0, 10.0] },
+    Shape::StripWithHole {
+        size: [30.0, 10.0],
+        radius: 2.5,
+    },
+    Shape::NotchedStrip {
+        size: [30.0, 10.0],
+        depth: 2.0,
+        half_length: 4.0,
+    },
+    Shape::DogBone {
+        size: [75.0, 12.5],
+        narrow: [25.0, 4.0],
+        shoulder: 8.0,
+    },
+    Shape::RingSector {
+        radii: [10.0, 20.0],
+        angle: FRAC_PI_2,
+    },
+];
+
+#[test]
+fn every_shape_is_meshed_by_every_kind_of_cell_without_folds() {
+    for shape in SHAPES {
+        shape.check().unwrap();
+        for (_, kind) in CellShape::NAMES {
+            let mesh = shape.mesh(6, kind);
+            for cell in 0..mesh.cell_count() {
+                for (point, _) in kind.quadrature() {
+                    assert!(
+                        mesh.gradients(cell, point).1 > 0.0,
+                        "{shape:?} {kind:?} {cell}"
+                    );
+                }
+            }
+            let edges: usize = mesh.groups().values().map(|group| group.edges.len()).sum();
+            assert_eq!(edges, mesh.boundary().len(), "{shape:?} {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn areas_are_those_of_the_outlines() {
+    let exact = |shape: Shape| match shape {
+        Shape::StripWithHole { size, radius } => {
+            size[0] * size[1] - std::f64::consts::PI * radius * radius
+        }
+        Shape::RingSector { radii, angle } => {
+            angle * (radii[1] * radii[1] - radii[0] * radii[0]) / 2.0
+        }
+        Shape::Strip { size } => size[0] * size[1],
+        _ => f64::NAN,
+    };
+    for shape in SHAPES {
+        let (found, exact) = (area(&shape.mesh(16, CellShape::Quad9)), exact(shape));
+        assert!(
+            exact.is_nan() || (found / exact - 1.0).abs() < 1e-5,
+            "{shape:?}: {found} {exact}"
+        );
+    }
+}
+
+/// The corners of notches and of wide ends are nodes of every mesh; chords across them would leave out some of the load on an edge.
+#[test]
+fn corners_of_the_outline_are_nodes() {
+    let [notched, dog_bone] = [SHAPES[2], SHAPES[3]];
+    // An arc of a circle with a height on half a chord.
+    let arc = |half_chord: f64, height: f64| {
+        let radius = (half_chord * half_chord + height * height) / (2.0 * height);
+        radius * (half_chord / radius).asin()
+    };
+    let of_notched = 22.0 + 2.0 * arc(4.0, 2.0);
+    let of_dog_bone = 75.0 - 16.0 + 2.0 * arc(8.0, 4.25);
+    let cases = [
+        (notched, [11.0, 5.0], of_notched),
+        (dog_bone, [17.0, 6.25], of_dog_bone),
+    ];
+    for (shape, corner, length) in cases {
+        for across in 2..24 {
+            for (name, kind) in CellShape::NAMES {
+                let mesh = shape.mesh(across, kind);
+                assert!(mesh.nodes.contains(&corner), "{shape:?} {name} {across}");
+                let edges = mesh.groups()["top"].edges.iter();
+                let chord = |edge: &Vec<usize>| {
+                    let [[x, y], [to_x, to_y]] = [edge[0], edge[1]].map(|node| mesh.nodes[node]);
+                    (to_x - x).hypot(to_y - y)
+                };
+                let short = 1.0 - edges.map(chord).sum::<f64>() / length;
+                assert!(
+                    (0.0..0.04).contains(&short),
+                    "{shape:?} {name} {across}: {short}"
+                );
+                assert!(
+                    across < 20 || short < 4e-4,
+                    "{shape:?} {name} {across}: {short}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn refined_meshes_come_back_to_the_outline() {
+    for shape in SHAPES {
+        let mut mesh = shape.mesh(6, CellShape::Triangle3).refined();
+        shape.fit(&mut mesh);
+        let mut mesh = mesh.quadratic();
+        shape.fit(&mut mesh);
+        let direct = area(&shape.mesh(12, CellShape::Triangle6));
+        let fitted = area(&mesh);
+        assert!(
+            (fitted / direct - 1.0).abs() < 2e-4,
+            "{shape:?}: {fitted} {direct}"
+        );
+    }
+}
+
+#[test]
+fn measures_that_do_not_fit_are_told() {
+    let hole = Shape::StripWithHole {
+        size: [30.0, 10.0],
+        radius: 5.0,
+    };
+    let told = |shape: Shape| shape.check().unwrap_err();
+    assert_eq!(told(hole).measure, "hole_diameter");
+    assert!(told(hole).remedy().contains("less than \"9 mm\""));
+    let bone = Shape::DogBone {
+        size: [75.0, 12.5],
+        narrow: [60.0, 4.0],
+        shoulder: 8.0,
+    };
+    assert!(told(bone).reason.contains("shorter"));
+    assert!(told(bone).remedy().contains("less than \"59 mm\""));
+    let notch = Shape::NotchedStrip {
+        size: [30.0, 10.0],
+        depth: 4.0,
+        half_length: 4.0,
+    };
+    assert_eq!(told(notch).measure, "notch_depth");
+    assert!(told(notch).remedy().contains("less than \"3.8 mm\""));
+    let shoulder = Shape::DogBone {
+        size: [75.0, 30.0],
+        narrow: [25.0, 4.0],
+        shoulder: 8.0,
+    };
+    assert!(told(shoulder).remedy().contains("more than \"13 mm\""));
+}
