@@ -3,7 +3,7 @@
 use super::blocks::{Block, mesh_of_blocks};
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
-use super::strips::{count, lengths, strip, with_hole};
+use super::strips::{Part, count, lengths, strip, with_hole};
 
 mod measures;
 #[cfg(test)]
@@ -81,7 +81,7 @@ impl Shape {
     fn blocks(self, across: usize, beside: usize) -> Vec<Block<'static>> {
         match self {
             Self::Strip { .. } | Self::NotchedStrip { .. } | Self::DogBone { .. } => {
-                strip(&self.joints(), across, move |x| self.half_width(x))
+                strip(&self.parts(), across, move |x| self.half_width(x))
             }
             Self::StripWithHole { size, radius } => with_hole(size, radius, across, beside),
             Self::RingSector { radii, angle } => {
@@ -152,30 +152,43 @@ impl Shape {
         }
     }
 
-    /// The places along a strip where its outline has a corner or passes into an arc, from its beginning to its end, with its middle.
-    fn joints(self) -> Vec<f64> {
-        let (length, from_middle) = match self {
+    /// The parts of a strip between corners of its outline, beginnings of arcs, and its middle.
+    fn parts(self) -> Vec<Part> {
+        // Ends of parts beyond the middle, with their least numbers of cells.
+        let (length, ends) = match self {
             Self::NotchedStrip {
-                size, half_length, ..
-            } => (size[0], vec![half_length]),
+                size,
+                depth,
+                half_length,
+            } => (
+                size[0],
+                vec![(half_length, cells_of_arc(half_length, depth))],
+            ),
             Self::DogBone {
                 size,
                 narrow,
                 shoulder,
             } => {
-                let begin = 0.5 * narrow[0];
-                (size[0], vec![begin, begin + shoulder])
+                let (begin, rise) = (0.5 * narrow[0], 0.5 * (size[1] - narrow[1]));
+                let arc = (begin + shoulder, cells_of_arc(shoulder, rise));
+                (size[0], vec![(begin, 1), arc])
             }
             Self::Strip { size } | Self::StripWithHole { size, .. } => (size[0], Vec::new()),
             Self::RingSector { radii, angle } => (angle * radii[1], Vec::new()),
         };
-        let middle = 0.5 * length;
-        let before = from_middle.iter().rev().map(|own| middle - own);
-        let after = from_middle.iter().map(|own| middle + own);
-        let inner = before.chain([middle]).chain(after);
-        let mut joints: Vec<f64> = [0.0].into_iter().chain(inner).chain([length]).collect();
-        joints.dedup();
-        joints
+        let (middle, mut parts, mut least) = (0.5 * length, Vec::new(), 1);
+        for (end, own) in ends.iter().rev() {
+            let to = middle - end;
+            parts.push(Part { to, least });
+            least = *own;
+        }
+        parts.push(Part { to: middle, least });
+        let beyond = ends.iter().map(|(end, least)| Part {
+            to: middle + end,
+            least: *least,
+        });
+        parts.extend(beyond.chain([Part::up_to(length)]));
+        parts
     }
 
     /// Half the width of a strip, with notches or of a dumb-bell, at a place along it.
@@ -194,7 +207,7 @@ impl Shape {
                 let rise = (size[1] - narrow[1]) / 2.0;
                 let over = (x - size[0] / 2.0).abs() - narrow[0] / 2.0;
                 // An arc that leaves the narrow part smoothly.
-                let radius = (shoulder * shoulder + rise * rise) / (2.0 * rise);
+                let radius = arc_radius(shoulder, rise);
                 let risen = match over {
                     over if over <= 0.0 => 0.0,
                     over if over >= shoulder => rise,
@@ -239,9 +252,21 @@ impl Shape {
     }
 }
 
+/// Radius of an arc that begins along an edge and ends at a distance along it and a height.
+fn arc_radius(along: f64, height: f64) -> f64 {
+    (along * along + height * height) / (2.0 * height)
+}
+
+/// Least number of cells along such an arc: quadratic edges that turn further would fold the cells beside them.
+fn cells_of_arc(along: f64, height: f64) -> usize {
+    const MOST_TURN: f64 = 0.4;
+    let turn = (along / arc_radius(along, height)).min(1.0).asin();
+    count(turn / MOST_TURN + 0.5)
+}
+
 /// Depth of a notch at a distance from its middle: an arc of a circle.
 fn notch(x: f64, depth: f64, half_length: f64) -> f64 {
-    let radius = (half_length * half_length + depth * depth) / (2.0 * depth);
+    let radius = arc_radius(half_length, depth);
     if x.abs() >= half_length {
         return 0.0;
     }

@@ -16,42 +16,57 @@ pub fn lengths(length: f64, half_width: &impl Fn(f64) -> f64) -> f64 {
     Lengths::new(length, half_width).total()
 }
 
-/// A strip whose half width varies along it, as blocks between some places along it, from its beginning to its end: the corners of its
-/// outline, which have to be nodes.
+/// A part of a strip up to a place along it.
+pub struct Part {
+    /// Where it ends.
+    pub to: f64,
+    /// Least number of cells along it.
+    pub least: usize,
+}
+
+impl Part {
+    /// A part that may be of one cell.
+    pub fn up_to(to: f64) -> Self {
+        Self { to, least: 1 }
+    }
+}
+
+/// A strip whose half width varies along it, as blocks of its parts from 0 on: corners of its outline, between them, are nodes.
 pub fn strip<'a>(
-    joints: &[f64],
+    parts: &[Part],
     across: usize,
     half_width: impl Fn(f64) -> f64 + Copy + 'a,
 ) -> Vec<Block<'a>> {
-    let last = joints.len() - 1;
-    let lengths = Rc::new(Lengths::new(joints[last], &half_width));
-    let pairs = joints.windows(2).enumerate();
-    let blocks = pairs.map(|(own, pair)| {
-        let [from, to] = [pair[0], pair[1]];
-        let [before, after] = [from, to].map(|x| lengths.up_to(x));
+    let length = parts[parts.len() - 1].to;
+    let lengths = Rc::new(Lengths::new(length, &half_width));
+    let mut from = 0.0;
+    let blocks = parts.iter().map(|Part { to, least }| {
+        let [start, end] = [std::mem::replace(&mut from, *to), *to];
+        let [before, after] = [start, end].map(|x| lengths.up_to(x));
         let lengths = Rc::clone(&lengths);
         Block {
             map: Box::new(move |[s, t]| {
                 let x = match s {
-                    0.0 => from,
-                    1.0 => to,
+                    0.0 => start,
+                    1.0 => end,
                     _ => lengths.place(before + s * (after - before)),
                 };
                 [x, (2.0 * t - 1.0) * half_width(x)]
             }),
-            cells: [count((after - before) * across as f64), across],
+            cells: [count((after - before) * across as f64).max(*least), across],
             sides: [
                 "bottom",
-                if own + 1 == last { "right" } else { "" },
+                if end == length { "right" } else { "" },
                 "top",
-                if own == 0 { "left" } else { "" },
+                if start == 0.0 { "left" } else { "" },
             ],
         }
     });
     blocks.collect()
 }
 
-/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows by equal amounts between them.
+/// Places along a strip that lie closer where it is narrower, or its outline steeper: l(x) = ∫ ds/width along the outline grows by equal
+/// amounts between them.
 struct Lengths {
     /// x and l(x).
     table: Vec<[f64; 2]>,
@@ -63,9 +78,10 @@ impl Lengths {
         let step = length / STEPS as f64;
         let mut table = vec![[0.0, 0.0]];
         for i in 1..=STEPS {
-            let middle = (i as f64 - 0.5) * step;
+            let [start, middle, end] = [-1.0, -0.5, 0.0].map(|back| (i as f64 + back) * step);
+            let along = step.hypot(half_width(end) - half_width(start));
             let before = table[i - 1][1];
-            table.push([i as f64 * step, before + step / (2.0 * half_width(middle))]);
+            table.push([end, before + along / (2.0 * half_width(middle))]);
         }
         Self { table }
     }

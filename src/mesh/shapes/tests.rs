@@ -161,3 +161,37 @@ fn measures_that_do_not_fit_are_told() {
     };
     assert!(told(shoulder).remedy().contains("more than \"13 mm\""));
 }
+
+/// Steep arcs on the coarsest meshes, whose quadratic edges turn far.
+#[test]
+fn coarse_meshes_of_steep_arcs_have_no_folds() {
+    let notched = |share: f64, half_length: f64| Shape::NotchedStrip {
+        size: [60.0, 20.0],
+        depth: share * half_length,
+        half_length,
+    };
+    let notches =
+        [1.0, 3.0, 6.0, 9.0].map(|half| [0.1, 0.5, 0.67, 0.9].map(|share| notched(share, half)));
+    let dog_bone = |shoulder: f64| Shape::DogBone {
+        size: [60.0, 20.0],
+        narrow: [10.0, 8.0],
+        shoulder,
+    };
+    let dog_bones = [6.1, 10.0, 20.0].map(dog_bone);
+    for shape in notches.into_iter().flatten().chain(dog_bones) {
+        if shape.check().is_err() {
+            continue;
+        }
+        for across in [1, 2, 3, 4, 6, 8] {
+            for (name, kind) in CellShape::NAMES {
+                let mesh = shape.mesh_halved(across, 0, kind);
+                for cell in 0..mesh.cell_count() {
+                    for (point, _) in kind.quadrature() {
+                        let (_, jacobian) = mesh.gradients(cell, point);
+                        assert!(jacobian > 0.0, "{shape:?} {name} {across}: {cell}");
+                    }
+                }
+            }
+        }
+    }
+}
