@@ -65,8 +65,7 @@ pub fn strip<'a>(
     blocks.collect()
 }
 
-/// Places along a strip that lie closer where it is narrower, or its outline steeper: l(x) = ∫ ds/width along the outline grows by equal
-/// amounts between them.
+/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows by equal amounts between them.
 struct Lengths {
     /// x and l(x).
     table: Vec<[f64; 2]>,
@@ -78,10 +77,9 @@ impl Lengths {
         let step = length / STEPS as f64;
         let mut table = vec![[0.0, 0.0]];
         for i in 1..=STEPS {
-            let [start, middle, end] = [-1.0, -0.5, 0.0].map(|back| (i as f64 + back) * step);
-            let along = step.hypot(half_width(end) - half_width(start));
+            let middle = (i as f64 - 0.5) * step;
             let before = table[i - 1][1];
-            table.push([end, before + along / (2.0 * half_width(middle))]);
+            table.push([i as f64 * step, before + step / (2.0 * half_width(middle))]);
         }
         Self { table }
     }
