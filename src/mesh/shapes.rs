@@ -80,8 +80,8 @@ impl Shape {
     /// The blocks of its mesh, with at least so many cells beside a hole.
     fn blocks(self, across: usize, beside: usize) -> Vec<Block<'static>> {
         match self {
-            Self::Strip { .. } | Self::NotchedStrip { .. } | Self::DogBone { .. } => {
-                strip(&self.parts(), across, move |x| self.half_width(x))
+            Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
+                strip(&self.parts(size[0]), across, move |x| self.half_width(x))
             }
             Self::StripWithHole { size, radius } => with_hole(size, radius, across, beside),
             Self::RingSector { radii, angle } => {
@@ -153,17 +153,13 @@ impl Shape {
     }
 
     /// The parts of a strip between corners of its outline, beginnings of arcs, and its middle.
-    fn parts(self) -> Vec<Part> {
-        // Ends of parts beyond the middle, with their least numbers of cells.
-        let (length, ends) = match self {
+    fn parts(self, length: f64) -> Vec<Part> {
+        let middle = 0.5 * length;
+        // From the middle on: where each part ends, and its least number of cells.
+        let mut half = match self {
             Self::NotchedStrip {
-                size,
-                depth,
-                half_length,
-            } => (
-                size[0],
-                vec![(half_length, cells_of_arc(half_length, depth))],
-            ),
+                depth, half_length, ..
+            } => vec![(half_length, cells_of_arc(half_length, depth))],
             Self::DogBone {
                 size,
                 narrow,
@@ -171,23 +167,22 @@ impl Shape {
             } => {
                 let (begin, rise) = (0.5 * narrow[0], 0.5 * (size[1] - narrow[1]));
                 let arc = (begin + shoulder, cells_of_arc(shoulder, rise));
-                (size[0], vec![(begin, 1), arc])
+                vec![(begin, 1), arc]
             }
-            Self::Strip { size } | Self::StripWithHole { size, .. } => (size[0], Vec::new()),
-            Self::RingSector { radii, angle } => (angle * radii[1], Vec::new()),
+            _ => Vec::new(),
         };
-        let (middle, mut parts, mut least) = (0.5 * length, Vec::new(), 1);
-        for (end, own) in ends.iter().rev() {
-            let to = middle - end;
-            parts.push(Part { to, least });
-            least = *own;
-        }
-        parts.push(Part { to: middle, least });
-        let beyond = ends.iter().map(|(end, least)| Part {
-            to: middle + end,
+        half.push((middle, 1));
+        let begins = [0.0].into_iter().chain(half.iter().map(|(end, _)| *end));
+        let mirrored = begins.zip(&half).map(|(begin, (_, least))| Part {
+            to: middle - begin,
             least: *least,
         });
-        parts.extend(beyond.chain([Part::up_to(length)]));
+        let mut parts: Vec<Part> = mirrored.collect();
+        parts.reverse();
+        parts.extend(half.into_iter().map(|(end, least)| Part {
+            to: middle + end,
+            least,
+        }));
         parts
     }
 
@@ -261,7 +256,7 @@ fn arc_radius(along: f64, height: f64) -> f64 {
 fn cells_of_arc(along: f64, height: f64) -> usize {
     const MOST_TURN: f64 = 0.4;
     let turn = (along / arc_radius(along, height)).min(1.0).asin();
-    count(turn / MOST_TURN + 0.5)
+    (turn / MOST_TURN).ceil() as usize
 }
 
 /// Depth of a notch at a distance from its middle: an arc of a circle.

@@ -24,13 +24,6 @@ pub struct Part {
     pub least: usize,
 }
 
-impl Part {
-    /// A part that may be of one cell.
-    pub fn up_to(to: f64) -> Self {
-        Self { to, least: 1 }
-    }
-}
-
 /// A strip whose half width varies along it, as blocks of its parts from 0 on: corners of its outline, between them, are nodes.
 pub fn strip<'a>(
     parts: &[Part],
@@ -91,22 +84,21 @@ impl Lengths {
 
     /// l up to a place.
     fn up_to(&self, x: f64) -> f64 {
-        let next = self
-            .table
-            .partition_point(|[own, _]| *own < x)
-            .clamp(1, self.table.len() - 1);
-        let [[x0, l0], [x1, l1]] = [self.table[next - 1], self.table[next]];
-        l0 + (l1 - l0) * (x - x0) / (x1 - x0)
+        self.interpolated(x, [0, 1])
     }
 
     /// The place with some l.
-    fn place(&self, wanted: f64) -> f64 {
-        let next = self
-            .table
-            .partition_point(|[_, l]| *l < wanted)
-            .clamp(1, self.table.len() - 1);
-        let [[x0, l0], [x1, l1]] = [self.table[next - 1], self.table[next]];
-        x0 + (x1 - x0) * (wanted - l0) / (l1 - l0)
+    fn place(&self, l: f64) -> f64 {
+        self.interpolated(l, [1, 0])
+    }
+
+    /// The value in one column of the table at a value of the other.
+    fn interpolated(&self, value: f64, [given, wanted]: [usize; 2]) -> f64 {
+        let next = self.table.partition_point(|row| row[given] < value);
+        let next = next.clamp(1, self.table.len() - 1);
+        let [low, high] = [self.table[next - 1], self.table[next]];
+        low[wanted]
+            + (high[wanted] - low[wanted]) * (value - low[given]) / (high[given] - low[given])
     }
 }
 

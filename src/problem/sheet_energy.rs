@@ -73,26 +73,24 @@ impl SheetEnergy {
     /// The energy of the cells of a mesh, integrated by their quadrature: the finite-element method.
     pub fn of_mesh(law: Arc<dyn HyperelasticLaw>, mesh: &Mesh, thickness: f64) -> Self {
         let mut energy = Self::new(law, mesh.nodes.len());
-        let mut kinds: Vec<(CellShape, Vec<f64>)> = Vec::new();
+        let mut kinds: Vec<(CellShape, u8, DerivativeTable, Vec<f64>)> = Vec::new();
         for cell in 0..mesh.cell_count() {
             let shape = mesh.shape(cell);
-            let known = kinds.iter().position(|(own, _)| *own == shape);
+            let known = kinds.iter().position(|(own, ..)| *own == shape);
             let kind = known.unwrap_or_else(|| {
-                let weights = shape.quadrature().into_iter();
-                kinds.push((shape, weights.map(|(_, weight)| weight).collect()));
-                energy.push_table(DerivativeTable::of_shape(shape));
+                let table = DerivativeTable::of_shape(shape);
+                let rule = shape.quadrature().into_iter();
+                let weights = rule.map(|(_, weight)| weight).collect();
+                kinds.push((shape, energy.push_table(table.clone()), table, weights));
                 kinds.len() - 1
             });
-            let weights = &kinds[kind].1;
-            let points = energy.tables[kind].points().zip(weights);
-            let points: Vec<PointMap> = points
-                .map(|(derivatives, weight)| {
-                    let (inverse, jacobian) = mesh.inverse_map(cell, derivatives);
-                    let volume = thickness * jacobian * weight;
-                    PointMap { inverse, volume }
-                })
-                .collect();
-            energy.push_cell(mesh.cell(cell), kind as u8, points);
+            let (_, number, table, weights) = &kinds[kind];
+            let points = table.points().zip(weights).map(|(derivatives, weight)| {
+                let (inverse, jacobian) = mesh.inverse_map(cell, derivatives);
+                let volume = thickness * jacobian * weight;
+                PointMap { inverse, volume }
+            });
+            energy.push_cell(mesh.cell(cell), *number, points);
         }
         energy.complete(mesh.nodes.clone())
     }

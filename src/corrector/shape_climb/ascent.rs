@@ -24,7 +24,6 @@ const SURE: f64 = 0.1;
 
 /// The springs are a first guess, which the correction changes by some hundredths: a more exact equilibrium wastes time, as do more iterations than
 /// finite elements take from rest.
-/// finite elements take from nothing are too.
 const SPRINGS: NewtonSettings = NewtonSettings {
     tolerance: 5e-2,
     max_iterations: 8,

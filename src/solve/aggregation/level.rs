@@ -85,9 +85,15 @@ impl<const N: usize> Operator<N> {
     ) -> Option<()> {
         let Self { below, inverses } = self;
         let rows = matrix.rows();
-        let is_below = |row: usize| matrix.row(row).filter(move |(column, _)| *column < row);
         if below.columns.is_empty() {
-            let count = (0..rows).map(|row| is_below(row).count()).sum();
+            let count = (0..rows)
+                .map(|row| {
+                    matrix
+                        .row(row)
+                        .take_while(|(column, _)| *column < row)
+                        .count()
+                })
+                .sum();
             below.columns.reserve_exact(count);
             below.values.reserve_exact(count);
             below.starts.reserve_exact(rows + 1);
@@ -98,17 +104,19 @@ impl<const N: usize> Operator<N> {
         below.values.clear();
         inverses.clear();
         for row in 0..rows {
-            for (column, block) in is_below(row) {
-                below.columns.push(column as u32);
-                below.values.push(rounded(block));
+            for (column, block) in matrix.row(row).take_while(|(column, _)| *column <= row) {
+                if column < row {
+                    below.columns.push(column as u32);
+                    below.values.push(rounded(block));
+                } else {
+                    let inverse = inverse(block)?;
+                    inverses.push(rounded(&inverse));
+                    pass_on(inverse);
+                }
             }
             below.starts.push(below.columns.len());
-            let mut diagonal = matrix.row(row).filter(|(column, _)| *column == row);
-            let inverse = inverse(diagonal.next()?.1)?;
-            inverses.push(rounded(&inverse));
-            pass_on(inverse);
         }
-        Some(())
+        (inverses.len() == rows).then_some(())
     }
 
     /// x of one row of a sweep, (b − L x) D⁻¹, of what L x of the columns before is not in `sum` yet; what this x is for the rows before,
