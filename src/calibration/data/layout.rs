@@ -7,7 +7,7 @@ use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
 use super::rounding::WrittenColumn;
-use super::test_data::{Observation, StrainColumn, Test, TestData, Times};
+use super::test_data::{Loaded, Observation, StrainColumn, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};
 use crate::error::{Diagnostic, Error};
 use crate::material::parameters::{StrainMeasure, StressMeasure};
@@ -127,6 +127,7 @@ impl Layout {
             stress_measure: self.stress_measure,
             axes: self.stresses.iter().map(|(.., axis)| *axis).collect(),
             drawn_axis: usize::from(widest[1].abs() > widest[0].abs()),
+            loaded: Loaded::of(observations.iter().flat_map(|one| one.strains)),
             observations,
             largest_stress,
             rounding: self.rounding(table, &part.rows),

@@ -70,6 +70,42 @@ impl StrainColumn {
     }
 }
 
+/// The side of rest to which a specimen was loaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loaded {
+    /// Stretched alone: short of rest it is slack.
+    Stretched,
+    /// Pressed alone: beyond rest nothing touches it.
+    Pressed,
+    /// Both.
+    Both,
+}
+
+impl Loaded {
+    /// Strains on the other side count as noise below this share of the largest.
+    const NOISE: f64 = 0.02;
+
+    /// Of the strains of a test; those that are not known are left out.
+    pub fn of(strains: impl Iterator<Item = f64>) -> Self {
+        let bounds = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+        let [low, high] = strains.fold([0.0; 2], bounds);
+        match (-low <= Self::NOISE * high, high <= -Self::NOISE * low) {
+            (true, _) => Self::Stretched,
+            (_, true) => Self::Pressed,
+            _ => Self::Both,
+        }
+    }
+
+    /// A strain larger by so much; where the specimen would be slack, the strain at rest.
+    fn moved(self, strain: f64, by: f64) -> f64 {
+        match self {
+            Self::Stretched => (strain + by).max(strain.min(0.0)),
+            Self::Pressed => (strain + by).min(strain.max(0.0)),
+            Self::Both => strain + by,
+        }
+    }
+}
+
 /// One measured stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
@@ -122,6 +158,8 @@ pub struct TestData {
     pub observations: Vec<Observation>,
     /// The axis that is stretched further: 0 or 1.
     pub drawn_axis: usize,
+    /// The side of rest to which it was loaded, along all axes.
+    pub loaded: Loaded,
     /// The largest stress without its sign, in MPa.
     pub largest_stress: f64,
     /// Root mean squares of the possible rounding, by the digits of the file: of the strains (nominal), zero for
@@ -202,16 +240,23 @@ impl TestData {
         })
     }
 
-    /// An observation with the zero that was found moved: strain, or stress in MPa, larger by so much.
+    /// An observation with the zero that was found moved: strain, or stress in MPa, larger by so much. A specimen that is slack then is at
+    /// rest: it carries no load the other way.
     pub fn moved(&self, observation: &Observation, by: f64) -> Observation {
         let mut moved = *observation;
         match self.found_zero {
             None => {}
             Some(FoundZero::Stress { .. }) => moved.stress += by,
-            Some(FoundZero::Strain { .. }) => match self.test {
-                Test::Planar => moved.strains[self.drawn_axis] += by,
-                _ => moved.strains = moved.strains.map(|x| x + by),
-            },
+            Some(FoundZero::Strain { .. }) => {
+                let is_moved = |axis: usize| match self.test {
+                    Test::Uniaxial => axis == observation.axis,
+                    Test::Planar => axis == self.drawn_axis,
+                    Test::Equibiaxial | Test::Biaxial => true,
+                };
+                for axis in [0, 1].into_iter().filter(|axis| is_moved(*axis)) {
+                    moved.strains[axis] = self.loaded.moved(moved.strains[axis], by);
+                }
+            }
         }
         moved
     }

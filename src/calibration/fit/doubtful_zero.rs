@@ -155,8 +155,10 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, StandardNormal};
 
+    use crate::calibration::settings::MEASURE;
     use crate::calibration::{FitSettings, TestData, fit};
     use crate::document::Statements;
+    use crate::material::parameters::StressMeasure;
     use crate::material::registry::Law;
 
     /// The warnings of a fit of neo-Hooke to a table of it, with all strains and stresses off.
@@ -194,6 +196,51 @@ mod tests {
                 offset.contains("follows the data better"),
                 "{seed}: {offset}"
             );
+        }
+    }
+
+    /// The warnings of a fit of a law to a table of it, in tension or compression, where the specimen is slack at first.
+    fn told_of_slack(name: &str, truth: &[f64], [side, slack]: [f64; 2], seed: u64) -> String {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let law = Law::named(name).unwrap();
+        let (true_law, _) = law.with_values(truth, StressMeasure::Nominal, MEASURE);
+        let stress = |strain: f64| {
+            let loaded = side * (strain - slack).max(0.0);
+            true_law.tension([1.0, 0.0], loaded).nominal_stress
+        };
+        let rows = (0..60).map(|row| {
+            let strain = 0.4 * f64::from(row) / 59.0;
+            let z: f64 = StandardNormal.sample(&mut random);
+            let nominal = stress(strain) + 5e-3 * stress(0.4) * z;
+            format!("{},{nominal}\n", 1.0 + side * strain)
+        });
+        let rows: String = rows.collect();
+        let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
+        let data = TestData::parse("a.csv", &text, &Statements::new()).unwrap();
+        let fit = fit(law, &[data], &FitSettings::default()).unwrap();
+        fit.quality.warnings.join("; ")
+    }
+
+    /// A slack of three rows: too short to be seen as a bend, and taken up by parameters.
+    #[test]
+    fn a_short_slack_is_told_whatever_the_law_takes_up() {
+        let laws: [(&str, &[f64]); 3] = [
+            ("neo-hooke", &[0.03]),
+            ("yeoh", &[0.03, 0.003, 0.0005]),
+            ("mooney-rivlin", &[0.02, 0.01]),
+        ];
+        for ((name, truth), side) in laws.iter().flat_map(|law| [(law, 1.0), (law, -1.0)]) {
+            for seed in 0..4 {
+                let sound = told_of_slack(name, truth, [side, 0.0], seed);
+                let told = "follows the data better";
+                assert!(!sound.contains(told), "{name} {side} {seed}: {sound}");
+                let slack = told_of_slack(name, truth, [side, 0.02], seed);
+                let way = if side > 0.0 { "smaller" } else { "larger" };
+                let told = ["1.7", "1.8", "1.9", "2.0", "2.1", "2.2", "2.3"]
+                    .map(|by| format!("all strains (nominal) are {way} by {by}"));
+                let is_told = told.iter().any(|told| slack.contains(told));
+                assert!(is_told, "{name} {side} {seed}: {slack}");
+            }
         }
     }
 }
