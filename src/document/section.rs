@@ -270,7 +270,8 @@ impl<'a> Section<'a> {
     /// Records that the file does not contain a key, with an example of its value.
     fn missing(&self, key: &'static str, example: &str) {
         let hint = match (self.required.contains(&key), self.path.is_empty()) {
-            (false, _) => format!("add `{key} = {example}`"),
+            (false, true) => format!("add `{key} = {example}`"),
+            (false, false) => format!("add `{key} = {example}` under [{}]", self.path),
             (true, true) => {
                 format!("add `{key} = {example}`, for example; it has no default")
             }

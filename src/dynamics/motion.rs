@@ -132,7 +132,7 @@ impl Motion<'_> {
     }
 
     /// The times up to `duration` in s at which a support is released, or at which the rate of a support or load jumps.
-    pub(super) fn marks(&self, duration: f64) -> Vec<f64> {
+    pub fn marks(&self, duration: f64) -> Vec<f64> {
         let supports = self.supports.iter();
         let mut marks: Vec<f64> = supports
             .flat_map(|support| support.time.kinks().into_iter().chain(support.until))

@@ -197,13 +197,15 @@ impl Motion<'_> {
     }
 
     /// The force of each support on the body in N along both axes at a time in s, from displacement, velocity and the acceleration that
-    /// supports impose, where stresses have no memory.
+    /// supports impose, where stresses have no memory. Where a support's velocity jumps, an earlier `within` selects the force before;
+    /// see [`Motion::impose`].
     ///
     /// # Errors
     /// [`SolveFault::Inverted`].
     pub fn support_forces(
         &self,
         time: f64,
+        within: f64,
         [displacement, velocity]: [&[f64]; 2],
     ) -> Result<Vec<[f64; 2]>, SolveFault> {
         let zeros = || vec![0.0; displacement.len()];
@@ -220,7 +222,7 @@ impl Motion<'_> {
             },
             energy: EnergyBalance::default(),
         };
-        at.impose(self, time, time);
+        at.impose(self, time, within);
         self.evaluate(&mut at, 0.0)?;
         Ok(self.forces_of_supports(&at))
     }

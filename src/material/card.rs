@@ -213,6 +213,7 @@ impl Card {
         let range = data.multiples("stretch_range", Bound::Positive, f64::INFINITY);
         match range[..] {
             [low, high] if low < high => self.stretch_range = [low, high],
+            _ if !data.has("stretch_range") => {}
             _ => {
                 let message = "must be two increasing stretches";
                 data.fault("stretch_range", message, "such as [1.0, 2.0]");

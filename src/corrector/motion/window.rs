@@ -77,6 +77,17 @@ const SLOW: f64 = 0.2;
 /// A residual that stagnates below this share of the forces is rounding.
 const ROUNDING_FLOOR: f64 = 1e-8;
 
+/// Forces below this share of the largest of ū count as so large: of a motion that has hardly begun they are rounding.
+const LEAST_FORCE: f64 = 1e-3;
+
+/// When a window is solved.
+#[derive(Clone, Copy)]
+struct Accuracy {
+    settings: WindowSettings,
+    /// In N.
+    least_force: f64,
+}
+
 impl EquationOfMotion<'_> {
     /// Corrects a motion that is given at instants from time 0 on, with a known start; `progress` is called with the number of corrected instants.
     ///
@@ -121,12 +132,16 @@ impl EquationOfMotion<'_> {
             made: 0,
         };
         let velocity = self.free(&start.velocity);
+        let accuracy = Accuracy {
+            settings,
+            least_force: LEAST_FORCE * self.largest_force(data, settings.steps),
+        };
         let mut steps = settings.steps.max(1);
         while corrected.displacement.len() < data.len() {
             let done = corrected.displacement.len();
             let count = steps.min(data.len() - done);
             let mut window = self.window(&corrected.displacement, data, count);
-            let solved = self.solve(&mut window, &velocity, &mut retained, settings);
+            let solved = self.solve(&mut window, &velocity, &mut retained, accuracy);
             corrected.factorisations = retained.made;
             match solved {
                 Ok((interval, iterations)) => {
@@ -177,7 +192,10 @@ impl EquationOfMotion<'_> {
         window: &mut Window,
         velocity: &[f64],
         retained: &mut RetainedFactor,
-        settings: WindowSettings,
+        Accuracy {
+            settings,
+            least_force,
+        }: Accuracy,
     ) -> Result<(Interval, usize), SolveFault> {
         let mut last = f64::INFINITY;
         for iteration in 0..=settings.max_iterations {
@@ -187,7 +205,7 @@ impl EquationOfMotion<'_> {
             let residual = values
                 .iter()
                 .fold(0.0, |most: f64, row| larger(most, largest(row)))
-                / self.scale(&interval, window);
+                / self.scale(&interval, window).max(least_force);
             if !residual.is_finite() {
                 return Err(SolveFault::NotFinite("the corrected motion".into()));
             }
@@ -220,6 +238,13 @@ impl EquationOfMotion<'_> {
             own.for_each(|((value, unknown), v)| *value -= self.inertia(*unknown) * self.step * v);
         }
         values
+    }
+
+    /// The largest elastic force of some fields in N, including reactions, by one of so many.
+    fn largest_force(&self, fields: &[Vec<f64>], stride: usize) -> f64 {
+        let some = fields.iter().enumerate().step_by(stride.max(1));
+        let forces = some.filter_map(|(instant, field)| self.frame(instant, field).ok());
+        forces.fold(0.0, |most: f64, frame| most.max(frame.size))
     }
 
     /// The largest force in N: elastic, including reactions, or inertial.

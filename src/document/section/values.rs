@@ -7,7 +7,7 @@ use super::plain::{
     bare, count_pair, plain_number, quantity, rounded, text, unquoted, whole_number,
 };
 use super::{Section, Value};
-use crate::document::{Bound, Takes};
+use crate::document::{Bound, Takes, quoted};
 use crate::error::nearest;
 use crate::units::{self, Dimension, Linear};
 
@@ -57,7 +57,9 @@ impl<'a> Section<'a> {
     pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
         self.asks(key, Some(Takes::Choice(names.collect())));
-        let name = self.read(key, "text in quotes", text)?;
+        let names: Vec<String> = choices.iter().map(|(known, _)| quoted(known)).collect();
+        let value = self.value_like(key, &names.join(" | "))?;
+        let name = self.converted(key, value, "text in quotes", text)?;
         let named = self.named(key, &name, choices);
         self.undecided.set(self.undecided.get() || named.is_none());
         named
@@ -85,10 +87,7 @@ impl<'a> Section<'a> {
         if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
             return Some(*choice);
         }
-        let names: Vec<_> = choices
-            .iter()
-            .map(|(known, _)| format!("\"{known}\""))
-            .collect();
+        let names: Vec<String> = choices.iter().map(|(known, _)| quoted(known)).collect();
         let mut hint = format!("one of {}", names.join(", "));
         if let Some(near) = nearest(name, choices.iter().map(|(known, _)| *known)) {
             hint = format!("did you mean \"{near}\"? It must be {hint}");
@@ -265,23 +264,28 @@ impl<'a> Section<'a> {
 
     /// A list of quantities of one dimension.
     pub fn quantities(&self, key: &'static str, dimension: Dimension, bound: Bound) -> Vec<f64> {
-        self.list(key, dimension, bound, MOST_BARE)
+        self.list(key, (dimension, dimension.one_example()), bound, MOST_BARE)
     }
 
     /// A list of ratios that are no parts of a whole: bare numbers up to `most` are what they say.
     pub fn multiples(&self, key: &'static str, bound: Bound, most: f64) -> Vec<f64> {
-        self.list(key, Dimension::Ratio, bound, most)
+        self.list(key, (Dimension::Ratio, "1.0"), bound, most)
     }
 
-    fn list(&self, key: &'static str, dimension: Dimension, bound: Bound, most: f64) -> Vec<f64> {
+    fn list(
+        &self,
+        key: &'static str,
+        (dimension, example): (Dimension, &str),
+        bound: Bound,
+        most: f64,
+    ) -> Vec<f64> {
         self.asks(key, Some(Takes::Quantities(dimension, bound)));
-        let example = format!("[{}, …]", dimension.one_example());
+        let example = format!("[{example}, …]");
         let Some(value) = self.value_like(key, &example) else {
             return Vec::new();
         };
         let DeValue::Array(items) = value.get_ref() else {
-            let hint = format!("write [{}, …]", dimension.one_example());
-            self.fault_at(key, value, "must be a list", &hint);
+            self.fault_at(key, value, "must be a list", &format!("write {example}"));
             return vec![f64::NAN];
         };
         let in_percent = |item: &Spanned<DeValue>| match item.get_ref() {
@@ -378,6 +382,16 @@ impl<'a> Section<'a> {
         convert: impl Fn(&DeValue<'a>) -> Option<T>,
     ) -> Option<T> {
         let value = self.value(key)?;
+        self.converted(key, value, wanted, convert)
+    }
+
+    fn converted<T>(
+        &self,
+        key: &'static str,
+        value: Value<'a>,
+        wanted: &str,
+        convert: impl Fn(&DeValue<'a>) -> Option<T>,
+    ) -> Option<T> {
         let converted = convert(value.get_ref());
         if converted.is_none() {
             self.fault_at(

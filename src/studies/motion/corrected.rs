@@ -36,11 +36,17 @@ impl CorrectedInstants {
     ) -> Result<Self, SolveFault> {
         // The start alone is no motion.
         let count = if fine.len() > within { fine.len() } else { 0 };
-        let instants = (0..count).step_by(within);
+        let marks = motion.marks(step * count as f64);
+        let marks: Vec<f64> = marks.iter().map(|mark| mark / step).collect();
         let mut all = Self::none(String::new());
-        for i in instants {
-            let velocity = velocity(fine, i, step, &motion.start.velocity);
-            let forces = motion.support_forces(step * i as f64, [&fine[i], &velocity])?;
+        for i in (0..count).step_by(within) {
+            let velocity = match i {
+                0 => motion.start.velocity.clone(),
+                _ => velocity(fine, i, step, &marks),
+            };
+            // Where a velocity jumps, the forces are those before, as in the other models.
+            let [time, before] = [0.0, 0.5].map(|back| step * (i as f64 - back).max(0.0));
+            let forces = motion.support_forces(time, before, [&fine[i], &velocity])?;
             all.displacement.push(fine[i].clone());
             all.velocity.push(velocity);
             all.right_force.push(forces[1]);
@@ -178,17 +184,29 @@ fn hermite(pair: &[Instant], s: f64) -> Vec<f64> {
     (0..pair[0].displacement.len()).map(value).collect()
 }
 
-/// Central differences; at the end a one-sided one.
-fn velocity(fields: &[Vec<f64>], instant: usize, step: f64, start: &[f64]) -> Vec<f64> {
-    if instant == 0 {
-        return start.to_vec();
-    }
-    let next = (instant + 1).min(fields.len() - 1);
-    let length = step * (next + 1 - instant) as f64;
-    let pairs = fields[next].iter().zip(&fields[instant - 1]);
-    pairs
-        .map(|(after, before)| (after - before) / length)
-        .collect()
+/// Differences of second order: central ones, and at the end and beside a mark (in steps), where velocities jump, those of one side. At a
+/// mark they are those before it.
+fn velocity(fields: &[Vec<f64>], instant: usize, step: f64, marks: &[f64]) -> Vec<f64> {
+    const ROUNDING: f64 = 1e-6;
+    let jumps = |after: f64, before: f64| {
+        let mut marks = marks.iter().map(|mark| mark - instant as f64);
+        marks.any(|mark| after < mark && mark < before)
+    };
+    let is_last = instant + 1 == fields.len();
+    let weights: &[(isize, f64)] = match [jumps(-1.0, -ROUNDING), jumps(-ROUNDING, 1.0)] {
+        [_, ahead] if (ahead || is_last) && instant >= 2 => &[(0, 1.5), (-1, -2.0), (-2, 0.5)],
+        [_, ahead] if ahead || is_last => &[(0, 1.0), (-1, -1.0)],
+        [true, _] if instant + 2 < fields.len() => &[(0, -1.5), (1, 2.0), (2, -0.5)],
+        _ => &[(1, 0.5), (-1, -0.5)],
+    };
+    let value = |unknown: usize| {
+        let terms = weights.iter().map(|(by, weight)| {
+            let field = &fields[instant.saturating_add_signed(*by)];
+            weight * field[unknown] / step
+        });
+        terms.sum()
+    };
+    (0..fields[instant].len()).map(value).collect()
 }
 
 #[cfg(test)]
@@ -213,7 +231,28 @@ mod tests {
         for (i, field) in fields.iter().enumerate() {
             assert!((field[0] - place(0.1 * i as f64)).abs() < 1e-14, "{i}");
         }
-        let found = velocity(&fields, 5, 0.1, &[0.0]);
+        let found = velocity(&fields, 5, 0.1, &[]);
         assert!((found[0] - speed(0.5)).abs() < 6e-3);
+    }
+
+    /// |t − 0.5| beside a mark at every place within the steps; at the mark it is the velocity before.
+    #[test]
+    fn velocities_do_not_mix_both_sides_of_a_jump() {
+        for mark in [4.5, 5.0, 5.3, 6.0 - 1e-9] {
+            let fields: Vec<Vec<f64>> = (0..=10)
+                .map(|i| vec![(f64::from(i) - mark).abs()])
+                .collect();
+            for instant in 3..=10 {
+                if instant == 5 || instant == 6 || (instant as f64 - mark).abs() > 1.0 {
+                    let found = velocity(&fields, instant, 1.0, &[mark])[0];
+                    let expected = if instant as f64 - 1e-6 > mark {
+                        1.0
+                    } else {
+                        -1.0
+                    };
+                    assert!((found - expected).abs() < 1e-8, "{mark} {instant}: {found}");
+                }
+            }
+        }
     }
 }
