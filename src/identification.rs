@@ -35,19 +35,20 @@ mod penalty;
 mod recording;
 mod sample;
 mod smoothing;
+mod spikes;
 mod suspects;
 mod types;
 mod warnings;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape, UnknownForm};
-use corners::corners;
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
 pub use sample::Sample;
-pub use types::{FittedMotion, Identification, IdentificationSettings};
-use warnings::{FEWEST_CORNERS, warnings};
+use suspects::examine;
+pub use types::{FittedMotion, HiddenLag, Identification, IdentificationSettings};
+use warnings::{Faults, warnings};
 
 #[cfg(test)]
 mod tests;
@@ -307,21 +308,18 @@ impl<'a> Fit<'a> {
             noise: joint.noise,
             misfit,
             freedom,
+            hidden_lag: None,
             warnings: Vec::new(),
         };
-        let corners = corners(&joint.recording.extension).len();
-        identification.warnings = warnings(&identification, joint.recording, signals, corners);
+        let faults = Faults::of(joint.recording);
+        identification.warnings = warnings(&identification, joint.recording, signals, &faults);
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
-        if !signals.0.coarse && !signals.1.coarse && corners < FEWEST_CORNERS {
-            let suspects = suspects::suspects(
-                joint,
-                &self.state,
-                &identification.motion,
-                found,
-                misfit,
-                freedom,
-            );
-            identification.warnings.extend(suspects::warning(&suspects));
+        if !signals.0.coarse && !signals.1.coarse && faults.are_few() {
+            let examined = examine(joint, &self.state, &identification, found);
+            identification
+                .warnings
+                .extend(suspects::warning(&examined.sure));
+            identification.hidden_lag = examined.hidden_lag;
         }
         Some(identification)
     }

@@ -232,6 +232,8 @@ fn message(found: &Identification, recording: &Recording, path: &Path) -> String
         text += &powers(function, of);
         text += &curve(function, argument);
     }
+    let lag = found.hidden_lag.iter();
+    text.extend(lag.map(|lag| format!("\n{}\n", lag.describe())));
     text
 }
 

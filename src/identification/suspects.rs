@@ -13,7 +13,8 @@ use nalgebra::DVector;
 use super::basis::{Basis, Form};
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
-use super::types::FittedMotion;
+use super::types::{FittedMotion, HiddenLag, Identification};
+use crate::statistics::median;
 
 /// t above which a suspect is reported: by chance in less than one recording of a thousand, with seven tried.
 const LIMIT: f64 = 4.0;
@@ -132,16 +133,28 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
     (0..times.len()).map(|i| over(of(i))).collect()
 }
 
-/// The suspects that are surely present, the surest first.
-pub fn suspects(
-    joint: &Joint,
-    state: &State,
-    motion: &FittedMotion,
-    found: &PenalisedFit,
-    misfit: f64,
-    freedom: f64,
-) -> Vec<Suspected> {
-    let beyond = (misfit - 1.0).max(0.0) * freedom;
+/// What an examination of a recording found.
+pub struct Examination {
+    /// The suspects that are surely present, the surest first.
+    pub sure: Vec<Suspected>,
+    /// The lag that might be present, where it matters.
+    pub hidden_lag: Option<HiddenLag>,
+}
+
+/// A suspect in one linearised step from a fit.
+struct Trial {
+    suspect: Suspect,
+    amount: f64,
+    /// Infinite where it is part of the functions or the motion.
+    error: f64,
+    /// The share of the residuals' squares that it explains.
+    taken: f64,
+    /// The change of the functions' coefficients for each unit of it.
+    follow: DVector<f64>,
+}
+
+/// Tries all suspects.
+fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedFit) -> Vec<Trial> {
     // A form that is wrong looks like a body of another kind.
     let is_free = |function: &Basis| matches!(function.form, Form::Spline(_));
     let are_free = joint.functions.iter().all(is_free);
@@ -152,14 +165,14 @@ pub fn suspects(
     let tried: Vec<Suspect> = tried.collect();
     let columns: Vec<Column> = tried
         .iter()
-        .map(|suspect| column(joint, motion, *suspect))
+        .map(|suspect| column(joint, &fit.motion, *suspect))
         .collect();
     let Ok(equations) = joint.linearise_with(state, &columns) else {
         return Vec::new();
     };
     let (reduced, own) = (&equations.reduced, state.functions.len());
     let gradient = reduced.gradient.rows(0, own) - &found.penalty * &state.functions;
-    let test = |(index, suspect): (usize, Suspect)| {
+    let trial = |(index, suspect): (usize, &Suspect)| {
         let place = own + index;
         let mixed: DVector<f64> = reduced
             .information
@@ -170,21 +183,72 @@ pub fn suspects(
         let information = reduced.information[(place, place)] - mixed.dot(&follow);
         let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
         let score = reduced.gradient[place] - follow.dot(&gradient);
-        let taken = score * score / information;
-        (information > OWN * square && taken > TAKEN * beyond).then(|| Suspected {
-            suspect,
-            amount: score / information,
-            error: (misfit.max(1.0) / information).sqrt(),
-        })
+        let is_own = information > OWN * square;
+        Trial {
+            suspect: *suspect,
+            amount: if is_own { score / information } else { 0.0 },
+            error: match is_own {
+                true => (fit.misfit.max(1.0) / information).sqrt(),
+                false => f64::INFINITY,
+            },
+            taken: score * score / information,
+            follow,
+        }
     };
-    let tests = tried.iter().copied().enumerate().filter_map(test);
+    tried.iter().enumerate().map(trial).collect()
+}
+
+/// Examines the recording of a fit.
+pub fn examine(
+    joint: &Joint,
+    state: &State,
+    fit: &Identification,
+    found: &PenalisedFit,
+) -> Examination {
+    let trials = trials(joint, state, fit, found);
+    let beyond = (fit.misfit - 1.0).max(0.0) * fit.freedom;
     // Friction never drives a motion.
-    let possible = |own: &Suspected| own.suspect != Suspect::Friction || own.amount > 0.0;
-    let mut sure: Vec<Suspected> = tests
-        .filter(|own| own.size() > LIMIT && possible(own))
+    let is_possible = |own: &&Trial| own.suspect != Suspect::Friction || own.amount > 0.0;
+    let is_sure = |own: &&Trial| own.taken > TAKEN * beyond && own.amount.abs() > LIMIT * own.error;
+    let sure = trials.iter().filter(is_sure).filter(is_possible);
+    let mut sure: Vec<Suspected> = sure
+        .map(|own| Suspected {
+            suspect: own.suspect,
+            amount: own.amount,
+            error: own.error,
+        })
         .collect();
     sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
-    sure
+    let lag = trials.iter().find(|own| own.suspect == Suspect::Lag);
+    let is_told = sure.iter().any(|own| own.suspect == Suspect::Lag);
+    Examination {
+        hidden_lag: lag
+            .filter(|_| !is_told)
+            .and_then(|lag| hidden_lag(joint, fit, lag)),
+        sure,
+    }
+}
+
+/// The largest lag up to a sampling interval that would not be detected, where it changes D(·) by more than its interval.
+fn hidden_lag(joint: &Joint, fit: &Identification, trial: &Trial) -> Option<HiddenLag> {
+    let times = &joint.recording.times;
+    let interval = median(times.windows(2).map(|pair| pair[1] - pair[0]));
+    let lag = interval.min(LIMIT * trial.error);
+    let [first, count] = [0, 1].map(|index| joint.functions[index].count());
+    let change = trial.follow.rows(first, count) * lag;
+    let damping = &fit.damping;
+    let at = |x: f64| {
+        let by = damping.basis.values(x, 0).dot(&change).abs();
+        let [low, high] = damping.at(x).interval;
+        HiddenLag {
+            lag,
+            damping: by,
+            half_widths: by / (0.5 * (high - low)),
+        }
+    };
+    let places = damping.places(41).into_iter().map(at);
+    let most = places.max_by(|a, b| a.half_widths.total_cmp(&b.half_widths))?;
+    (most.half_widths > 1.0).then_some(most)
 }
 
 /// The warning about the suspects.

@@ -3,6 +3,7 @@
 use super::band::Function;
 use super::basis::{Form, Shape};
 use super::joint::Argument;
+use crate::units::number;
 
 /// The settings of an identification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +73,33 @@ pub struct Identification {
     pub misfit: f64,
     /// N − p.
     pub freedom: f64,
+    /// A lag that the recording does not exclude; `None` where none matters.
+    pub hidden_lag: Option<HiddenLag>,
     /// Warnings.
     pub warnings: Vec<String>,
+}
+
+/// A force that is recorded later than the motion, by at most one sampling interval and so little that the recording would not show it. It
+/// changes D(·) by about τ d(K x)/dx, which no interval includes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HiddenLag {
+    /// τ in s.
+    pub lag: f64,
+    /// The change of D(·) in N·s/mm where it is largest beside its interval.
+    pub damping: f64,
+    /// The same in half-widths of the interval there.
+    pub half_widths: f64,
+}
+
+impl HiddenLag {
+    /// In a sentence.
+    pub fn describe(&self) -> String {
+        format!(
+            "synchronisation: this recording would not show a force that is recorded {} ms later than the motion (sampling intervals and \
+             less are tried), which would change D(·) by up to {} N·s/mm, {} half-widths of its 95 % interval",
+            number(1e3 * self.lag),
+            number(self.damping),
+            number(self.half_widths)
+        )
+    }
 }

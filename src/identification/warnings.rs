@@ -1,10 +1,13 @@
 //! The warnings of an identification.
 
 use super::basis::Form;
+use super::corners::corners;
 use super::recording::Recording;
 use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
+use super::spikes::{bridged, spikes};
 use super::types::{FittedMotion, Identification};
 use crate::statistics::{Estimate, median};
+use crate::units::number;
 
 /// A longest interval is a gap if it leaves the motion less than this share of the parts that both signals ask for, ...
 const FEW: f64 = 0.5;
@@ -32,7 +35,58 @@ fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
 }
 
 /// Fewest corners that count: a single one is a jerk, or chance.
-pub const FEWEST_CORNERS: usize = 4;
+const FEWEST_CORNERS: usize = 4;
+
+/// Rows of a recording that no smooth motion has.
+pub struct Faults {
+    /// The number of corners of the motion.
+    corners: usize,
+    /// The instants with spikes, of the extension and of the force.
+    spikes: [Vec<usize>; 2],
+}
+
+impl Faults {
+    /// Of a recording.
+    pub fn of(recording: &Recording) -> Self {
+        let Recording {
+            times,
+            extension,
+            force,
+            ..
+        } = recording;
+        let spikes = [extension, force].map(|values| spikes(times, values));
+        Self {
+            corners: corners(&bridged(times, extension, &spikes[0])).len(),
+            spikes,
+        }
+    }
+
+    /// Whether a smooth motion may be fitted.
+    pub fn are_few(&self) -> bool {
+        self.corners < FEWEST_CORNERS && self.spikes[0].is_empty()
+    }
+
+    fn warnings(&self, times: &[f64]) -> Vec<String> {
+        let corners = (self.corners >= FEWEST_CORNERS).then(|| {
+            format!(
+                "the motion has {} corners, as where a machine reverses at a constant rate: the fitted smooth motion cannot follow them, so that \
+                 intervals and bands are not valid; use sinusoidal motion, or identify the parts between corners separately",
+                self.corners
+            )
+        });
+        let spikes = ["extension", "force"].into_iter().zip(&self.spikes);
+        let spikes = spikes.filter_map(|(signal, at)| {
+            let first = times[*at.first()?];
+            Some(format!(
+                "the {signal} has {} spikes, the first at {} s: single values that are far from both neighbours bias the functions, and neither the \
+                 misfit nor intervals tell of it; remove these rows",
+                at.len(),
+                number(first)
+            ))
+        });
+        corners.into_iter().chain(spikes).collect()
+    }
+}
 
 /// Whether a motion is a steady vibration, which passes every extension at one speed forward and at one backward: among instants of like
 /// extension ẋ scatters by less than this share of its variance.
@@ -83,20 +137,14 @@ fn signs(found: &Identification) -> Vec<String> {
     warnings
 }
 
-/// The warnings of an identification from the splines of extension and force, and the number of the motion's corners.
+/// The warnings of an identification from the splines of extension and force, and the faults of its recording.
 pub fn warnings(
     found: &Identification,
     recording: &Recording,
     signals: &(SignalSpline, SignalSpline),
-    corners: usize,
+    faults: &Faults,
 ) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if corners >= FEWEST_CORNERS {
-        warnings.push(format!(
-            "the motion has {corners} corners, as where a machine reverses at a constant rate: the fitted smooth motion cannot follow them, so that \
-             intervals and bands are not valid; use sinusoidal motion, or identify the parts between corners separately"
-        ));
-    }
+    let mut warnings = faults.warnings(&recording.times);
     if signals.0.coarse || signals.1.coarse {
         warnings
             .push("the motion is sampled too coarsely to distinguish it from its noise".to_owned());

@@ -153,7 +153,8 @@ pub fn dead_forces(
     let need_edges = |what: &str| match group.edges.is_empty() {
         true => {
             let reason = format!("has no edges of the boundary, which {what} needs");
-            Err(refused("load", name, &reason))
+            let hint = "a load of kind \"force\" is spread over the lines and nodes of any group";
+            Err(refused("load", name, &reason).hint(hint))
         }
         false => Ok(()),
     };

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::test_data::{StrainColumn, Test, TestData};
+use super::cycles::PRECONDITIONED;
+use super::test_data::{StrainColumn, Test, TestData, Times};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::units::{self, Dimension};
@@ -18,11 +19,14 @@ pub struct Conversion {
     pub unit: String,
 }
 
+/// The statements of a file that hold in every measure and unit.
+const KEPT: [&str; 5] = ["source", "doi", "specimen", "licence", "compiled by"];
+
 impl Conversion {
     /// The data as a table that `gelbench materials fit` reads.
     ///
     /// # Errors
-    /// [`Error::Input`] when the unit is not a unit of stress.
+    /// [`Error::Input`] when the unit is not a unit of stress, or when the file has times that cannot be read.
     pub fn table(&self, data: &TestData) -> Result<String, Error> {
         let factor = units::factor(&self.unit, Dimension::Stress);
         let factor = factor.map_err(|fault| {
@@ -30,11 +34,22 @@ impl Conversion {
             let hint = format!("known units: {}", known.join(", "));
             Error::input(format!("the unit to write {fault}"), hint)
         })?;
+        let times = match &data.times {
+            Times::None => None,
+            Times::Known(times) => Some(times),
+            Times::Unknown(fault) => return Err(Error::Input(vec![(**fault).clone()])),
+        };
         let mut text = String::new();
         for (key, value) in &data.head {
-            if ["source", "doi", "specimen", "licence", "compiled by"].contains(&&**key) {
+            if KEPT.contains(&&**key) {
                 let _ = writeln!(text, "# {key}: {value}");
             }
+        }
+        if data.rise > 0.0 {
+            let _ = writeln!(text, "# ramp: {} s", data.rise);
+        }
+        if let Some(strain) = data.preconditioned {
+            let _ = writeln!(text, "# {PRECONDITIONED}: {}", 1.0 + strain);
         }
         let axes = &data.axes;
         let direction = if axes[..] == [1] {
@@ -44,7 +59,7 @@ impl Conversion {
         };
         let _ = writeln!(text, "# test: {}{direction}", data.test.name());
         let _ = writeln!(text, "{}", self.names(data).join(","));
-        for row in data.observations.chunks(axes.len()) {
+        for (index, row) in data.observations.chunks(axes.len()).enumerate() {
             let along = match data.test {
                 Test::Uniaxial => vec![row[0].strains[row[0].axis]],
                 Test::Biaxial => row[0].strains.to_vec(),
@@ -56,10 +71,9 @@ impl Conversion {
                 let nominal = data.stress_measure.to_nominal(one.stress, x);
                 self.stress.of_nominal(nominal, x) / factor
             });
-            let fields: Vec<_> = strains
-                .chain(stresses)
-                .map(|value| value.to_string())
-                .collect();
+            let time = times.map(|times| times[index * axes.len()]);
+            let values = time.into_iter().chain(strains).chain(stresses);
+            let fields: Vec<_> = values.map(|value| value.to_string()).collect();
             let _ = writeln!(text, "{}", fields.join(","));
         }
         Ok(text)
@@ -84,7 +98,11 @@ impl Conversion {
         } else {
             &[0]
         };
-        let mut names = numbered(&strain, "-", along);
+        let mut names = match data.times {
+            Times::Known(_) => vec!["time [s]".to_owned()],
+            _ => Vec::new(),
+        };
+        names.extend(numbered(&strain, "-", along));
         let stress = format!("{}_stress", self.stress.name());
         names.extend(numbered(&stress, &self.unit, &data.axes));
         names
@@ -103,6 +121,7 @@ mod tests {
         for text in [
             "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n0.8,-0.5\n1.5,0.25\n",
             "# test: uniaxial; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n",
+            "# ramp: 2 s\n# test: uniaxial\ntime [s],stretch [-],nominal_stress [MPa]\n0,1.5,0.25\n10,1.5,0.2\n30,1.5,0.18\n",
             "# test: planar; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n2,0.5\n",
             "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
         ] {
@@ -130,6 +149,11 @@ mod tests {
                 unit: "MPa".into(),
             };
             let again = read(&back.table(&there).unwrap());
+            let times = |data: &TestData| match &data.times {
+                Times::Known(times) => (data.rise, times.clone()),
+                _ => (data.rise, Vec::new()),
+            };
+            assert_eq!(times(&again), times(&data), "{text}");
             for (one, other) in data.observations.iter().zip(&again.observations) {
                 assert!((one.stress - other.stress).abs() < 1e-15);
             }

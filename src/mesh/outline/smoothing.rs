@@ -2,7 +2,8 @@
 //!
 //! Points of a grid follow a curved edge in steps. Where a parabola of the arc's length, fitted around every point of the line, stays
 //! as near to the points as a straightened line may, the line is curved; else there is a corner, or a straight edge whose steps are long.
-//! Curved parts are moved out to their outermost points: the specimen reaches at least as far.
+//! Curved parts are moved out to their outermost points: the specimen reaches at least as far. Where all points lie on one smooth curve,
+//! as markers along an edge do, the line goes through them.
 //!
 //! # References
 //! W. S. Cleveland, J. Am. Stat. Assoc. 74, 829 (1979), doi:10.1080/01621459.1979.10481038
@@ -44,6 +45,12 @@ const BULGE: f64 = 0.2;
 
 /// What is smooth has points as near as this, in spacings, to straight edges between them.
 const FINE: f64 = 0.05;
+
+/// Points as near as this, in spacings, to their parabolas lie on one curve: steps of a grid are ten times farther off.
+const ON_CURVE: f64 = 0.05;
+
+/// The line through such points has points as near as this, in spacings, to straight edges between them.
+const FINEST: f64 = 0.003;
 
 /// A part of a closed line: its points, the first and the last one among them.
 type Part = Vec<[f64; 2]>;
@@ -201,6 +208,35 @@ impl Followed<'_> {
         }
     }
 
+    /// The places on the smooth curve through all points, from the first one on; `None` where they lie on none.
+    fn through(&self, spacing: f64) -> Option<Vec<[f64; 2]>> {
+        let own = self.at.iter().zip(self.line).map(|(at, point)| {
+            let place = self.place(*at);
+            [0, 1].map(|axis| point[axis] - place[axis])
+        });
+        let off: Vec<[f64; 2]> = own.collect();
+        if off.iter().any(|[x, y]| x.hypot(*y) > ON_CURVE * spacing) {
+            return None;
+        }
+        let count = self.line.len();
+        let edges = if self.is_closed { count } else { count - 1 };
+        let along = (0..edges).flat_map(|i| {
+            let next = (i + 1) % count;
+            let size = length(self.line[i], self.line[next]);
+            let parts = (size / (STEP * spacing)).ceil().max(1.0) as usize;
+            let off = &off;
+            (0..parts).map(move |part| {
+                let share = part as f64 / parts as f64;
+                let place = self.place(self.at[i] + share * size);
+                [0, 1].map(|axis| {
+                    place[axis] + off[i][axis] + share * (off[next][axis] - off[i][axis])
+                })
+            })
+        });
+        let last = self.line.last().filter(|_| !self.is_closed);
+        Some(along.chain(last.copied()).collect())
+    }
+
     /// The place at an arc length on the line itself.
     fn on_the_line(&self, own: f64) -> [f64; 2] {
         let last = self.at.partition_point(|at| *at <= own).max(1) - 1;
@@ -253,6 +289,9 @@ fn closed(line: &[[f64; 2]], spacing: f64) -> Followed<'_> {
 
 /// A closed curve moved out to the outermost of the line's points.
 fn outermost(followed: &Followed, near: f64, spacing: f64) -> Vec<[f64; 2]> {
+    if let Some(curve) = followed.through(spacing) {
+        return straightened(&curve, FINEST * spacing);
+    }
     let line = followed.line;
     let steps = followed.steps(STEP * spacing).into_iter();
     let curve: Vec<[f64; 2]> = steps.map(|at| followed.place(at)).collect();
@@ -283,6 +322,9 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         is_closed: false,
         reach: BESIDE * spacing,
     };
+    if let Some(curve) = followed.through(spacing) {
+        return without_the_last(&curve, FINEST * spacing);
+    }
     let at = followed.steps(STEP * spacing);
     let whole = at[at.len() - 1];
     let mut curve: Vec<[f64; 2]> = at.iter().map(|at| followed.place(*at)).collect();
@@ -311,7 +353,12 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         };
         curve[i] = [blend(0, nx), blend(1, ny)];
     }
-    let needed = needed_behind_the_first(&curve, FINE * spacing);
+    without_the_last(&curve, FINE * spacing)
+}
+
+/// The points of a curve that are needed, but for its last one.
+fn without_the_last(curve: &[[f64; 2]], near: f64) -> Vec<[f64; 2]> {
+    let needed = needed_behind_the_first(curve, near);
     let inner = &needed[..needed.len() - 1];
     let first = std::iter::once(&0);
     first.chain(inner).map(|point| curve[*point]).collect()

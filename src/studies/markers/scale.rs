@@ -2,6 +2,7 @@
 
 use crate::corrector::estimation::FieldEstimate;
 use crate::statistics::Estimate;
+use crate::units::number;
 
 /// The relative error that is told of: a specimen 1 mm nearer to a camera 1 m away.
 const TOLD: f64 = 1e-3;
@@ -34,14 +35,19 @@ fn changes(estimate: &FieldEstimate) -> Vec<Changed<'_>> {
         .collect()
 }
 
-fn percent(own: &Changed) -> String {
-    let share = 100.0 * own.change / own.force.value.abs();
-    format!("{} along {} by {share:.2} %", own.edge, own.axis)
+/// In % of the force; in N where the force is less, such as that of a closed edge in balance.
+fn amount(own: &Changed) -> String {
+    let share = own.change / own.force.value.abs();
+    let by = match share < 1.0 {
+        true => format!("{:.2} %", 100.0 * share),
+        false => format!("{} N", number(own.change)),
+    };
+    format!("{} along {} by {by}", own.edge, own.axis)
 }
 
 /// What such an error changes in a frame, for a report.
 pub fn paragraph(estimate: &FieldEstimate, deviation: f64) -> Option<String> {
-    let changed: Vec<String> = changes(estimate).iter().map(percent).collect();
+    let changed: Vec<String> = changes(estimate).iter().map(amount).collect();
     let held = match deviation > 0.0 {
         true => format!(
             "intervals include a standard deviation of the scale of {:.3} %",
@@ -74,6 +80,6 @@ pub fn line(frame: usize, estimate: &FieldEstimate, deviation: f64) -> Option<St
     Some(format!(
         "a scale error of {} % in the picture of frame {frame} would change the force on {}, more than its interval allows: state it with --scale-error\n",
         100.0 * TOLD,
-        percent(worst)
+        amount(worst)
     ))
 }

@@ -123,7 +123,9 @@ fn labels(mesh: &Mesh, groups: &[&str]) -> Result<BTreeMap<usize, usize>, Diagno
                 && other != number
             {
                 let shared = format!("the groups `{}` and `{name}` share edges", groups[other]);
-                return Err(Diagnostic::error("", shared).hint("name each edge once"));
+                return Err(Diagnostic::error("", shared).hint(
+                    "name each edge once: `boundary` is all of them, holes included, and left, right, bottom, top are the sides of the outer one",
+                ));
             }
         }
         if labels.len() == before && group.nodes.is_empty() {

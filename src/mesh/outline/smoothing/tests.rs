@@ -36,6 +36,49 @@ fn a_round_hole_among_markers_is_round_and_ends_at_the_innermost_ones() {
     }
 }
 
+/// Markers along circles and an arched edge: the lines go through them.
+#[test]
+fn curves_go_through_markers_that_lie_on_them() {
+    for spacing in [0.8, 1.6] {
+        let rows = (16.0 / spacing) as usize;
+        let rings = (0..=rows).flat_map(|row| {
+            let radius = 8.0 + 16.0 * row as f64 / rows as f64;
+            let count = (std::f64::consts::TAU * radius / spacing).round() as usize;
+            (0..count).map(move |i| {
+                let (sine, cosine) = (std::f64::consts::TAU * i as f64 / count as f64).sin_cos();
+                [5000.0 + radius * cosine, radius * sine]
+            })
+        });
+        let found = Outline::of_points(&rings.collect::<Vec<_>>()).unwrap();
+        let outline = found.outline;
+        assert_eq!(outline.holes.len(), 1);
+        for (line, radius) in [(&outline.outer, 24.0), (&outline.holes[0], 8.0)] {
+            for point in line {
+                let off = distance(*point, [5000.0, 0.0]) - radius;
+                assert!(
+                    off.abs() < 2e-3 * found.spacing,
+                    "{spacing} {radius}: {off}"
+                );
+            }
+            let own = (polygon_area(line).abs() / std::f64::consts::PI).sqrt();
+            assert!(
+                (own - radius).abs() < 4e-3 * found.spacing,
+                "{spacing}: {own}"
+            );
+        }
+    }
+    // A sheet with one arched edge between two corners.
+    let sheet = (0..=40).flat_map(|i| {
+        let x = f64::from(i);
+        let height = 12.0 + 4.0 * (std::f64::consts::PI * x / 40.0).sin();
+        (0..=12).map(move |j| [x, height * f64::from(j) / 12.0])
+    });
+    let found = Outline::of_points(&sheet.collect::<Vec<_>>()).unwrap();
+    let exact = 40.0 * (12.0 + 8.0 / std::f64::consts::PI);
+    let area = polygon_area(&found.outline.outer);
+    assert!((area / exact - 1.0).abs() < 1e-3, "{area} {exact}");
+}
+
 #[test]
 fn corners_of_small_specimens_stay() {
     for [across, along] in [
