@@ -1,17 +1,19 @@
 //! Spikes: single values far from both of their neighbours, as of a disturbed cable or a lost count.
 //!
 //! ```text
-//! dᵢ = yᵢ − y between its neighbours at tᵢ,   a spike of size s has   dᵢ = s,   dᵢ₋₁, dᵢ₊₁ ≈ −s/2
+//! dᵢ = yᵢ − y between its neighbours at tᵢ,   a spike of size s has   dᵢ = s,   dᵢ₋₁, dᵢ₊₁ ≈ −s/2,   s = ½ (dᵢ − dᵢ₋₁ − dᵢ₊₁)
 //! ```
 //!
 //! A corner has a large dᵢ alone. No noise of one size reaches so far, and noise that is fitted with spikes in it is their
 //! mean: it shows neither in the misfit nor in the intervals.
 
-/// How many standard deviations of d a spike is: white noise reaches so far once in 10⁹ values.
-const CLEARLY: f64 = 6.0;
+/// How many standard deviations of s a spike is: with a corner below it, noise does not reach so far.
+const CLEARLY: f64 = 8.0;
+/// The standard deviation of s over that of d, √(9/4 : 3/2).
+const OF_SIZE: f64 = 1.2247;
 
-/// The share of dᵢ that its neighbours have at least, with the other sign.
-const BESIDE: f64 = 0.25;
+/// The share of dᵢ that its neighbours have, with the other sign; alternating noise has more, a corner less.
+const BESIDE: [f64; 2] = [0.25, 0.75];
 
 /// This share of d is free of spikes, and the standard deviation of the smallest such share of normal values over that of all of them.
 const SOUND: f64 = 0.9;
@@ -38,14 +40,14 @@ pub fn spikes(times: &[f64], values: &[f64]) -> Vec<usize> {
     let step = steps
         .filter(|step| *step > 0.0)
         .fold(f64::INFINITY, f64::min);
-    let least = (CLEARLY * noise).max(STEPS * step);
+    let least = (CLEARLY * OF_SIZE * noise).max(STEPS * step);
     let is_spike = |three: &[f64]| {
-        let size = three[1].abs();
-        let opposite = |beside: f64| {
-            let share = -beside * three[1].signum() / size;
-            share > BESIDE && share < 1.0
+        let size = 0.5 * (three[1] - three[0] - three[2]).abs();
+        let is_opposite = |beside: f64| {
+            let share = -beside / three[1];
+            share > BESIDE[0] && share < BESIDE[1]
         };
-        noise > 0.0 && size > least && opposite(three[0]) && opposite(three[2])
+        noise > 0.0 && size > least && is_opposite(three[0]) && is_opposite(three[2])
     };
     let triples = off.windows(3).enumerate();
     let found = triples.filter(|(_, three)| is_spike(three));
