@@ -377,13 +377,7 @@ fn data(file: &str, folder: Option<&Path>, record: &FitRecord) -> Result<TestDat
 /// Writes test data in other measures and units.
 pub fn convert(arguments: ConvertArguments) -> Outcome {
     let data = TestData::read(&arguments.data, &arguments.reading.reading())?;
-    warn(&data.warnings);
-    let remarks = data.remarks.iter();
-    warn(
-        &remarks
-            .map(|remark| Diagnostic::warning("", remark))
-            .collect::<Vec<_>>(),
-    );
+    warn(&data.told());
     let text = Conversion {
         stress: arguments.to_stress.unwrap_or(data.stress_measure),
         strain: arguments.to_strain,

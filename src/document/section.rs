@@ -12,6 +12,7 @@ use super::{Faults, Key, Presence, Takes};
 use crate::budget::{Budget, Excess, Need};
 use crate::error::{Diagnostic, Source, suggestion};
 
+mod choices;
 mod plain;
 mod values;
 

@@ -152,3 +152,23 @@ fn a_report_says_the_material_and_the_plane_state_of_its_study() {
     }
     assert!(!report.contains("incompressible"), "{report}");
 }
+
+/// A hole that is turned between clamped sides has a moment and no force.
+#[test]
+fn a_moment_that_no_requirement_judges_is_told() {
+    let sides = ["left", "right", "bottom", "top"];
+    let clamps = sides.map(|side| format!("[[support]]\ngroup = \"{side}\"\nkind = \"clamp\"\n"));
+    let rest = format!(
+        "[path]\nfactors = [1.0]\nmeasured_group = \"hole\"\n{}\
+         [[support]]\ngroup = \"hole\"\nkind = \"rotation\"\ncentre = [\"20 mm\", \"0 mm\"]\nangle = \"10 deg\"\n",
+        clamps.concat()
+    );
+    let shape = "shape = \"strip-with-hole\"\nlength = \"40 mm\"\nwidth = \"20 mm\"\nhole_diameter = \"8 mm\"\ncells = 8";
+    let folder = folder_with(&specimen(shape, &rest));
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
+    let told = words(&done.get_output().stderr);
+    assert!(
+        told.contains("but their moment at the load factor 1"),
+        "{told}"
+    );
+}

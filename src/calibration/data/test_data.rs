@@ -184,6 +184,13 @@ pub struct TestData {
 }
 
 impl TestData {
+    /// The warnings about the data, and what was taken of a record as warnings.
+    pub fn told(&self) -> Vec<Diagnostic> {
+        let remarks = self.remarks.iter();
+        let remarks = remarks.map(|remark| Diagnostic::warning("", remark));
+        self.warnings.iter().cloned().chain(remarks).collect()
+    }
+
     /// The stress of a law at an observation, in the measure of the data, in MPa.
     pub fn stress_of(&self, law: &dyn HyperelasticLaw, observation: &Observation) -> f64 {
         let axis = observation.axis;

@@ -35,6 +35,7 @@ fn windows(steps: usize) -> WindowSettings {
         steps,
         tolerance: 1e-12,
         max_iterations: 20,
+        size: 1.0,
     }
 }
 

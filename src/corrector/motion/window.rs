@@ -16,6 +16,8 @@ pub struct WindowSettings {
     pub tolerance: f64,
     /// Newton steps allowed for a window.
     pub max_iterations: usize,
+    /// The size of the body in mm: forces of tiny strains are rounding of its stiffness times this size.
+    pub size: f64,
 }
 
 /// A corrected motion.
@@ -77,8 +79,9 @@ const SLOW: f64 = 0.2;
 /// A residual that stagnates below this share of the forces is rounding.
 const ROUNDING_FLOOR: f64 = 1e-8;
 
-/// Forces below this share of the largest of ū count as so large: of a motion that has hardly begun they are rounding.
-const LEAST_FORCE: f64 = 1e-3;
+/// Forces below this share of the body's stiffness times its size count as so large: next to those of a motion that has hardly begun,
+/// rounding of the strains is large.
+const LEAST_FORCE: f64 = 2e-6;
 
 /// When a window is solved.
 #[derive(Clone, Copy)]
@@ -134,7 +137,7 @@ impl EquationOfMotion<'_> {
         let velocity = self.free(&start.velocity);
         let accuracy = Accuracy {
             settings,
-            least_force: LEAST_FORCE * self.largest_force(data, settings.steps),
+            least_force: LEAST_FORCE * settings.size * self.largest_stiffness(&start.displacement),
         };
         let mut steps = settings.steps.max(1);
         while corrected.displacement.len() < data.len() {
@@ -240,11 +243,13 @@ impl EquationOfMotion<'_> {
         values
     }
 
-    /// The largest elastic force of some fields in N, including reactions, by one of so many.
-    fn largest_force(&self, fields: &[Vec<f64>], stride: usize) -> f64 {
-        let some = fields.iter().enumerate().step_by(stride.max(1));
-        let forces = some.filter_map(|(instant, field)| self.frame(instant, field).ok());
-        forces.fold(0.0, |most: f64, frame| most.max(frame.size))
+    /// The largest stiffness of a free unknown at the first instant in N/mm.
+    fn largest_stiffness(&self, first: &[f64]) -> f64 {
+        let Ok(frame) = self.frame(0, first) else {
+            return 0.0;
+        };
+        let diagonal = self.assembly.pattern().diagonal().iter();
+        diagonal.fold(0.0, |most: f64, place| most.max(frame.stiffness[*place]))
     }
 
     /// The largest force in N: elastic, including reactions, or inertial.

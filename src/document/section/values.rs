@@ -7,8 +7,7 @@ use super::plain::{
     bare, count_pair, plain_number, quantity, rounded, text, unquoted, whole_number,
 };
 use super::{Section, Value};
-use crate::document::{Bound, Takes, quoted};
-use crate::error::nearest;
+use crate::document::{Bound, Takes};
 use crate::units::{self, Dimension, Linear};
 
 /// Bare ratios up to here are what they say; a larger one may have been meant in percent.
@@ -35,7 +34,7 @@ impl<'a> Section<'a> {
         self.texts_like(key)
     }
 
-    fn texts_like(&self, key: &'static str) -> Vec<String> {
+    pub(super) fn texts_like(&self, key: &'static str) -> Vec<String> {
         self.read(key, "a list of texts in quotes", |value| match value {
             DeValue::Array(items) => items.iter().map(|item| text(item.get_ref())).collect(),
             _ => None,
@@ -51,49 +50,6 @@ impl<'a> Section<'a> {
             _ => None,
         })
         .unwrap_or_default()
-    }
-
-    /// One of several names; `None` when it is missing or unknown, which is recorded as a fault.
-    pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
-        let names = choices.iter().map(|(known, _)| (*known).to_owned());
-        self.asks(key, Some(Takes::Choice(names.collect())));
-        let names: Vec<String> = choices.iter().map(|(known, _)| quoted(known)).collect();
-        let value = self.value_like(key, &names.join(" | "))?;
-        let name = self.converted(key, value, "text in quotes", text)?;
-        let named = self.named(key, &name, choices);
-        self.undecided.set(self.undecided.get() || named.is_none());
-        named
-    }
-
-    /// Some of several names, each once; `None` when one is unknown, which is recorded as a fault.
-    pub fn choices<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<Vec<T>> {
-        let names = choices.iter().map(|(known, _)| (*known).to_owned());
-        self.asks(key, Some(Takes::Choices(names.collect())));
-        let mut names = self.texts_like(key);
-        let mut seen = Vec::new();
-        names.retain(|name| {
-            let is_new = !seen.contains(name);
-            seen.push(name.clone());
-            is_new
-        });
-        let found = names.iter().map(|name| self.named(key, name, choices));
-        // All of them are looked at, for every fault is told.
-        let found: Vec<Option<T>> = found.collect();
-        found.into_iter().collect()
-    }
-
-    /// What a name stands for; `None` where it is unknown, which is recorded as a fault.
-    fn named<T: Copy>(&self, key: &'static str, name: &str, choices: &[(&str, T)]) -> Option<T> {
-        if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
-            return Some(*choice);
-        }
-        let names: Vec<String> = choices.iter().map(|(known, _)| quoted(known)).collect();
-        let mut hint = format!("one of {}", names.join(", "));
-        if let Some(near) = nearest(name, choices.iter().map(|(known, _)| *known)) {
-            hint = format!("did you mean \"{near}\"? It must be {hint}");
-        }
-        self.fault(key, &format!("\"{name}\" is not known here"), &hint);
-        None
     }
 
     /// A whole number from `low` to `high`.
@@ -385,7 +341,8 @@ impl<'a> Section<'a> {
         self.converted(key, value, wanted, convert)
     }
 
-    fn converted<T>(
+    /// A value as what it should be, a fault where it is not.
+    pub(super) fn converted<T>(
         &self,
         key: &'static str,
         value: Value<'a>,

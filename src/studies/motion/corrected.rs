@@ -70,11 +70,6 @@ impl CorrectedInstants {
 const STEPS: f64 = 200.0;
 /// β of Newmark's average acceleration.
 const AVERAGE_ACCELERATION: f64 = 0.25;
-const WINDOWS: WindowSettings = WindowSettings {
-    steps: 20,
-    tolerance: 1e-9,
-    max_iterations: 20,
-};
 
 impl MovingPlate {
     /// Corrects the motion of the springs; nothing but a note where three consecutive instants do not hold the equation
@@ -110,7 +105,7 @@ impl MovingPlate {
         };
         let data = between(&springs.history.instants, within);
         let told = |count: usize| progress.tell(&self.at("corrector", step * (count - 1) as f64));
-        let (found, fault) = match equation.correct(&data, &motion.start, WINDOWS, &told) {
+        let (found, fault) = match equation.correct(&data, &motion.start, self.windows(), &told) {
             Ok(found) => (found, None),
             Err(end) => (*end.corrected, Some(end.fault)),
         };
@@ -133,6 +128,16 @@ impl MovingPlate {
             end: fault.map(|fault| error(format!("time {} s", number(reached)), fault)),
             ..at_instants
         })
+    }
+
+    /// How the motion is corrected.
+    fn windows(&self) -> WindowSettings {
+        WindowSettings {
+            steps: 20,
+            tolerance: 1e-9,
+            max_iterations: 20,
+            size: self.problem.size[0].max(self.problem.size[1]),
+        }
     }
 
     /// Differences of second order where the numbers of cells allow them.

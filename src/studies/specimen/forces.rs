@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::problem::Specimen;
 use super::results::models::Models;
+use crate::compare::judgement::percent;
 use crate::document::write_records;
 use crate::problem::{GroupState, Solution};
 use crate::results::Block;
@@ -116,6 +117,33 @@ pub fn unbalanced(models: &Models) -> Option<String> {
         "forces or moments do not balance. {}",
         balance(models)
     ))
+}
+
+/// The warning about moments that nothing compares: where the measured force is none, as of a ring that is turned, the requirement of the
+/// force is met by any field.
+pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
+    /// A smaller share of the forces on nodes times the specimen's larger side is what meshes leave.
+    const LEAST: f64 = 1e-2;
+    let (measured, finest) = (&models.reference.measured, &models.reference.finest);
+    let corrected = &models.on_lattice.corrected;
+    let step = corrected.reached().min(finest.reached()).checked_sub(1)?;
+    measured.none_of(finest, step)?;
+    let of = |solution: &Solution| Some(solution.groups(step)?[measured.index].clone());
+    let (expected, found) = (of(finest)?, of(corrected)?);
+    let [.., side] = scales(specimen, models);
+    let is_moment = expected.moment.abs() > LEAST * expected.size.max(expected.rounding) * side;
+    is_moment.then(|| {
+        format!(
+            "the force of the supports on `{}` is none, so that the requirement of the force compares nothing, but their moment at the load factor {} \
+             is {} N·mm in the corrected field, {} % from the {} N·mm of the finite elements: no requirement judges it, and the finite elements' own \
+             error of it is not known",
+            measured.group,
+            specimen.factors[step],
+            number(found.moment),
+            percent(100.0 * (found.moment / expected.moment - 1.0).abs()),
+            number(expected.moment)
+        )
+    })
 }
 
 /// The largest force at any group, its moment over the specimen's larger side, and that side.

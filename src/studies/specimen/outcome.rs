@@ -24,6 +24,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let table = Block::Table(head(models), rows.collect());
     let mut warnings = warnings(specimen, models);
     warnings.extend(forces::unbalanced(models));
+    warnings.extend(forces::unjudged_moment(specimen, models));
     let mut blocks = vec![Block::Paragraph(introduction(models)), table];
     blocks.extend(starts(specimen, models).map(Block::Paragraph));
     blocks.extend(models.reference.history());

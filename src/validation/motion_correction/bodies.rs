@@ -122,7 +122,7 @@ impl<'a> Models<'a> {
 
 /// A body made of one of the models, held at the stretch until it is let go.
 pub struct Body<'a> {
-    mesh: &'a Mesh,
+    pub mesh: &'a Mesh,
     pub motion: Motion<'a>,
 }
 

@@ -82,10 +82,12 @@ impl Release {
         progress.tell("springs");
         let springs = bodies.springs.integrate(every_step)?;
         progress.tell("corrector");
+        let [length, width] = bodies.scheme.mesh.grid().size;
         let windows = WindowSettings {
             steps: self.window,
             tolerance: 1e-9,
             max_iterations: 20,
+            size: length.max(width),
         };
         let found = bodies.equation(step)?;
         let found = found.correct(&springs, &bodies.scheme.motion.start, windows, &|_| ());
