@@ -128,7 +128,7 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     let corrected = &models.on_lattice.corrected;
     let step = corrected.reached().min(finest.reached()).checked_sub(1)?;
     measured.none_of(finest, step)?;
-    let of = |solution: &Solution| Some(solution.groups(step)?[measured.index].clone());
+    let of = |solution: &Solution| Some(solution.groups(step)?[measured.index]);
     let (expected, found) = (of(finest)?, of(corrected)?);
     let [.., side] = scales(specimen, models);
     let is_moment = expected.moment.abs() > LEAST * expected.size.max(expected.rounding) * side;
