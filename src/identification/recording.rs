@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::document::{Faulty, Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
+use crate::statistics::median;
 use crate::units::{self, Dimension, QuantityFault};
 
 /// Force and motion at increasing instants.
@@ -45,6 +46,11 @@ const MOTIONS: [(&str, Motion, Dimension); 3] = [
 const KEYS: [&str; 3] = ["mass", "length", "area"];
 
 impl Recording {
+    /// The usual time between two instants in s: the median.
+    pub fn interval(&self) -> f64 {
+        median(self.times.windows(2).map(|pair| pair[1] - pair[0]))
+    }
+
     /// Reads a table with the columns `time`, `extension` or `length` or `stretch`, and `force`; `given` supplements
     /// the head: `mass`, `length`, `area`.
     ///

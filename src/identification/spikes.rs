@@ -4,8 +4,8 @@
 //! dᵢ = yᵢ − y between its neighbours at tᵢ,   a spike of size s has   dᵢ = s,   dᵢ₋₁, dᵢ₊₁ ≈ −s/2,   s = ½ (dᵢ − dᵢ₋₁ − dᵢ₊₁)
 //! ```
 //!
-//! A corner has a large dᵢ alone. No noise of one size reaches so far, and noise that is fitted with spikes in it is their
-//! mean: it shows neither in the misfit nor in the intervals.
+//! A corner has a large dᵢ alone. Spikes enter the noise that is estimated of a signal, so that neither the misfit nor the intervals show
+//! them.
 
 /// How many standard deviations of s a spike is: with a corner below it, noise does not reach so far.
 const CLEARLY: f64 = 8.0;

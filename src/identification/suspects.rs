@@ -14,7 +14,6 @@ use super::basis::{Basis, Form};
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
 use super::types::{FittedMotion, HiddenLag, Identification};
-use crate::statistics::median;
 
 /// t above which a suspect is reported: by chance in less than one recording of a thousand, with seven tried.
 const LIMIT: f64 = 4.0;
@@ -231,9 +230,7 @@ pub fn examine(
 
 /// The largest lag up to a sampling interval that would not be detected, where it changes D(·) by more than its interval.
 fn hidden_lag(joint: &Joint, fit: &Identification, trial: &Trial) -> Option<HiddenLag> {
-    let times = &joint.recording.times;
-    let interval = median(times.windows(2).map(|pair| pair[1] - pair[0]));
-    let lag = interval.min(LIMIT * trial.error);
+    let lag = joint.recording.interval().min(LIMIT * trial.error);
     let [first, count] = [0, 1].map(|index| joint.functions[index].count());
     let change = trial.follow.rows(first, count) * lag;
     let damping = &fit.damping;

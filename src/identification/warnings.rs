@@ -6,7 +6,7 @@ use super::recording::Recording;
 use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
 use super::spikes::{bridged, spikes};
 use super::types::{FittedMotion, Identification};
-use crate::statistics::{Estimate, median};
+use crate::statistics::Estimate;
 use crate::units::number;
 
 /// A longest interval is a gap if it leaves the motion less than this share of the parts that both signals ask for, ...
@@ -17,9 +17,9 @@ const INTERVALS: f64 = 20.0;
 const PART: f64 = 0.05;
 
 /// The warning about a gap in the rows: a spline has only as many parts as the gap allows, and features that these miss are taken for noise.
-fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
+fn gap(recording: &Recording, [wanted, bridged]: [usize; 2]) -> Option<String> {
+    let (times, usual) = (&recording.times, recording.interval());
     let length = |pair: &[f64]| pair[1] - pair[0];
-    let usual = median(times.windows(2).map(length));
     let longest = times
         .windows(2)
         .max_by(|a, b| length(a).total_cmp(&length(b)))?;
@@ -170,7 +170,7 @@ pub fn warnings(
         wanted_parts(&signals.0, &signals.1),
         bridged_parts(&recording.times),
     ];
-    warnings.extend(gap(&recording.times, parts));
+    warnings.extend(gap(recording, parts));
     warnings.extend(signs(found));
     if recording.mass == 0.0 {
         warnings.push("no mass is stated: inertia is left out".to_owned());

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::cycles::PRECONDITIONED;
-use super::test_data::{StrainColumn, Test, TestData, Times};
+use super::test_data::{StrainColumn, Test, TestData};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::units::{self, Dimension};
@@ -34,11 +34,7 @@ impl Conversion {
             let hint = format!("known units: {}", known.join(", "));
             Error::input(format!("the unit to write {fault}"), hint)
         })?;
-        let times = match &data.times {
-            Times::None => None,
-            Times::Known(times) => Some(times),
-            Times::Unknown(fault) => return Err(Error::Input(vec![(**fault).clone()])),
-        };
+        let times = data.known_times()?;
         let mut text = String::new();
         for (key, value) in &data.head {
             if KEPT.contains(&&**key) {
@@ -58,7 +54,7 @@ impl Conversion {
             ""
         };
         let _ = writeln!(text, "# test: {}{direction}", data.test.name());
-        let _ = writeln!(text, "{}", self.names(data).join(","));
+        let _ = writeln!(text, "{}", self.names(data, times.is_some()).join(","));
         for (index, row) in data.observations.chunks(axes.len()).enumerate() {
             let along = match data.test {
                 Test::Uniaxial => vec![row[0].strains[row[0].axis]],
@@ -79,7 +75,7 @@ impl Conversion {
         Ok(text)
     }
 
-    fn names(&self, data: &TestData) -> Vec<String> {
+    fn names(&self, data: &TestData, has_times: bool) -> Vec<String> {
         let strain = match self.strain {
             StrainColumn::Stretch => "stretch".to_owned(),
             StrainColumn::Strain(measure) => format!("{}_strain", measure.name()),
@@ -98,10 +94,8 @@ impl Conversion {
         } else {
             &[0]
         };
-        let mut names = match data.times {
-            Times::Known(_) => vec!["time [s]".to_owned()],
-            _ => Vec::new(),
-        };
+        let mut names = Vec::new();
+        names.extend(has_times.then(|| "time [s]".to_owned()));
         names.extend(numbered(&strain, "-", along));
         let stress = format!("{}_stress", self.stress.name());
         names.extend(numbered(&stress, &self.unit, &data.axes));
@@ -149,11 +143,9 @@ mod tests {
                 unit: "MPa".into(),
             };
             let again = read(&back.table(&there).unwrap());
-            let times = |data: &TestData| match &data.times {
-                Times::Known(times) => (data.rise, times.clone()),
-                _ => (data.rise, Vec::new()),
-            };
+            let times = |data: &TestData| data.known_times().unwrap().map(<[f64]>::to_vec);
             assert_eq!(times(&again), times(&data), "{text}");
+            assert_eq!(again.rise, data.rise, "{text}");
             for (one, other) in data.observations.iter().zip(&again.observations) {
                 assert!((one.stress - other.stress).abs() < 1e-15);
             }

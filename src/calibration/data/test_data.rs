@@ -1,7 +1,7 @@
 //! Test data: the strains of a specimen, and the stresses that were measured.
 
 use crate::document::{Statements, name_of};
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::sheet::{Kinematics, PlaneTensor};
@@ -189,6 +189,18 @@ impl TestData {
         let remarks = self.remarks.iter();
         let remarks = remarks.map(|remark| Diagnostic::warning("", remark));
         self.warnings.iter().cloned().chain(remarks).collect()
+    }
+
+    /// The times of the observations in s, if the file has any.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where they cannot be read.
+    pub fn known_times(&self) -> Result<Option<&[f64]>, Error> {
+        match &self.times {
+            Times::None => Ok(None),
+            Times::Known(times) => Ok(Some(times)),
+            Times::Unknown(fault) => Err(Error::Input(vec![Diagnostic::clone(fault)])),
+        }
     }
 
     /// The stress of a law at an observation, in the measure of the data, in MPa.

@@ -170,10 +170,13 @@ mod tests {
             let nominal = 0.06 * (l - l.powi(-2)) + stress + 4e-4 * z;
             format!("{},{nominal}\n", l + strain)
         });
-        let rows: String = rows.collect();
+        told_of_rows(Law::named("neo-hooke").unwrap(), rows.collect())
+    }
+
+    /// The warnings of a fit to a table of stretches and stresses.
+    fn told_of_rows(law: &'static Law, rows: String) -> String {
         let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
         let data = TestData::parse("a.csv", &text, &Statements::new()).unwrap();
-        let law = Law::named("neo-hooke").unwrap();
         let fit = fit(law, &[data], &FitSettings::default()).unwrap();
         fit.quality.warnings.join("; ")
     }
@@ -214,11 +217,7 @@ mod tests {
             let nominal = stress(strain) + 5e-3 * stress(0.4) * z;
             format!("{},{nominal}\n", 1.0 + side * strain)
         });
-        let rows: String = rows.collect();
-        let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-        let data = TestData::parse("a.csv", &text, &Statements::new()).unwrap();
-        let fit = fit(law, &[data], &FitSettings::default()).unwrap();
-        fit.quality.warnings.join("; ")
+        told_of_rows(law, rows.collect())
     }
 
     /// A slack of three rows: too short to be seen as a bend, and taken up by parameters.

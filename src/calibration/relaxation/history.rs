@@ -8,8 +8,8 @@
 //! each part S∞ changes evenly, where the recursion of [`ViscousMaterial::recursions`] is exact: it is the one by which
 //! motions are computed. Edges that are free stay free: where the law has no stress, nothing relaxes.
 
-use crate::calibration::data::{Observation, TestData, Times};
-use crate::error::{Diagnostic, Error};
+use crate::calibration::data::{Observation, TestData};
+use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::material::viscosity::ViscousMaterial;
 use crate::statistics::extremes;
@@ -166,16 +166,11 @@ impl History {
 
 /// The times of a test.
 fn times(data: &TestData) -> Result<&[f64], Error> {
-    match &data.times {
-        Times::Known(times) => Ok(times),
-        Times::Unknown(fault) => Err(Error::Input(vec![Diagnostic::clone(fault)])),
-        Times::None => {
-            let message = format!("{}: there is no column of times", data.name);
-            let hint =
-                "relaxation is fitted to what was measured over time: name a column `time [s]`";
-            Err(Error::input(message, hint))
-        }
-    }
+    data.known_times()?.ok_or_else(|| {
+        let message = format!("{}: there is no column of times", data.name);
+        let hint = "relaxation is fitted to what was measured over time: name a column `time [s]`";
+        Error::input(message, hint)
+    })
 }
 
 /// Goes on to an observation in steps that are fine enough; a sudden one is a single step.

@@ -10,8 +10,7 @@ impl Section<'_> {
     pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
         self.asks(key, Some(Takes::Choice(names.collect())));
-        let names: Vec<String> = choices.iter().map(|(known, _)| quoted(known)).collect();
-        let value = self.value_like(key, &names.join(" | "))?;
+        let value = self.value_like(key, &joined(choices, " | "))?;
         let name = self.converted(key, value, "text in quotes", text)?;
         let named = self.named(key, &name, choices);
         self.undecided.set(self.undecided.get() || named.is_none());
@@ -40,12 +39,17 @@ impl Section<'_> {
         if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
             return Some(*choice);
         }
-        let names: Vec<String> = choices.iter().map(|(known, _)| quoted(known)).collect();
-        let mut hint = format!("one of {}", names.join(", "));
+        let mut hint = format!("one of {}", joined(choices, ", "));
         if let Some(near) = nearest(name, choices.iter().map(|(known, _)| *known)) {
             hint = format!("did you mean \"{near}\"? It must be {hint}");
         }
         self.fault(key, &format!("\"{name}\" is not known here"), &hint);
         None
     }
+}
+
+/// All names in quotes.
+fn joined<T>(choices: &[(&str, T)], by: &str) -> String {
+    let names = choices.iter().map(|(known, _)| quoted(known));
+    names.collect::<Vec<_>>().join(by)
 }

@@ -210,14 +210,13 @@ impl Followed<'_> {
 
     /// The places on the smooth curve through all points, from the first one on; `None` where they lie on none.
     fn through(&self, spacing: f64) -> Option<Vec<[f64; 2]>> {
-        let own = self.at.iter().zip(self.line).map(|(at, point)| {
+        let off = self.at.iter().zip(self.line).map(|(at, point)| {
             let place = self.place(*at);
-            [0, 1].map(|axis| point[axis] - place[axis])
+            let is_near = length(place, *point) <= ON_CURVE * spacing;
+            is_near.then(|| [0, 1].map(|axis| point[axis] - place[axis]))
         });
-        let off: Vec<[f64; 2]> = own.collect();
-        if off.iter().any(|[x, y]| x.hypot(*y) > ON_CURVE * spacing) {
-            return None;
-        }
+        // The first point that is off ends it: most lines are steps of grids.
+        let off: Vec<[f64; 2]> = off.collect::<Option<_>>()?;
         let count = self.line.len();
         let edges = if self.is_closed { count } else { count - 1 };
         let along = (0..edges).flat_map(|i| {

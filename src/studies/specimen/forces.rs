@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::problem::Specimen;
+use super::results::measured::Quantity;
 use super::results::models::Models;
 use crate::compare::judgement::percent;
 use crate::document::write_records;
@@ -127,6 +128,9 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     let (measured, finest) = (&models.reference.measured, &models.reference.finest);
     let corrected = &models.on_lattice.corrected;
     let step = corrected.reached().min(finest.reached()).checked_sub(1)?;
+    if measured.quantity != Quantity::Force {
+        return None;
+    }
     measured.none_of(finest, step)?;
     let of = |solution: &Solution| Some(solution.groups(step)?[measured.index]);
     let (expected, found) = (of(finest)?, of(corrected)?);

@@ -1,0 +1,238 @@
+//! Recordings that bend the functions, or say little of them: what is told of each.
+
+use super::*;
+
+/// Zeros, a drift, a lag and a wrong mass that the misfit hardly shows are named first, with their size.
+#[test]
+fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
+    type Change<'a> = &'a dyn Fn(&mut Recording);
+    let sound = Sample::default().recording();
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+    let (force, extension) = (largest(&sound.force), largest(&sound.extension));
+    let interval = 1e3 * (sound.times[1] - sound.times[0]);
+    let count = sound.times.len() as f64;
+    let cases: [(&str, f64, Change); 5] = [
+        ("a zero error of the force of ", 0.05 * force, &|own| {
+            own.force.iter_mut().for_each(|f| *f += 0.05 * force);
+        }),
+        (
+            "a zero error of the extension of ",
+            0.05 * extension,
+            &|own| {
+                own.extension
+                    .iter_mut()
+                    .for_each(|x| *x += 0.05 * extension);
+            },
+        ),
+        ("a force that drifts by ", 0.1 * force, &|own| {
+            let rows = own.force.iter_mut().enumerate();
+            rows.for_each(|(i, f)| *f += 0.1 * force * i as f64 / count);
+        }),
+        ("a force that is recorded ", interval, &|own| {
+            own.force.rotate_right(1);
+            own.force[0] = own.force[1];
+        }),
+        (
+            "a mass that is smaller by ",
+            0.1 / 1.1 * 1.1e6 * sound.mass,
+            &|own| own.mass *= 1.1,
+        ),
+    ];
+    for (words, size, change) in cases {
+        let mut recording = sound.clone();
+        change(&mut recording);
+        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let told = asked_for(&found).unwrap_or_default();
+        // Zeros of force and extension are much the same: that of the other may be named first.
+        let own = told
+            .split(", or alternatively ")
+            .find_map(|one| one.strip_prefix(words));
+        let own = own.unwrap_or_else(|| panic!("{words}: {told}"));
+        let numbers: Vec<f64> = own
+            .split([' ', '±'])
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        let [amount, error] = numbers[..] else {
+            panic!("{own}");
+        };
+        assert!(
+            (amount - size).abs() < 5.0 * error,
+            "{words}: {amount} ± {error}, {size}"
+        );
+        assert!(
+            error < 0.3 * size.abs(),
+            "{words}: {amount} ± {error}, {size}"
+        );
+    }
+}
+
+/// A machine that swings about rest at two frequencies, with noise of a fiftieth of both signals.
+fn swinging(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Recording {
+    swinging_by([6.0, 4.0], stiffness, damping)
+}
+
+/// The same with two amplitudes in mm.
+fn swinging_by(
+    [first, second]: [f64; 2],
+    stiffness: impl Fn(f64) -> f64,
+    damping: impl Fn(f64) -> f64,
+) -> Recording {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut noise = |size: f64| -> f64 {
+        let draw: f64 = StandardNormal.sample(&mut random);
+        0.02 * size * draw
+    };
+    let mut recording = Recording::default();
+    for i in 0..1200 {
+        let t = 0.005 * f64::from(i);
+        let (slow, fast) = (2.0 * t, 5.1 * t);
+        let x = first * slow.sin() + second * fast.sin();
+        let v = 2.0 * first * slow.cos() + 5.1 * second * fast.cos();
+        recording.times.push(t);
+        recording.extension.push(x + noise(first));
+        let force = stiffness(x) * x + damping(v) * v;
+        recording.force.push(force + noise(1.5));
+    }
+    recording
+}
+
+/// A step at rest and dry friction, which smooth functions go past.
+#[test]
+fn what_smooth_functions_go_past_is_named() {
+    type Law<'a> = &'a dyn Fn(f64) -> f64;
+    let (constant_k, constant_d): (Law, Law) = (&|_| 0.2, &|_| 0.004);
+    let cases: [(&str, Law, Law); 2] = [
+        (
+            "a step of K(·) at rest by ",
+            &|x| if x < 0.0 { 0.15 } else { 0.3 },
+            constant_d,
+        ),
+        ("a dry friction of ", constant_k, &|v: f64| {
+            0.004 + 0.1 / v.abs().max(1e-9)
+        }),
+    ];
+    for (words, stiffness, damping) in cases {
+        let recording = swinging(stiffness, damping);
+        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let told = asked_for(&found).unwrap_or_default();
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let sound = swinging(constant_k, constant_d);
+    let found = identify(&sound, IdentificationSettings::default(), &|_| ()).unwrap();
+    assert_eq!(asked_for(&found), None);
+}
+
+/// A force that is a third of an interval late shifts D(·) by τ K, and in slow motion nothing tells: the lag that could hide is stated, with
+/// what it does. In quick motion it is detected, or what could hide is small.
+#[test]
+fn a_lag_that_slow_motion_hides_is_stated_with_its_effect() {
+    let late = |lag: f64, quicker: f64| {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut noise = |size: f64| -> f64 {
+            let draw: f64 = StandardNormal.sample(&mut random);
+            0.02 * size * draw
+        };
+        let mass = 2e-4;
+        let state = |t: f64| {
+            [(6.0, 4.4), (4.0, 8.2), (3.0, 13.2)].map(|(a, w): (f64, f64)| {
+                let w = quicker * w;
+                [
+                    a * (w * t).sin(),
+                    a * w * (w * t).cos(),
+                    -a * w * w * (w * t).sin(),
+                ]
+            })
+        };
+        let sum = |t: f64, order: usize| state(t).iter().map(|own| own[order]).sum::<f64>();
+        let force = |t: f64| mass * sum(t, 2) + 0.004 * sum(t, 1) + 0.2 * sum(t, 0);
+        let times: Vec<f64> = (0..1200).map(|i| f64::from(i) / 300.0).collect();
+        Recording {
+            extension: times.iter().map(|t| sum(*t, 0) + noise(6.0)).collect(),
+            force: times.iter().map(|t| force(t - lag) + noise(1.5)).collect(),
+            times,
+            mass,
+            ..Recording::default()
+        }
+    };
+    for lag in [0.0, 1.1e-3] {
+        let found = identify(&late(lag, 1.0), IdentificationSettings::default(), &|_| ()).unwrap();
+        let hidden = found.hidden_lag.unwrap();
+        assert!(hidden.lag > lag && hidden.lag < 3.4e-3, "{hidden:?}");
+        // τ d(K x)/dx
+        let expected = 0.2 * hidden.lag;
+        assert!((hidden.damping / expected - 1.0).abs() < 0.3, "{hidden:?}");
+        let off = (found.damping.at(0.0).value - 0.004).abs();
+        assert!(off < hidden.damping, "{off} {hidden:?}");
+    }
+    let quick = identify(&late(0.0, 4.0), IdentificationSettings::default(), &|_| ()).unwrap();
+    assert!(
+        quick
+            .hidden_lag
+            .is_none_or(|hidden| hidden.half_widths < 4.0)
+    );
+    let quick = identify(
+        &late(1.1e-3, 4.0),
+        IdentificationSettings::default(),
+        &|_| (),
+    )
+    .unwrap();
+    assert!(asked_for(&quick).is_some_and(|told| told.contains("recorded 1.")));
+}
+
+#[test]
+fn spikes_of_force_and_extension_are_told() {
+    let spiked = |signal: fn(&mut Recording) -> &mut Vec<f64>, by: f64| {
+        let mut recording = swinging(|_| 0.2, |_| 0.004);
+        let values = signal(&mut recording);
+        (0..24).for_each(|i| values[20 + 49 * i] += by);
+        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        found.warnings.join("; ")
+    };
+    let force = spiked(|own| &mut own.force, 0.6);
+    assert!(
+        force.contains("the force has 24 spikes, the first at 0.10000 s"),
+        "{force}"
+    );
+    let extension = spiked(|own| &mut own.extension, 3.0);
+    assert!(
+        extension.contains("the extension has 24 spikes"),
+        "{extension}"
+    );
+    assert!(!extension.contains("corners"), "{extension}");
+}
+
+/// What a recording asks for by the warnings.
+fn asked_for(found: &Identification) -> Option<String> {
+    let told = found.warnings.iter();
+    let told = told.filter_map(|warning| warning.strip_prefix("the recording indicates "));
+    told.map(|told| told.split(':').next().unwrap_or_default().to_owned())
+        .next()
+}
+
+/// Nothing is asked for by sound recordings, nor where the forms are wrong.
+#[test]
+fn sound_recordings_are_suspected_of_nothing() {
+    for seed in 1..6 {
+        let sample = Sample {
+            seed,
+            ..Sample::default()
+        };
+        for forms in [[Form::SPLINE; 2], [Form::Constant; 2]] {
+            let found = identify(&sample.recording(), settings(forms), &|_| ()).unwrap();
+            assert_eq!(asked_for(&found), None, "{seed} {forms:?}");
+        }
+    }
+}
+
+/// Bands of steady vibrations are too narrow where there is much noise.
+#[test]
+fn a_steady_vibration_is_told() {
+    let told = |amplitudes: [f64; 2]| {
+        let recording = swinging_by(amplitudes, |x| 0.2 + 0.01 * x, |_| 0.04);
+        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let mut warnings = found.warnings.iter();
+        warnings.any(|warning| warning.contains("steady vibration"))
+    };
+    assert!(told([6.0, 0.0]));
+    assert!(!told([6.0, 4.0]));
+}
