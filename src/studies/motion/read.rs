@@ -51,6 +51,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let (start, grip) = read_stretches(root, material.card.as_ref());
     let gravity = read_gravity(&root.section("gravity"));
     let forces = tables(root, "force", |one| read_force(one, &problem));
+    warn_of_rest(root, start, grip.as_ref(), gravity, &forces);
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(grip.as_ref());
@@ -189,6 +190,23 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     }
     section.unknown_keys();
     (start, grip)
+}
+
+/// Warns of a plate that rests between its grips.
+fn warn_of_rest(
+    root: &Section,
+    start: f64,
+    grip: Option<&GripMotion>,
+    gravity: [f64; 2],
+    forces: &[PointForce],
+) {
+    let rests = |grip: &GripMotion| reached_stretches(&grip.stretch) == [0.0; 2];
+    let is_loaded = gravity != [0.0; 2] || forces.iter().any(|own| own.force != [0.0; 2]);
+    if start == 0.0 && !is_loaded && grip.is_some_and(rests) {
+        let message = "no grip moves and no force or gravity acts: the plate stays at rest";
+        let hint = "give the [start] a stretch, the [grip] a motion, or the plate a [[force]] or [gravity]";
+        root.warning("grip", message, hint);
+    }
 }
 
 fn read_gravity(section: &Section) -> [f64; 2] {
