@@ -234,18 +234,23 @@ fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
     lattice
 }
 
-/// The tolerances of a study. A grip that is driven imposes most of the displacement, so that the force is judged too.
+/// What a driven motion has to reach where the study does not state it, in %: a grip that is driven imposes most of the displacement and of the
+/// force, so that what would be good for a free vibration says nothing.
+const DRIVEN_PERCENT: f64 = 5.0;
+
+/// The tolerances of a study; where the grip is driven, the force is judged too.
 fn read_tolerances(section: &Section, grip: Option<&GripMotion>) -> Tolerances {
-    let is_driven = |grip: &&GripMotion| grip.release.is_none() && rates(&grip.stretch).is_some();
+    let is_driven =
+        grip.is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
-    let [energy_percent, deviation_percent] = ["energy", "deviation"].map(percent);
+    let of_driven = |key| match is_driven && !section.has(key) {
+        true => DRIVEN_PERCENT,
+        false => percent(key),
+    };
     let tolerances = Tolerances {
-        energy_percent,
-        deviation_percent,
-        force_percent: match section.has("force") {
-            true => Some(percent("force")),
-            false => grip.filter(is_driven).map(|_| deviation_percent),
-        },
+        energy_percent: percent("energy"),
+        deviation_percent: of_driven("deviation"),
+        force_percent: (is_driven || section.has("force")).then(|| of_driven("force")),
     };
     section.unknown_keys();
     tolerances
