@@ -15,6 +15,7 @@ mod locate;
 mod neighbours;
 mod nodal_field;
 mod outline;
+mod parts;
 mod plate;
 mod refine;
 mod rounding;
@@ -35,5 +36,6 @@ pub use import::{
 pub use interpolation::Interpolation;
 pub use nodal_field::NodalField;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
+pub use parts::Parts;
 pub use rounding::Polygon;
 pub use shapes::{Misfit, Shape};

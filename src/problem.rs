@@ -22,6 +22,7 @@ pub mod sheet_energy;
 mod sheet_forces;
 mod solution;
 mod ties;
+mod unstrained;
 mod work;
 
 pub use balance::{Balance, Resultant};

@@ -58,7 +58,7 @@ pub use series::{Series, csv};
 pub use sheet_arrays::Sheet;
 pub use sheet_figures::{Deformed, SheetField, sheet_figures};
 pub use state::{LocalState, cell_states, nodal_states};
-pub use stretches::{BESIDE_CORNERS, FAR_BESIDE_CORNERS, Stretches};
+pub use stretches::{BESIDE_CORNERS, Stretches};
 pub use surface::Surface;
 pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;

@@ -113,7 +113,6 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let size = [0, 1].map(|axis| high[axis] - low[axis]);
     check_thickness(section, thickness, size, Some(&specimen.card));
     given.check(root, &specimen.problem, &mesh);
-    warn_of_rest(root, &specimen.problem);
     warn_of_parts(section, &specimen, &mesh);
     check_refinement(root, &specimen, &mesh);
     check_climb(root, &specimen);
@@ -161,16 +160,6 @@ fn check_climb(root: &Section, specimen: &Specimen) {
     }
     if specimen.problem.law.softening().is_some() {
         refuse_climb_with_memory(&section);
-    }
-}
-
-/// Warns of a sheet that nothing loads or moves.
-fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
-    let held = problem.supports.iter().all(|(_, support)| support.rests());
-    if held && problem.loads.iter().all(|(_, load)| load.is_none()) {
-        let message = "no support moves and no load acts: the sheet stays at rest";
-        let hint = "give a support a displacement, or a group a [[load]]";
-        root.warning("support", message, hint);
     }
 }
 
