@@ -42,7 +42,7 @@ pub mod wrinkling;
 pub use array::{Array, Components};
 pub use block::{Block, Content, Figure};
 pub use branches::{is_one_of_several, one_of_several};
-pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
+pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
 pub use check::{Check, Wanted, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
