@@ -24,6 +24,7 @@ mod shapes;
 mod strips;
 mod triangulate;
 
+pub use angles::REENTRANT;
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_2, GAUSS_3, GAUSS_4, GAUSS_5, QuadraturePoint, lobatto};
 pub use cells::{Group, Mesh, decimals_for};

@@ -20,6 +20,7 @@ mod rigid;
 pub mod sampling_point;
 pub mod sheet_energy;
 mod sheet_forces;
+mod singular;
 mod solution;
 mod ties;
 mod unstrained;

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::files::{figures, grids};
+use super::headline::headline;
 use super::problem::Specimen;
 use super::results::lattice::Start;
 use super::results::models::{Models, NamedSolution};
@@ -38,6 +39,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let steps = (0..specimen.factors.len()).map(quantities).collect();
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     Outcome {
+        headline: headline(specimen, models),
         style: specimen.pictures.style.clone(),
         checks: checks(specimen, models, &judged),
         problem: statement::json(specimen),
