@@ -191,6 +191,9 @@ pub enum SolveFault {
         /// The tolerance that was asked for.
         tolerance: f64,
     },
+    /// A search for parameters that ended where their sum of squares still falls.
+    #[error("the search ended at no minimum of the sum of squares")]
+    NoMinimum,
     /// A motion that needs more steps than are allowed.
     #[error(
         "about {needed:.1e} steps of at most {longest:.1e} s are needed, and {allowed:.1e} are allowed"
@@ -261,6 +264,9 @@ impl SolveFault {
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
                 "take smaller steps up to this point (stretches, load factors, or the interval of a motion), or raise the iteration limit"
+            }
+            Self::NoMinimum => {
+                "keep parameters near values that are expected (`--bound`), take more starts (`--starts`), or choose a law with fewer parameters"
             }
             Self::Explodes { .. } => {
                 "look at the supports and loads at that time; take shorter steps or generalised-α, and if generalised-α fails, `spectral_radius = 1`"
