@@ -216,8 +216,10 @@ pub enum SolveFault {
         /// The shortest step in s that was tried.
         step: f64,
     },
-    /// A fault of finding a field near measured displacements.
-    #[error("{0}")]
+    /// A fault of finding a field near measured displacements, which is no evidence against the law.
+    #[error(
+        "verdict: the data cannot judge, as no equilibrium with this law, thickness and conditions was reached near the markers: {0}"
+    )]
     OfMeasured(Box<Self>),
     /// A number is not finite, so nothing computed from it means anything.
     #[error("{0} is not a finite number")]

@@ -78,6 +78,12 @@ impl Estimate {
         }
     }
 
+    /// The standard deviation of a normal distribution with its interval, which reaches farther than 1.96 standard errors where data
+    /// are few.
+    pub fn normal_deviation(&self) -> f64 {
+        0.5 * (self.interval[1] - self.interval[0]) / normal_reach()
+    }
+
     /// A value without uncertainty.
     pub fn exact(value: f64) -> Self {
         Self::new(value, 0.0, 0.0)

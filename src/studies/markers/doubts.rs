@@ -5,7 +5,7 @@
 use super::MarkerStudy;
 use super::axes::mistaken;
 use super::frame_agreement;
-use super::gross_errors::{has_hidden, has_many};
+use super::gross_errors::has_many;
 use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
 use crate::error::Diagnostic;
@@ -23,7 +23,8 @@ impl MarkerStudy {
         let usual = Some(usual).filter(|usual| estimates.len() > 2 && *usual > 0.0);
         let frames = self.series.frames.iter().zip(estimates);
         for (frame, estimate) in frames {
-            let axes = (!estimate.is_explained()).then(|| mistaken(frame, &*self.law(estimate)));
+            let axes = (estimate.verdict.answer == Answer::NotExplained)
+                .then(|| mistaken(frame, &*self.law(estimate)));
             let strained = [
                 axes.flatten(),
                 self.strains(estimate),
@@ -41,7 +42,9 @@ impl MarkerStudy {
 
     /// An edge that nothing but the markers tells of may be what does not explain the data.
     fn unknown_edge(&self, estimate: &FieldEstimate) -> Option<Doubt> {
-        let gap = self.unknown_gap.filter(|_| !estimate.is_explained())?;
+        let gap = self
+            .unknown_gap
+            .filter(|_| estimate.verdict.answer == Answer::NotExplained)?;
         let message = format!(
             "the free edges are known only to within {} mm, because only the markers define them; with precise data even a smaller \
              offset leads to rejection",
@@ -76,7 +79,7 @@ impl MarkerStudy {
 
     /// Noise that is no measurement's: a share of the specimen, or many times that of most frames, where there are several.
     fn no_measurement(&self, estimate: &FieldEstimate, usual: Option<f64>) -> Option<Doubt> {
-        if !estimate.is_explained() {
+        if estimate.verdict.answer == Answer::NotExplained {
             return None;
         }
         let (noise, [low, high]) = (estimate.noise, self.mesh.bounding_box());
@@ -146,7 +149,6 @@ fn of_frame(
 ) -> Vec<Diagnostic> {
     let doubts = [
         noise(estimate),
-        hidden_outliers(estimate),
         many_outliers(estimate),
         edges(estimate),
         idle_edges(estimate),
@@ -182,18 +184,6 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
         message,
         "correct the stated noise, or leave it out to have it estimated",
     ))
-}
-
-/// Gross errors that are so many that their size was taken for that of the noise.
-fn hidden_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
-    has_hidden(estimate).then(|| {
-        let message = format!(
-            "half of the markers lie much closer to the field than a noise of {} mm suggests: many are gross errors, and intervals are meaningless",
-            decimals(estimate.noise, 4)
-        );
-        let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which down-weights outlying markers";
-        (message, hint)
-    })
 }
 
 fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
