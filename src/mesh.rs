@@ -34,6 +34,7 @@ pub use import::{
 };
 pub use interpolation::Interpolation;
 pub use nodal_field::NodalField;
+pub(crate) use outline::corners;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
 pub use rounding::Polygon;
 pub use shapes::{Misfit, Shape};
