@@ -24,7 +24,7 @@ mod understood;
 
 pub use chosen::{ChosenColumns, Role, column_named};
 pub use frames::{Frame, Marker, MarkerSeries};
-pub use plausible::{MarkersOnMesh, THICK, check_thickness, place_on, unit_ratio};
+pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, read};
 pub use rows::ReadSettings;
 pub use subset::Subset;

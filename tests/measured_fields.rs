@@ -443,7 +443,7 @@ fn a_field_in_metres_labelled_mm_is_told() {
     let done = gelbench(folder.path(), &arguments).code(1);
     let told = words(&done.get_output().stderr);
     assert!(
-        told.contains("is not a thin sheet") && told.contains("--unit"),
+        told.contains("assumes a thin sheet") && told.contains("--unit"),
         "{told}"
     );
 }
