@@ -36,6 +36,7 @@ pub use import::{
 };
 pub use interpolation::Interpolation;
 pub use nodal_field::NodalField;
+pub(crate) use outline::corners;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
 pub use parts::Parts;
 pub use rounding::Polygon;

@@ -10,8 +10,11 @@ use crate::material::Card;
 use crate::material::curve::{Mode, far_end};
 use crate::material::stability::{SEARCHED, stable_range};
 
+/// Columns of a finding where no terminal says how many it has.
+const USUAL_COLUMNS: usize = 80;
+
 /// A finding with the lines of the file that it is about.
-pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
+pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) -> String {
     let message = match finding.key.as_str() {
         "" => finding.message.clone(),
         key => format!("{key}: {}", finding.message),
@@ -43,7 +46,9 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
         GraphicalTheme::unicode_nocolor()
     };
     let mut text = String::new();
-    let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(1);
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(columns.unwrap_or(USUAL_COLUMNS))
+        .with_context_lines(1);
     match handler.render_report(&mut text, report.as_ref()) {
         Ok(()) => text,
         Err(_) => format!("{finding}\n"),

@@ -12,7 +12,7 @@ use crate::markers::Frame;
 use crate::output::{self, ResultFolder};
 use crate::results::Results;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{ComparedFrames, MarkerStudy, SHOWN};
+use crate::studies::markers::{ComparedFrames, MarkerStudy};
 use crate::studies::pictures::Pictures;
 
 /// The exit code of an answer, and of whether all that is required is met.
@@ -66,8 +66,6 @@ pub fn correct(
     drop(progress);
     warn(&warnings);
     finish(results_folder, &results)?;
-    let doubts = field.all_doubts(&estimates);
-    warn(&doubts[..doubts.len().min(SHOWN)]);
     Ok((estimates, results))
 }
 

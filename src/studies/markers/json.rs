@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::report::{largest_correction, largest_error, left, outliers, used};
+use super::report::{largest_correction, largest_error, outliers, residual_rms, used};
 use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, EdgeForce, FieldEstimate, Robust};
 use crate::markers::{Frame, Understood};
@@ -80,7 +80,7 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
         "noise_mm": estimate.noise,
         "noise_range_mm": estimate.noise_range,
         "noise_is_given": estimate.known_noise,
-        "left_mm": left(estimate),
+        "left_mm": residual_rms(estimate),
         "largest_left_mm": largest_correction(estimate),
         "effective_parameters": estimate.effective_parameters,
         "largest_standard_error_mm": estimate.has_intervals().then(|| largest_error(estimate)),

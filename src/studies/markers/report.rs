@@ -2,17 +2,18 @@
 
 use super::force_words::{basis, newtons};
 use super::{noise, reading, refined, scale, verdict};
-use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::corrector::estimation::{Answer, EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::error::Diagnostic;
 use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 use crate::units::decimals;
 
-/// How many frames are shown in the terminal at the begin and at the end, and how many doubts.
-pub const SHOWN: usize = 12;
+/// How many frames are shown in the terminal at the begin and at the end.
+const SHOWN: usize = 12;
 
-/// The figures of the frames, for the terminal.
-pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
+/// The figures of the frames with what makes them doubtful, for the terminal.
+pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagnostic]) -> String {
     let mut text = format!(
         "{}; {}; mesh {}: {}\n",
         reading::short(&field.understood),
@@ -27,7 +28,9 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
     };
     text += &rows(field, estimates);
-    noise::remarks(field, estimates).for_each(|told| text += &format!("{told}\n"));
+    for remark in noise::remarks(field, estimates) {
+        text += &format!("{remark}\n");
+    }
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
             let interval = interval(found, estimate.has_intervals(), 6);
@@ -53,15 +56,16 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         let deviation = field.conditions.scale_deviation;
         text += &scale::line(frame.number, last, deviation).unwrap_or_default();
     }
-    text += &verdict::summary(field, estimates);
-    let doubts = field.all_doubts(estimates);
-    for doubt in doubts.iter().take(SHOWN) {
-        text += &format!("doubtful: {}\n", doubt.message);
+    for doubt in doubts.iter().filter(|doubt| !is_verdict(doubt)) {
+        let hint = doubt.hint.as_deref().map(|hint| format!("  {hint}\n"));
+        text += &format!("doubtful: {}\n{}", doubt.message, hint.unwrap_or_default());
     }
-    if doubts.len() > SHOWN {
-        text += &format!("doubtful: {} more, see the report\n", doubts.len() - SHOWN);
-    }
-    text
+    text + &verdict::summary(field, estimates)
+}
+
+/// Whether a doubt is the verdict, which has lines of its own.
+fn is_verdict(doubt: &Diagnostic) -> bool {
+    doubt.message.contains(Answer::NotExplained.words())
 }
 
 /// A row for each of the first and last frames.
@@ -82,7 +86,7 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 used(estimate),
                 outliers(estimate),
                 estimate.noise,
-                left(estimate),
+                residual_rms(estimate),
                 estimate.effective_parameters,
                 largest_error(estimate)
             ),
@@ -90,7 +94,7 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 "{:>5}  {:>7}  {:>33.4}  {:>12.4}\n",
                 frame.number,
                 used(estimate),
-                left(estimate),
+                residual_rms(estimate),
                 largest_correction(estimate)
             ),
         };
@@ -120,7 +124,7 @@ pub(super) fn outliers(estimate: &FieldEstimate) -> usize {
 }
 
 /// Root mean square of the components of what is left of the markers.
-pub(super) fn left(estimate: &FieldEstimate) -> f64 {
+pub(super) fn residual_rms(estimate: &FieldEstimate) -> f64 {
     let residuals = estimate
         .markers
         .iter()
@@ -181,7 +185,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let understood = reading::blocks(&field.understood);
     blocks.splice(1..1, understood);
     blocks.extend(refined::told(field, estimates).map(Block::paragraph));
-    blocks.extend(noise::remarks(field, estimates).map(Block::paragraph));
+    let remarks = noise::remarks(field, estimates);
+    blocks.extend(remarks.into_iter().map(Block::paragraph));
     if field.coarse.is_none() {
         blocks.extend(verdict::blocks(field, estimates));
     }
@@ -240,7 +245,7 @@ fn transferred_frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block
         vec![
             frame.number.to_string(),
             used(estimate).to_string(),
-            decimals(left(estimate), 5),
+            decimals(residual_rms(estimate), 5),
             decimals(largest_correction(estimate), 5),
         ]
     });
@@ -275,7 +280,7 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
                 "estimated"
             }
             .to_owned(),
-            decimals(left(estimate), 5),
+            decimals(residual_rms(estimate), 5),
             format!("{:.1}", estimate.effective_parameters),
             match estimate.has_intervals() {
                 true => decimals(largest_error(estimate), 5),
