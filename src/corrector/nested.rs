@@ -109,7 +109,7 @@ impl<'a> NestedMeshes<'a> {
     pub fn correct(&self, factor: f64) -> Result<NestedCorrection, Error> {
         check_memory(&*self.problem.law, "nested correction")?;
         let mut state = self.correct_on_coarsest(factor)?;
-        let (mut change, mut size) = (None, f64::NAN);
+        let (mut change, mut size) = (None::<Vec<f64>>, f64::NAN);
         let mut ratio = Ratios::MEASURED.first;
         for level in 1..self.meshes.len() {
             let model = self.model(level)?;
