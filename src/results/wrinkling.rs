@@ -3,8 +3,9 @@
 mod critical;
 mod regions;
 
+use super::BESIDE_CORNERS;
+use super::sheet::Sheet;
 use super::state::{LocalState, cell_states};
-use super::{BESIDE_CORNERS, Sheet};
 use crate::material::PlaneState;
 use crate::mesh::Mesh;
 use crate::units::number;
