@@ -12,8 +12,8 @@ fn plate(measures: [&str; 3], stretches: &str) -> String {
     let [length, width, thickness] = measures;
     format!(
         "kind = \"plate\"\n[material]\ncard = \"pva-10\"\n\
-         [plate]\nlength = \"{length}\"\nwidth = \"{width}\"\nthickness = \"{thickness}\"\ncells = [24, 8]\n\
-         [load]\nstretches = {stretches}\n[finite_element]\ncells = [36, 12]\n"
+         [plate]\nlength = \"{length}\"\nwidth = \"{width}\"\nthickness = \"{thickness}\"\ncells = [12, 4]\n\
+         [load]\nstretches = {stretches}\n[finite_element]\ncells = [24, 8]\n"
     )
 }
 
@@ -21,14 +21,14 @@ fn plate(measures: [&str; 3], stretches: &str) -> String {
 fn specimen(shape: &str, thickness: &str, moved: &str) -> String {
     format!(
         "kind = \"specimen\"\n[material]\ncard = \"pva-10\"\n[specimen]\n{shape}\nthickness = \"{thickness}\"\n\
-         [path]\nfactors = [0.25, 0.5, 0.75, 1.0]\nmeasured_group = \"right\"\n\
+         [path]\nfactors = [0.5, 1.0]\nmeasured_group = \"right\"\n\
          [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
          [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"{moved}\"\ny = \"0 mm\"\n"
     )
 }
 
 fn strip(length: &str, width: &str) -> String {
-    format!("shape = \"strip\"\nlength = \"{length}\"\nwidth = \"{width}\"\ncells = 8")
+    format!("shape = \"strip\"\nlength = \"{length}\"\nwidth = \"{width}\"\ncells = 4")
 }
 
 /// A plate whose grip goes to a stretch within a second.
@@ -37,7 +37,7 @@ fn motion([length, width, thickness]: [&str; 3], to: &str) -> String {
         "kind = \"motion\"\n[material]\ncard = \"pva-10\"\ndensity = \"1020 kg/m^3\"\n\
          [plate]\nlength = \"{length}\"\nwidth = \"{width}\"\nthickness = \"{thickness}\"\ncells = [12, 4]\n\
          [start]\nstretch = \"0 %\"\n[grip]\nmotion = \"ramp\"\nbegin = \"0 s\"\nend = \"1 s\"\nto = \"{to}\"\n\
-         [finite_element]\nelement = \"Q2\"\ncells = [36, 12]\n[corrector]\nenabled = false\n\
+         [finite_element]\nelement = \"Q2\"\ncells = [18, 6]\n[corrector]\nenabled = false\n\
          [time]\nduration = \"1 s\"\ninterval = \"0.25 s\"\nstep = \"50 ms\"\nintegrator = \"generalised-alpha\"\n\
          spectral_radius = 0.5\n"
     )

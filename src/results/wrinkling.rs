@@ -3,8 +3,9 @@
 mod critical;
 mod regions;
 
+use super::BESIDE_CORNERS;
+use super::sheet::Sheet;
 use super::state::{LocalState, cell_states};
-use super::{BESIDE_CORNERS, Sheet};
 use crate::material::PlaneState;
 use crate::mesh::Mesh;
 use crate::units::number;
@@ -62,9 +63,9 @@ impl Wrinkling {
         let mut exceeded = vec![false; states.len()];
         for (cell, part) in parts.into_iter().enumerate() {
             let Some(part) = part else { continue };
-            let [tension, smaller] = stresses[cell];
+            let [_, smaller] = stresses[cell];
             let thickness = sheet.thickness * states[cell].stretches[2];
-            let critical = bending.critical_stress(part, thickness, tension).max(0.0);
+            let critical = bending.critical_stress(part, thickness).max(0.0);
             exceeded[cell] = -smaller > CERTAIN * critical;
             if -smaller * worst[1] > worst[0] * critical {
                 worst = [-smaller, critical];

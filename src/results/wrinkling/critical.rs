@@ -20,6 +20,8 @@ pub struct Part {
     pub across: f64,
     /// How many of the ends of a are free edges of the sheet: none, one or two.
     pub free_ends: usize,
+    /// The mean stress T/h across the compression in MPa.
+    pub tension: f64,
 }
 
 impl Bending {
@@ -33,7 +35,7 @@ impl Bending {
         }
     }
 
-    /// The critical compression N/h in MPa of a part of the thickness h in mm under the stress T/h in MPa across the compression.
+    /// The critical compression N/h in MPa of a part of the thickness h in mm.
     ///
     /// A deflection w = sin(q x) sin(k y) of a plate that its surroundings hold has the energy of bending and of the membrane
     ///
@@ -48,21 +50,22 @@ impl Bending {
     /// | T = 0, b ≥ a: a long plate | 4 B (π/a)² |
     /// | T = 0, a → ∞: a wide strut | B (π/b)² |
     ///
-    /// A free edge holds nothing. With one, w = x sin(k y), which the sheet beside the part follows to the same depth; with two, the part is
-    /// a strut:
+    /// A free edge holds nothing. Of a part with one, the edge deflects most, and the sheet beside it follows to the same depth; with two, the
+    /// part is a strut:
     ///
     /// ```text
-    /// N = B [(π/b)² + 6 (1 − ν)/(2 a)²],     N = B (π/b)²
+    /// N = min over k of B [k² + 6 (1 − ν)/(2 a)²] + T [π/(2 a)]²/k²,     N = B (π/b)²
     /// ```
     ///
     /// # References
     /// E. Cerda, L. Mahadevan, Phys. Rev. Lett. 90, 074302 (2003), doi:10.1103/PhysRevLett.90.074302 (wrinkles under tension);
     /// S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (1961), §9.2 (plates), §9.3 (one free edge).
-    pub fn critical_stress(self, part: Part, thickness: f64, tension: f64) -> f64 {
+    pub fn critical_stress(self, part: Part, thickness: f64) -> f64 {
         let Part {
             along,
             across,
             free_ends,
+            tension,
         } = part;
         let bending =
             self.modulus * thickness.powi(2) / (12.0 * (1.0 - self.poissons_ratio.powi(2)));
@@ -73,7 +76,12 @@ impl Bending {
                 let number = best.max(least);
                 (bending * (held + number).powi(2) + tension * held) / number
             }
-            1 => bending * (least + 6.0 * (1.0 - self.poissons_ratio) / (4.0 * along * along)),
+            1 => {
+                let twist = 6.0 * (1.0 - self.poissons_ratio) / (4.0 * along * along);
+                let held = 0.25 * held * tension.max(0.0);
+                let number = (held / bending).sqrt().max(least);
+                bending * (number + twist) + held / number
+            }
             _ => bending * least,
         }
     }
@@ -94,8 +102,9 @@ mod tests {
                 along,
                 across,
                 free_ends,
+                tension,
             };
-            bending.critical_stress(part, thickness, tension)
+            bending.critical_stress(part, thickness)
         };
         let close = |found: f64, expected: f64| {
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");

@@ -30,6 +30,8 @@ struct Moments {
     second: [f64; 3],
     /// ∫ c (cos 2φ, sin 2φ) dA, with the angle φ of the compression.
     direction: [f64; 2],
+    /// ∫ c σ₁ dA.
+    tension: f64,
     /// Whether the sheet ends freely on either side across the compression.
     free: [bool; 2],
 }
@@ -104,6 +106,7 @@ impl Moments {
         let [s11, s22, _, s12] = state.cauchy;
         let radius = (0.5 * (s11 - s22)).hypot(s12).max(f64::MIN_POSITIVE);
         self.weight += weight;
+        self.tension += weight * state.principal_cauchy()[0];
         self.first[0] += weight * x;
         self.first[1] += weight * y;
         for (sum, value) in
@@ -159,6 +162,7 @@ impl Moments {
             along,
             across,
             free_ends: self.free.into_iter().filter(|is| *is).count(),
+            tension: self.tension / self.weight,
         }
     }
 }

@@ -38,7 +38,8 @@ fn a_strut_is_told_from_half_of_its_critical_stress_on() {
         assert!((found.smallest[3] - stress).abs() < 1e-14);
         let [compression, critical] = found.worst;
         assert!((compression + stress).abs() < 1e-12);
-        assert!((critical / (per_square * thickness.powi(2)) - 1.0).abs() < 1e-9);
+        // Cells count as squares, which they are not any more by 1 %.
+        assert!((critical / (per_square * thickness.powi(2)) - 1.0).abs() < 1e-4);
     }
 }
 
