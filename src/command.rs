@@ -22,7 +22,7 @@ use crate::error::Diagnostic;
 use crate::kinds;
 use crate::output;
 use crate::output::ResultFolder;
-use crate::results::{Check, End, Results, passed};
+use crate::results::{Check, End, Results, check_lines};
 use crate::studies::{self, name};
 use crate::validation;
 use journal::FolderJournal;
@@ -344,19 +344,13 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     tell_files(&results.finish()?);
     print_report(|| cases_json(&cases))?;
     let report = folder.join("REPORT.md");
-    let checks = || {
-        cases
-            .iter()
-            .flat_map(|case| case.outcome.checks.iter().map(move |check| (case, check)))
-    };
-    let lines: String = checks()
-        .map(|(case, check)| check.line(Some(case.kind)))
-        .collect();
-    let passed = passed(checks().map(|(_, check)| check));
-    conclude(
-        &cases,
-        &format!("{lines}{passed}\nreport: {}\n", report.display()),
-    )
+    let checks = cases.iter().flat_map(|case| {
+        let checks = case.outcome.checks.iter();
+        checks.map(|check| (Some(case.kind), check))
+    });
+    let lines = check_lines(checks);
+    let text = format!("{lines}\nreport: {}\n", report.display());
+    conclude(&cases, &text)
 }
 
 /// All cases for machines, each as `report.json` has a study.

@@ -45,7 +45,7 @@ pub use array::{Array, Components};
 pub use block::{Block, Content, Figure};
 pub use branches::{is_one_of_several, one_of_several};
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
-pub use check::{Check, Wanted, passed, requirements, verdict};
+pub use check::{Check, Wanted, check_lines, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
 pub use fields::{Animation, FieldFigure, Frame, Panel, Values};
@@ -208,9 +208,7 @@ impl Results {
         let outcome = &self.outcome;
         let mut text = outcome.summary.clone();
         if outcome.summary.is_empty() || !outcome.headline.is_empty() {
-            let lines = outcome.checks.iter().map(|check| check.line(None));
-            text.extend(lines);
-            text += &passed(&outcome.checks);
+            text += &check_lines(outcome.checks.iter().map(|check| (None, check)));
         }
         text
     }

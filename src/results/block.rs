@@ -155,7 +155,6 @@ mod tests {
         let rows = [["5", "left", "–"], ["10", "right", "12.5"]];
         let rows = rows.map(|row| row.map(str::to_owned).to_vec());
         let table = Block::table(&["at", "group", "displacement along x [mm]"], rows);
-        let expected = "           displacement\n           along x [mm]\nat  group\n";
         let lines: Vec<String> = table.plain().lines().map(str::to_owned).collect();
         assert_eq!(lines[0], "           displacement");
         assert_eq!(lines[1], "at  group  along x [mm]");

@@ -141,7 +141,7 @@ impl Check {
 impl Check {
     /// The check in a line for a terminal, `pass force = 0.2 % (at most 0.5 %)`, of one case of several with its name, and a remark in a line
     /// below.
-    pub fn line(&self, case: Option<&str>) -> String {
+    fn line(&self, case: Option<&str>) -> String {
         let judgement = self.judgement();
         let case = case.map_or_else(String::new, |case| format!(" {case}:"));
         let mut text = format!(
@@ -219,11 +219,15 @@ pub fn verdict(checks: &[Check]) -> &'static str {
     }
 }
 
-/// `3 of 4 checks passed`, with the end of the line.
-pub fn passed<'a>(checks: impl IntoIterator<Item = &'a Check>) -> String {
-    let checks: Vec<&Check> = checks.into_iter().collect();
-    let passed = checks.iter().filter(|check| check.passed()).count();
-    format!("{passed} of {} checks passed\n", checks.len())
+/// A line for each check of some cases, with the names of these where there are several, and how many passed.
+pub fn check_lines<'a>(checks: impl IntoIterator<Item = (Option<&'a str>, &'a Check)>) -> String {
+    let (mut text, mut passed, mut count) = (String::new(), 0, 0);
+    for (case, check) in checks {
+        text += &check.line(case);
+        passed += usize::from(check.passed());
+        count += 1;
+    }
+    text + &format!("{passed} of {count} checks passed\n")
 }
 
 /// A figure; a dash for one that is not known.
