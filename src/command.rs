@@ -22,7 +22,7 @@ use crate::error::Diagnostic;
 use crate::kinds;
 use crate::output;
 use crate::output::ResultFolder;
-use crate::results::{Check, End, Results};
+use crate::results::{Check, End, Results, passed};
 use crate::studies::{self, name};
 use crate::validation;
 use journal::FolderJournal;
@@ -301,10 +301,17 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let files = results_folder.finish()?;
     tell_files(&files);
     print_report(|| results.json())?;
-    conclude(
-        &[results],
-        &format!("{} files in {}", files.len(), folder.display()),
-    )
+    let page = folder.join("report.html");
+    let page = with_report.then(|| format!("open {}\n", page.display()));
+    let written = format!("{} files in {}\n", files.len(), folder.display());
+    let parts = [
+        results.headline(),
+        page.unwrap_or_default(),
+        results.agreement(),
+        written,
+    ];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    conclude(&[results], &parts.join("\n"))
 }
 
 fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
@@ -337,7 +344,19 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     tell_files(&results.finish()?);
     print_report(|| cases_json(&cases))?;
     let report = folder.join("REPORT.md");
-    conclude(&cases, &format!("report: {}", report.display()))
+    let checks = || {
+        cases
+            .iter()
+            .flat_map(|case| case.outcome.checks.iter().map(move |check| (case, check)))
+    };
+    let lines: String = checks()
+        .map(|(case, check)| check.line(Some(case.kind)))
+        .collect();
+    let passed = passed(checks().map(|(_, check)| check));
+    conclude(
+        &cases,
+        &format!("{lines}{passed}\nreport: {}\n", report.display()),
+    )
 }
 
 /// All cases for machines, each as `report.json` has a study.
@@ -352,18 +371,13 @@ fn cases_json(cases: &[Results]) -> Value {
 /// The exit code of a study of which a model has no solution.
 const NO_SOLUTION: u8 = 3;
 
-/// Prints warnings, headline figures, checks and where the results are, and decides on the exit code.
-fn conclude(results: &[Results], written: &str) -> Outcome {
+/// Prints the results in words, then warnings, and decides on the exit code.
+fn conclude(results: &[Results], words: &str) -> Outcome {
+    print(words)?;
     let outcomes = || results.iter().map(|results| &results.outcome);
     for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
         warn(&[Diagnostic::warning("", warning.clone())]);
     }
-    let summaries: String = outcomes().map(|outcome| &*outcome.summary).collect();
-    let told = match summaries.is_empty() {
-        true => message::checks(results),
-        false => summaries,
-    };
-    print(&format!("{told}\n{written}\n"))?;
     let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
     let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
     ends.iter().for_each(|end| complain_of_end(end));

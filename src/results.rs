@@ -17,6 +17,7 @@ mod drawing;
 mod fields;
 mod fit;
 mod grid;
+mod headline;
 mod identification;
 mod json;
 pub mod locking;
@@ -42,13 +43,14 @@ pub mod wrinkling;
 pub use array::{Array, Components};
 pub use block::{Block, Content, Figure};
 pub use branches::{is_one_of_several, one_of_several};
-pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
-pub use check::{Check, Wanted, requirements, verdict};
+pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
+pub use check::{Check, Wanted, passed, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
 pub use fields::{Animation, FieldFigure, Frame, Panel, Values};
 pub use fit::{fit_json, fit_picture};
 pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
+pub use headline::{Gauge, Headline, LoadedSheet};
 pub use identification::{identification_json, identification_picture};
 pub use material::Material;
 pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
@@ -58,7 +60,7 @@ pub use series::{Series, csv};
 pub use sheet_arrays::Sheet;
 pub use sheet_figures::{Deformed, SheetField, sheet_figures};
 pub use state::{LocalState, cell_states, nodal_states};
-pub use stretches::{BESIDE_CORNERS, FAR_BESIDE_CORNERS, Stretches};
+pub use stretches::{BESIDE_CORNERS, Stretches};
 pub use surface::Surface;
 pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;
@@ -142,7 +144,9 @@ pub struct Outcome {
     pub balance: Option<f64>,
     /// The balance of every model, by its name.
     pub balances: Map<String, Value>,
-    /// The headline figures for a terminal.
+    /// What the study is computed for, at a glance: [`Headline::blocks`] of a sheet. Reports and terminals begin with it.
+    pub headline: Vec<Block>,
+    /// Further figures for a terminal: how far the models agree, or everything about measured fields.
     pub summary: String,
 }
 
@@ -190,6 +194,31 @@ impl Results {
     /// Warnings from reading the study and from its results.
     pub fn warnings(&self) -> impl Iterator<Item = &String> {
         self.read_warnings.iter().chain(&self.outcome.warnings)
+    }
+
+    /// The headline for a terminal.
+    pub fn headline(&self) -> String {
+        let blocks: Vec<String> = self.outcome.headline.iter().map(Block::plain).collect();
+        blocks.join("\n")
+    }
+
+    /// What follows the headline on a terminal: how far the models agree, and the requirements unless the summary judges them.
+    pub fn agreement(&self) -> String {
+        let outcome = &self.outcome;
+        let mut text = outcome.summary.clone();
+        if outcome.summary.is_empty() || !outcome.headline.is_empty() {
+            let lines = outcome.checks.iter().map(|check| check.line(None));
+            text.extend(lines);
+            text += &passed(&outcome.checks);
+        }
+        text
+    }
+
+    /// Both, as the command prints them.
+    pub fn summary(&self) -> String {
+        let parts = [self.headline(), self.agreement()];
+        let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        parts.join("\n")
     }
 
     /// Whether all requirements are met, no model ended early, and there is no doubt.

@@ -15,8 +15,11 @@ use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
+mod parameter_uncertainty;
 mod published;
 mod resistance;
+
+pub use parameter_uncertainty::ParameterUncertainty;
 
 /// A material: law, parameters and provenance.
 #[derive(Clone, Debug)]
@@ -88,6 +91,8 @@ pub struct FitRecord {
     pub softening: bool,
     /// The card, relative to this one, whose law is the base of the fitted softening; `None` where the law was fitted with it.
     pub base_card: Option<String>,
+    /// The uncertainty of the law's parameters; `None` where the residuals were no noise, or nothing is recorded.
+    pub uncertainty: Option<ParameterUncertainty>,
 }
 
 impl Card {
@@ -325,6 +330,7 @@ fn read_fit(section: &Section) -> FitRecord {
             .then(|| section.count("relaxation_terms", 0, 6)),
         softening: section.has("softening") && section.flag("softening"),
         base_card: section.has("base_card").then(|| section.text("base_card")),
+        uncertainty: ParameterUncertainty::read(section),
     };
     section.unknown_keys();
     record

@@ -78,7 +78,8 @@ fn explore(explorer: &Explorer) -> Markup {
             }
             p {
                 "The colour scale of a step covers all models, without the extreme hundredth of the area at each end. Point at the sheet to read the \
-                 values of all models at the same place; drag over the curve to change the step. " (explorer.note)
+                 values of all models at the same place; drag over the curve to change the step; nothing was computed along \
+                 its dashes. " (explorer.note)
             }
         }
         script id="explorer-data" type="application/json" { (PreEscaped(&explorer.data)) }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Block, limit};
+use super::{Block, limit, or_dash};
 use crate::compare::judgement::Judgement;
 use crate::units::number;
 
@@ -139,6 +139,40 @@ impl Check {
 }
 
 impl Check {
+    /// The check in a line for a terminal, `pass force = 0.2 % (at most 0.5 %)`, of one case of several with its name, and a remark in a line
+    /// below.
+    pub fn line(&self, case: Option<&str>) -> String {
+        let judgement = self.judgement();
+        let case = case.map_or_else(String::new, |case| format!(" {case}:"));
+        let mut text = format!(
+            "{}{case} {}{}\n",
+            judgement.word(),
+            self.quantity,
+            self.values()
+        );
+        if let Some(remark) = judgement.remark() {
+            text += &format!("     {remark}\n");
+        }
+        text
+    }
+
+    /// ` = 0.2 % (at most 0.5 %)`; nothing behind a fault, which has no value and no limit.
+    fn values(&self) -> String {
+        if self.is_fault {
+            return String::new();
+        }
+        let unit = match self.unit {
+            "–" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let wanted = match self.wanted {
+            Wanted::Equal(value, tolerance) => format!("{} ± {} %", limit(value), limit(tolerance)),
+            Wanted::AtMost(most) => format!("at most {}{unit}", limit(most)),
+            Wanted::AtLeast(least) => format!("at least {}{unit}", limit(least)),
+        };
+        format!(" = {}{unit} ({wanted})", known(self.computed))
+    }
+
     /// The requirement in words.
     pub fn wanted(&self) -> String {
         match self.wanted {
@@ -185,12 +219,20 @@ pub fn verdict(checks: &[Check]) -> &'static str {
     }
 }
 
+/// `3 of 4 checks passed`, with the end of the line.
+pub fn passed<'a>(checks: impl IntoIterator<Item = &'a Check>) -> String {
+    let checks: Vec<&Check> = checks.into_iter().collect();
+    let passed = checks.iter().filter(|check| check.passed()).count();
+    format!("{passed} of {} checks passed\n", checks.len())
+}
+
+/// A figure; a dash for one that is not known.
+fn known(value: f64) -> String {
+    or_dash(Some(value), number)
+}
+
 /// A table of requirements.
 pub fn requirements(checks: &[Check]) -> Block {
-    let known = |value: f64| match value.is_nan() {
-        true => "–".to_owned(),
-        false => number(value),
-    };
     let row = |check: &Check| {
         vec![
             check.quantity.clone(),

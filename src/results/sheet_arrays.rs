@@ -63,7 +63,7 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
     let states = cell_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
-    let wrinkling = Wrinkling::of_cells(sheet.law, mesh, &states);
+    let wrinkling = Wrinkling::of_cells(sheet, mesh, displacement, &states);
     let states = || states.iter();
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));
     let nominal = states().flat_map(|state| {
@@ -73,8 +73,8 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states().map(value))
     };
-    let compressed = wrinkling.compressed.iter();
-    let compressed = compressed.map(|is| f64::from(u8::from(*is)));
+    let exceeded = wrinkling.exceeded.iter();
+    let exceeded = exceeded.map(|is| f64::from(u8::from(*is)));
     let thickness = states().map(|state| sheet.thickness * state.stretches[2]);
     let mut arrays = vec![
         Array::tensors("nominal_stress_MPa", nominal),
@@ -84,7 +84,7 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
             state.principal_cauchy()[0]
         }),
         Array::scalars("smallest_principal_cauchy_stress_MPa", wrinkling.smallest),
-        Array::scalars("wrinkling", compressed),
+        Array::scalars("wrinkling", exceeded),
         tensors("green_lagrange_strain", |state| state.green_lagrange),
         of(
             "largest_principal_green_lagrange_strain",

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::corrector::estimation::{
-    FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate, name_parts, transfer,
+    FieldEstimate, Knowledge, RegressedLaw, Specimen, UncertainLaw, estimate, name_parts, transfer,
 };
 use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
@@ -27,6 +27,7 @@ mod doubts;
 mod edge_place;
 mod figures;
 mod force_signs;
+mod force_words;
 mod frame_agreement;
 mod gross_errors;
 pub mod joint;
@@ -257,6 +258,7 @@ impl MarkerStudy {
         let law = self.regressed.as_ref();
         let knowledge = Knowledge {
             edge_gap: self.unknown_gap,
+            uncertain_law: UncertainLaw::of_card(&self.card),
             ..self.conditions.knowledge(frame.number, law)
         };
         let found = match &self.coarse {

@@ -22,11 +22,11 @@ pub const MOST_CELLS: usize = 100_000;
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
-/// Records that a card which softens is to climb.
-pub fn refuse_climb_with_memory(corrector: &Section) {
-    let message = "this card softens, and the climb has no memory of the largest load";
+/// Records that a method without a memory is to correct a card which softens.
+pub fn refuse_memory(corrector: &Section, method: &str) {
+    let message = format!("this card softens, and {method} has no memory of the largest load");
     let hint = "write method = \"direct\", or leave out the card's `[softening]`";
-    corrector.fault("method", message, hint);
+    corrector.fault("method", &message, hint);
 }
 
 /// How exactly a corrected field climbs.

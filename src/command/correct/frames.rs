@@ -19,6 +19,7 @@ use crate::studies::pictures::Pictures;
 pub fn exit_code(answer: Answer, passed: bool) -> u8 {
     match answer {
         Answer::NotExplained => NOT_EXPLAINED,
+        Answer::Undecided => 1,
         _ => u8::from(!passed),
     }
 }

@@ -29,7 +29,7 @@ const LEVEL: f64 = 1e-5;
 const EXPLAINS: f64 = 0.98;
 
 /// With fewer independent values than this beside the parameters, correlated noise cannot be distinguished from a misfit, and its
-/// length is too uncertain for valid intervals: by their coverage, `gelbench validate interval-coverage`.
+/// likeliest length is too uncertain for valid intervals: by their coverage, `gelbench validate interval-coverage`.
 const INDEPENDENT: f64 = 100.0;
 
 /// The noise that was found, and the verdict.
@@ -37,8 +37,9 @@ const INDEPENDENT: f64 = 100.0;
 pub struct Judgement {
     /// The trust of the markers on the mesh, zero for gross errors.
     pub sound: Vec<f64>,
-    /// The correlation of the noise with the equations as they are; `None` for white noise.
-    pub noise: Option<CorrelatedNoise>,
+    /// The correlation of the noise with the equations as they are, the likeliest first; nothing for white noise. Where the data
+    /// cannot judge, those that are hardly less likely follow.
+    pub noises: Vec<CorrelatedNoise>,
     /// The verdict without measured forces.
     pub verdict: Verdict,
     /// The statements on edges that the data contradict.
@@ -69,12 +70,13 @@ pub fn judge(
     };
     let granted = found.granted();
     let base = Model::of_search(&rows, found).with(&rows, &granted);
-    let noise = base.noise(&rows);
+    let mut noises = base.noises(&rows);
+    let noise = noises.first();
     let columns = found.alternatives(own)?;
     let of_score = |scored: &Scored| Model::of_score(&rows, found, scored).with(&rows, &granted);
     let all = all.map(|scored| of_score(&scored));
     let basis = Basis {
-        reference: Reference::new(&rows, noise.as_ref(), &base, all.as_ref(), &columns, own),
+        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, own),
         rows: &rows,
         base: &base,
     };
@@ -87,10 +89,11 @@ pub fn judge(
     let together = all
         .as_ref()
         .map(|model| basis.try_out(found, Alternative::Edges, model));
-    let correlation = noise.as_ref().map(|noise| rows.correlation(noise));
-    let reasons = reasons(trials.iter().chain(&together), correlation, found);
+    let correlation = noise.map(|noise| rows.correlation(noise));
+    let against = improvement(trials.iter().chain(&together));
+    let few = few(correlation, found);
     let mut contradiction = None;
-    if !reasons.is_empty() {
+    if against.is_some() {
         let alone = |name: &str| {
             let scored = let_go(task, found, edges, &|other| other == name)?;
             let model = Model::of_score(&rows, found, &scored).with(&rows, &granted);
@@ -107,21 +110,25 @@ pub fn judge(
     let left = base.plain_left(&rows, found);
     trials.retain(|trial| trial.left < EXPLAINS * left);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let answer = match (reasons.is_empty(), noise) {
-        (false, _) => Answer::NotExplained,
-        (true, Some(_)) => Answer::Correlated,
-        (true, None) => Answer::Explained,
+    let answer = match (against, few, correlation) {
+        (Some(_), ..) => Answer::NotExplained,
+        (None, Some(_), _) => Answer::Undecided,
+        (None, None, Some(_)) => Answer::Correlated,
+        (None, None, None) => Answer::Explained,
     };
+    if answer != Answer::Undecided {
+        noises.truncate(1);
+    }
     let verdict = Verdict {
         answer,
         correlation,
-        worst: (!reasons.is_empty()).then(|| rows.worst(found)),
-        reasons,
+        worst: against.map(|_| rows.worst(found)),
+        reasons: against.into_iter().chain(few).collect(),
         trials,
     };
     Ok(Judgement {
         sound,
-        noise,
+        noises,
         verdict,
         contradiction,
     })
@@ -150,17 +157,19 @@ impl Basis<'_> {
     }
 }
 
-/// Why the data are not explained, if they are not.
-fn reasons<'a>(
-    trials: impl Iterator<Item = &'a Trial>,
-    correlation: Option<NoiseCorrelation>,
-    found: &NearestField,
-) -> Vec<Reason> {
+/// The alternative that contradicts the equations, if one does.
+fn improvement<'a>(trials: impl Iterator<Item = &'a Trial>) -> Option<Reason> {
     let probability = trials.map(|trial| trial.probability).fold(1.0, f64::min);
-    let alternative = (probability < LEVEL).then_some(Reason::Alternative(probability));
-    let long = correlation.filter(|one| 2.0 * one.independent - found.fit.effective < INDEPENDENT);
-    let long = long.map(|one| Reason::Long(one.length));
-    alternative.into_iter().chain(long).collect()
+    (probability < LEVEL).then_some(Reason::Alternative(probability))
+}
+
+/// Noise with too few independent values, which is no evidence against the equations.
+fn few(correlation: Option<NoiseCorrelation>, found: &NearestField) -> Option<Reason> {
+    let few = |one: &NoiseCorrelation| 2.0 * one.independent - found.fit.effective < INDEPENDENT;
+    correlation.filter(few).map(|one| Reason::Few {
+        length: one.length,
+        independent: one.independent,
+    })
 }
 
 /// The names of the edges with a stated condition, except those that moved in an unknown way.

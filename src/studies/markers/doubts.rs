@@ -4,7 +4,7 @@
 
 use super::MarkerStudy;
 use super::frame_agreement;
-use super::gross_errors::{has_hidden, has_many};
+use super::gross_errors::has_many;
 use super::of_frames::{OfFrame, once};
 use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate, ForceCheck, RegressedLaw, Robust};
@@ -25,14 +25,13 @@ struct Looked<'a> {
 type Doubt = (String, &'static str);
 
 /// What may be doubtful of a frame, the likeliest cause of what follows first.
-const DOUBTS: [fn(&Looked) -> Option<Doubt>; 11] = [
+const DOUBTS: [fn(&Looked) -> Option<Doubt>; 10] = [
     |frame| frame.unknown_edge(),
     |frame| idle_edges(frame.estimate),
     |frame| edges(frame.estimate),
     |frame| forces(frame.estimate),
     |frame| not_explained(frame.estimate),
     |frame| frame.no_measurement(),
-    |frame| hidden_outliers(frame.estimate),
     |frame| many_outliers(frame.estimate),
     |frame| noise(frame.estimate),
     |frame| frame.strains(),
@@ -101,7 +100,7 @@ impl Looked<'_> {
     /// An edge that nothing but the markers tells of may be what does not explain the data.
     fn unknown_edge(&self) -> Option<Doubt> {
         let gap = self.study.unknown_gap?;
-        (!self.estimate.is_explained()).then(|| {
+        (self.estimate.verdict.answer == Answer::NotExplained).then(|| {
             let message = format!(
                 "the free edges are known only to within {} mm, because only the markers define them; with precise data even a smaller \
                  offset leads to rejection",
@@ -138,7 +137,7 @@ impl Looked<'_> {
 
     /// Noise that is no measurement's: a share of the specimen, or many times that of most frames, where there are several.
     fn no_measurement(&self) -> Option<Doubt> {
-        if !self.estimate.is_explained() {
+        if self.estimate.verdict.answer == Answer::NotExplained {
             return None;
         }
         let (noise, [low, high]) = (self.estimate.noise, self.study.mesh.bounding_box());
@@ -197,18 +196,6 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
         message,
         "correct the stated noise, or leave it out to have it estimated",
     ))
-}
-
-/// Gross errors that are so many that their size was taken for that of the noise.
-fn hidden_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
-    has_hidden(estimate).then(|| {
-        let message = format!(
-            "half of the markers lie much closer to the field than a noise of {} mm suggests: many are gross errors, and intervals are meaningless",
-            decimals(estimate.noise, 4)
-        );
-        let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which down-weights outlying markers";
-        (message, hint)
-    })
 }
 
 fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {

@@ -1,5 +1,6 @@
 //! The report of a correction.
 
+use super::force_words::{basis, newtons};
 use super::{noise, reading, refined, scale, verdict};
 use crate::corrector::estimation::{Answer, EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::error::Diagnostic;
@@ -32,7 +33,7 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagn
     }
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
-            let interval = interval(found, estimate.is_explained(), 6);
+            let interval = interval(found, estimate.has_intervals(), 6);
             text += &format!(
                 "{key} in frame {}: {} {unit}{interval}\n",
                 frame.number,
@@ -47,10 +48,11 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagn
                 "force on {} in frame {}: x {}, y {}\n",
                 force.edge,
                 frame.number,
-                newtons(x, last.is_explained()),
-                newtons(y, last.is_explained())
+                newtons(field, last, x),
+                newtons(field, last, y)
             );
         }
+        text += &basis(field, last).map_or(String::new(), |words| format!("{words}\n"));
         let deviation = field.conditions.scale_deviation;
         text += &scale::line(frame.number, last, deviation).unwrap_or_default();
     }
@@ -96,11 +98,6 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         };
     }
     text
-}
-
-fn newtons(force: &Estimate, explained: bool) -> String {
-    let value = decimals(force.value, 4);
-    format!("{value} N{}", interval(force, explained, 4))
 }
 
 /// The interval behind a value, which only an explained field has.
@@ -195,6 +192,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         Block::heading("Forces on the edges"),
         forces(field, estimates),
     ]);
+    let basis = estimates.last().and_then(|last| basis(field, last));
+    blocks.extend(basis.map(Block::paragraph));
     let deviation = field.conditions.scale_deviation;
     let scale = estimates
         .last()
@@ -281,9 +280,9 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             .to_owned(),
             decimals(residual_rms(estimate), 5),
             format!("{:.1}", estimate.effective_parameters),
-            match estimate.is_explained() {
+            match estimate.has_intervals() {
                 true => decimals(largest_error(estimate), 5),
-                false => "not explained".to_owned(),
+                false => "no interval".to_owned(),
             },
             estimate.whiteness.as_ref().map_or(String::new(), |found| {
                 format!(
@@ -305,8 +304,8 @@ fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             vec![
                 frame.number.to_string(),
                 force.edge.clone(),
-                newtons(x, estimate.is_explained()),
-                newtons(y, estimate.is_explained()),
+                newtons(field, estimate, x),
+                newtons(field, estimate, y),
             ]
         })
     });
@@ -318,7 +317,7 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.parameters.iter().map(move |(key, unit, found)| {
-            let error = match estimate.is_explained() {
+            let error = match estimate.has_intervals() {
                 true => decimals(found.standard_error, 6),
                 false => String::new(),
             };
@@ -328,7 +327,7 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
                 unit.to_string(),
                 decimals(found.value, 6),
                 error,
-                interval(found, estimate.is_explained(), 6),
+                interval(found, estimate.has_intervals(), 6),
             ]
         })
     });

@@ -19,7 +19,7 @@ use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
     MOST_CELLS, Tolerances, check_range, multiples_of_cells, need_of_cells, read_climb,
-    read_newton, read_plate, refuse_climb_with_memory,
+    read_newton, read_plate, refuse_memory,
 };
 use crate::units::Dimension;
 
@@ -165,7 +165,7 @@ fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Corr
             .fault("area_term", message, hint);
     }
     if corrector.is_some_and(|corrector| corrector.climb.is_some()) {
-        refuse_climb_with_memory(&root.section("corrector"));
+        refuse_memory(&root.section("corrector"), "the climb");
     }
 }
 

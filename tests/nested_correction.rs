@@ -1,11 +1,10 @@
-//! The climb on any shape: what it leaves is small compared with the discretisation error, which it states.
+//! Nested correction on any shape: it leads to the equilibrium of the finest mesh, and states its discretisation error.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use gelbench::corrector::CorrectorSettings;
-use gelbench::corrector::climb::ClimbSettings;
-use gelbench::corrector::shape_climb::climb;
+use gelbench::corrector::nested::{NestedCorrection, NestedMeshes};
 use gelbench::corrector::specimen::{correct, correct_without_multipliers};
 use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
 use gelbench::mesh::{CellShape, Mesh, Shape};
@@ -94,40 +93,8 @@ fn root_mean_square(a: &[f64], b: &[f64]) -> f64 {
     (sum / (0.5 * a.len() as f64)).sqrt()
 }
 
-#[test]
-fn what_the_climb_leaves_is_a_small_share_of_the_discretisation_error() {
-    for case in cases() {
-        let meshes: Vec<Mesh> = (0..4)
-            .map(|level| case.shape.mesh(case.across << level, case.kind))
-            .collect();
-        let finest = &meshes[3];
-        for (settings, most) in [(ClimbSettings::default(), 2e-3), (ClimbSettings::FAST, 0.1)] {
-            let climbed = climb(&case.problem, &meshes, 1.0, settings).unwrap();
-            assert!(
-                climbed.work[1..].iter().all(|work| work.iterations > 0),
-                "{}: {:?}",
-                case.name,
-                climbed.work
-            );
-            let energy = case.problem.finite_elements(finest);
-            let model = case.problem.on(finest, &energy).unwrap();
-            let exact = correct_without_multipliers(
-                &model,
-                &climbed.state.displacement,
-                Stage::first(1.0),
-                SETTINGS,
-            )
-            .unwrap();
-            let left = root_mean_square(&climbed.state.displacement, &exact.displacement);
-            let error = climbed.discretisation_error;
-            assert!(
-                left <= most * error,
-                "{}: {left} of {error}, {:?}",
-                case.name,
-                climbed.work
-            );
-        }
-    }
+fn correct_on(problem: &BoundaryProblem, meshes: &[Mesh]) -> NestedCorrection {
+    NestedMeshes::new(problem, meshes).correct(1.0).unwrap()
 }
 
 /// The stated error against meshes with cells a quarter as large, or half where they are quadratic.
@@ -141,14 +108,12 @@ fn the_stated_discretisation_error_is_true_within_two() {
         };
         let meshes = (0..finest).map(|level| case.shape.mesh(case.across << level, case.kind));
         let meshes: Vec<Mesh> = meshes.collect();
-        let settings = ClimbSettings::default();
-        let on = |levels: usize| climb(&case.problem, &meshes[..levels], 1.0, settings).unwrap();
-        let (climbed, finer) = (on(levels), on(finest));
+        let corrected = correct_on(&case.problem, &meshes[..levels]);
+        let finer = correct_on(&case.problem, &meshes);
         let interpolation = meshes[finest - 1].interpolation_on(&meshes[levels - 1]);
         let there = interpolation.apply(&finer.state.displacement);
-        let true_error = root_mean_square(&climbed.state.displacement, &there);
-        let ratio = climbed.discretisation_error / true_error;
-        println!("{}: stated over true {ratio}", case.name);
+        let true_error = root_mean_square(&corrected.state.displacement, &there);
+        let ratio = corrected.discretisation_error / true_error;
         assert!(
             (0.5..2.0).contains(&ratio),
             "{}: stated over true {ratio}",
@@ -158,19 +123,13 @@ fn the_stated_discretisation_error_is_true_within_two() {
 }
 
 #[test]
-fn the_field_without_multipliers_is_that_with_them() {
+fn nested_meshes_lead_to_the_field_with_multipliers_and_to_that_without() {
     for case in cases() {
-        let mesh = case.shape.mesh(2 * case.across, case.kind);
+        let meshes = [1, 2].map(|halves| case.shape.mesh(halves * case.across, case.kind));
+        let start = correct_on(&case.problem, &meshes).state.displacement;
+        let [_, mesh] = meshes;
         let energy = case.problem.finite_elements(&mesh);
         let model = case.problem.on(&mesh, &energy).unwrap();
-        let start = climb(
-            &case.problem,
-            std::slice::from_ref(&mesh),
-            1.0,
-            ClimbSettings::default(),
-        )
-        .unwrap();
-        let start = start.state.displacement;
         let with = correct(
             &model,
             &start,
@@ -183,8 +142,10 @@ fn the_field_without_multipliers_is_that_with_them() {
             let model = case.problem.on(&mesh, &energy).unwrap().solved_by(solver);
             let without =
                 correct_without_multipliers(&model, &start, Stage::first(1.0), SETTINGS).unwrap();
-            let apart = root_mean_square(&with.state.displacement, &without.displacement);
-            assert!(apart < 1e-7, "{}: {apart} mm", case.name);
+            for field in [&start, &without.displacement] {
+                let apart = root_mean_square(&with.state.displacement, field);
+                assert!(apart < 1e-7, "{}: {apart} mm", case.name);
+            }
         }
     }
 }
