@@ -39,11 +39,13 @@ const DOUBTS: [fn(&Looked) -> Option<Doubt>; 10] = [
 ];
 
 impl MarkerStudy {
-    /// What makes the figures doubtful, the likeliest cause first: a mistake in the file, what concerns all frames, and each doubt of single
-    /// ones once.
+    /// What makes the figures doubtful, the likeliest cause first: a mistake in the file, or else what concerns all frames, and each doubt
+    /// of single ones once.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
-        let mut all: Vec<Diagnostic> = self.mistake(estimates).into_iter().collect();
-        all.extend(self.doubts.iter().cloned());
+        if let Some(mistake) = self.mistake(estimates) {
+            // All else follows from a field that nobody measured.
+            return [&[mistake][..], &self.doubts].concat();
+        }
         let usual = median(estimates.iter().map(|estimate| estimate.noise));
         let usual_noise = Some(usual).filter(|usual| estimates.len() > 2 && *usual > 0.0);
         let of_frames = DOUBTS.iter().flat_map(|doubt| {
@@ -61,9 +63,9 @@ impl MarkerStudy {
                 })
             })
         });
-        all.extend(once(&self.frame_numbers(), of_frames.collect()));
-        all.extend(frame_agreement::doubts(estimates));
-        all
+        let of_frames = once(&self.frame_numbers(), of_frames.collect());
+        let of_all = frame_agreement::doubts(estimates);
+        [&self.doubts[..], &of_frames, &of_all].concat()
     }
 
     /// The numbers of the frames in their order.

@@ -56,16 +56,14 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagn
         let deviation = field.conditions.scale_deviation;
         text += &scale::line(frame.number, last, deviation).unwrap_or_default();
     }
-    for doubt in doubts.iter().filter(|doubt| !is_verdict(doubt)) {
+    // The verdict has lines of its own.
+    let verdict = Answer::NotExplained.words();
+    let others = doubts.iter();
+    for doubt in others.filter(|doubt| !doubt.message.contains(verdict)) {
         let hint = doubt.hint.as_deref().map(|hint| format!("  {hint}\n"));
         text += &format!("doubtful: {}\n{}", doubt.message, hint.unwrap_or_default());
     }
     text + &verdict::summary(field, estimates)
-}
-
-/// Whether a doubt is the verdict, which has lines of its own.
-fn is_verdict(doubt: &Diagnostic) -> bool {
-    doubt.message.contains(Answer::NotExplained.words())
 }
 
 /// A row for each of the first and last frames.
