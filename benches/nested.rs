@@ -12,6 +12,7 @@ use gelbench::mesh::{CellShape, Mesh};
 use gelbench::problem::BoundaryProblem;
 use gelbench::solve::NewtonSettings;
 
+#[expect(dead_code, reason = "other shapes are those of tests")]
 #[path = "../tests/common/sheets.rs"]
 mod sheets;
 
