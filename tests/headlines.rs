@@ -72,7 +72,7 @@ fn curves_of_force_begin_at_rest_and_have_no_point_that_was_not_computed() {
     let strip = strip(6, CLAMPED);
     let drawn = lines(&plate, "force.png").iter().map(|line| (&plate, line));
     let drawn = drawn.chain(
-        lines(&strip, "small_forces.png")
+        lines(&strip, "strip_forces.png")
             .iter()
             .map(|line| (&strip, line)),
     );
@@ -102,13 +102,13 @@ fn curves_of_force_begin_at_rest_and_have_no_point_that_was_not_computed() {
     assert_eq!(count, 6);
 }
 
-/// The cell of a table's row that begins with some words.
+/// The cell of the last row of a table that begins with some words: of some groups at one step, the last one.
 fn cell(block: &Block, row: &str, head: &str) -> f64 {
     let Block::Table(heads, rows) = block else {
         panic!("{block:?}");
     };
     let column = heads.iter().position(|own| own.starts_with(head)).unwrap();
-    let row = rows.iter().find(|own| own[0].starts_with(row)).unwrap();
+    let row = rows.iter().rfind(|own| own[0].starts_with(row)).unwrap();
     row[column].parse().unwrap()
 }
 
@@ -121,10 +121,8 @@ fn the_headline_of_a_strip_in_uniaxial_tension_is_that_of_its_law() {
     let card = Card::load("pva-10-yeoh", Path::new(".")).unwrap();
     for (step, stretch) in [("0.5", 1.15), ("1", 1.3)] {
         let nominal = Mode::Uniaxial.nominal_stress(&*card.law, stretch - 1.0);
-        assert_eq!(
-            cell(forces, step, "displacement along x"),
-            20.0 * (stretch - 1.0)
-        );
+        let displacement = cell(forces, step, "displacement along x");
+        assert!((displacement - 20.0 * (stretch - 1.0)).abs() < 1e-9);
         assert!((cell(forces, step, "force along x") / (20.0 * nominal) - 1.0).abs() < 1e-4);
         if stretch == 1.3 {
             for column in ["largest", "gauge"] {
@@ -137,16 +135,20 @@ fn the_headline_of_a_strip_in_uniaxial_tension_is_that_of_its_law() {
             }
         }
     }
-    // The left side balances the right one, and nothing is singular.
-    assert!(matches!(forces, Block::Table(_, rows) if rows.len() == 2 && rows[0][1] == "right"));
+    // Symmetry lines end where stress has a bound.
     assert!(!note.plain().contains("no bound"), "{note:?}");
 }
 
 #[test]
 fn the_largest_stress_beside_clamps_is_not_one_of_the_mesh() {
-    let [coarse, fine] = [3, 6].map(|cells| strip(cells, CLAMPED));
+    let [coarse, fine] = [6, 8].map(|cells| strip(cells, CLAMPED));
     let most = |results: &Results| cell(&results.outcome.headline[1], "von Mises", "largest");
     assert!((most(&coarse) / most(&fine) - 1.0).abs() < 0.01);
+    // The left side only balances the right one.
+    let Block::Table(_, rows) = &coarse.outcome.headline[0] else {
+        panic!("{:?}", coarse.outcome.headline);
+    };
+    assert!(rows.len() == 2 && rows[0][1] == "right", "{rows:?}");
     let note = coarse.outcome.headline[2].plain();
     assert!(
         note.contains("farther than 2 mm from ends of supports"),
@@ -161,7 +163,7 @@ fn reports_and_terminals_begin_with_the_headline_of_every_kind_of_sheet() {
         motion = \"release\"\ntime = \"0 s\"\n[time]\nduration = \"4 ms\"\ninterval = \"2 ms\"\nstep = \"0.05 ms\"\n";
     for results in [
         plate("[\"20 %\"]", [12, 4]),
-        strip(3, CLAMPED),
+        strip(4, CLAMPED),
         computed(moving),
     ] {
         let report = results.report();
