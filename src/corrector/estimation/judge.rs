@@ -4,6 +4,8 @@
 //! alternative of [`alternatives`] and all edges released, where the residuals are noise more surely. The data, made white by the
 //! latter, determine which alternative reduces the misfit more than noise would (F test, in one linearised step).
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::given::{Edge, EdgeCondition, Task};
 use super::outcome::{
@@ -73,8 +75,7 @@ pub fn judge(
     let mut noises = base.noises(&rows);
     let noise = noises.first();
     let columns = found.alternatives(own)?;
-    let of_score = |scored: &Scored| Model::of_score(&rows, found, scored).with(&rows, &granted);
-    let all = all.map(|scored| of_score(&scored));
+    let all = all.map(|scored| Model::of_score(&rows, found, &scored).with(&rows, &granted));
     let basis = Basis {
         reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, own),
         rows: &rows,
@@ -94,12 +95,7 @@ pub fn judge(
     let few = few(correlation, found);
     let mut contradiction = None;
     if against.is_some() {
-        let alone = |name: &str| {
-            let scored = let_go(task, found, edges, &|other| other == name)?;
-            let model = Model::of_score(&rows, found, &scored).with(&rows, &granted);
-            Some(basis.try_out(found, Alternative::Edge(name.to_owned()), &model))
-        };
-        let each: Vec<Trial> = said(edges).into_iter().filter_map(alone).collect();
+        let each = basis.edge_by_edge(task, found, edges, &granted);
         contradiction = contradicted(together.as_ref(), &each);
         trials.extend(together.filter(|_| each.len() > 1));
         trials.extend(each);
@@ -110,12 +106,7 @@ pub fn judge(
     let left = base.plain_left(&rows, found);
     trials.retain(|trial| trial.left < EXPLAINS * left);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let answer = match (against, few, correlation) {
-        (Some(_), ..) => Answer::NotExplained,
-        (None, Some(_), _) => Answer::Undecided,
-        (None, None, Some(_)) => Answer::Correlated,
-        (None, None, None) => Answer::Explained,
-    };
+    let answer = answer(against, few, correlation);
     if answer != Answer::Undecided {
         noises.truncate(1);
     }
@@ -134,6 +125,20 @@ pub fn judge(
     })
 }
 
+/// Evidence against the equations counts most, then that there can be none.
+fn answer(
+    against: Option<Reason>,
+    few: Option<Reason>,
+    correlation: Option<NoiseCorrelation>,
+) -> Answer {
+    match (against, few, correlation) {
+        (Some(_), ..) => Answer::NotExplained,
+        (None, Some(_), _) => Answer::Undecided,
+        (None, None, Some(_)) => Answer::Correlated,
+        (None, None, None) => Answer::Explained,
+    }
+}
+
 /// The basis on which alternatives are tried.
 struct Basis<'a> {
     rows: &'a Rows,
@@ -147,6 +152,23 @@ impl Basis<'_> {
             left: model.plain_left(self.rows, found),
             ..self.reference.test(alternative, self.base, model)
         }
+    }
+
+    /// What each of the edges with a stated condition explains by itself where it is released.
+    fn edge_by_edge(
+        &self,
+        task: &Task,
+        found: &NearestField,
+        edges: &[Edge],
+        granted: &[DMatrix<f64>],
+    ) -> Vec<Trial> {
+        let names = said(edges).into_iter();
+        let released = names.filter_map(|name| {
+            let scored = let_go(task, found, edges, &|other| other == name)?;
+            let model = Model::of_score(self.rows, found, &scored).with(self.rows, granted);
+            Some(self.try_out(found, Alternative::Edge(name.to_owned()), &model))
+        });
+        released.collect()
     }
 
     /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
