@@ -13,7 +13,7 @@ mod remedy;
 pub use figures::{decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
-pub use remedy::bare_ratio;
+pub use remedy::{bare_ratio, could_be_stretch_ratios};
 
 /// The kind of a physical quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
