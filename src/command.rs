@@ -22,14 +22,13 @@ use crate::error::Diagnostic;
 use crate::kinds;
 use crate::output;
 use crate::output::ResultFolder;
-use crate::results::{Check, End, Results, check_lines};
+use crate::results::{Check, End, Results};
 use crate::studies::{self, name};
 use crate::validation;
 use journal::FolderJournal;
 use large::Large;
 use progress::{Progress, Shown, tell_files};
 use reference::FileKind;
-use serde_json::{Value, json};
 use terminal::{Outcome, Printed, complain, complain_of_end, print, print_report, warn};
 
 mod choice;
@@ -54,6 +53,7 @@ mod shell;
 mod sweep;
 mod terminal;
 mod test_reading;
+mod validate;
 mod workbench;
 
 const SAMPLES: &str = "Samples:
@@ -258,7 +258,7 @@ fn perform(command: Command) -> u8 {
         } => {
             printed.choose();
             cases.extend(field.then(|| validation::REAL_MEASUREMENTS.to_owned()));
-            validate(&cases, quick, output)
+            validate::run(&cases, quick, output)
         }
         Command::Workbench { files } => workbench::open(&files),
         Command::Materials { command } => materials::run(command),
@@ -312,54 +312,6 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     ];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     conclude(&[results], &parts.join("\n"))
-}
-
-fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
-    let chosen = kinds::choose(names, quick)?;
-    // A part never takes the place of the whole report.
-    let part = match &*chosen {
-        [case] => case.name,
-        all if all.len() == kinds::KINDS.len() => "",
-        _ => "several",
-    };
-    let usual = || Path::new("output/validation").join(part);
-    let folder = &folder.unwrap_or_else(usual);
-    let mut results = ResultFolder::open(folder, "validate", &[])?;
-    interrupt::guard(&results);
-    let progress = Progress::of(chosen.len() as u64);
-    let mut cases = Vec::new();
-    for case in chosen {
-        let told = |what: &str| progress.tell(&format!("{}: {what}", case.name));
-        told("begins");
-        let told = studies::Progress::to(&told);
-        cases.push(kinds::compute_or_fail(case, told)?);
-        progress.advance();
-    }
-    let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
-    let mut warnings = output::write_document(&mut results, "REPORT", &blocks, &figures)?;
-    let times = validation::report::times(&cases);
-    warnings.extend(output::write_document(&mut results, "TIMES", &times, &[])?);
-    drop(progress);
-    warn(&warnings);
-    tell_files(&results.finish()?);
-    print_report(|| cases_json(&cases))?;
-    let report = folder.join("REPORT.md");
-    let checks = cases.iter().flat_map(|case| {
-        let checks = case.outcome.checks.iter();
-        checks.map(|check| (Some(case.kind), check))
-    });
-    let lines = check_lines(checks);
-    let text = format!("{lines}\nreport: {}\n", report.display());
-    conclude(&cases, &text)
-}
-
-/// All cases for machines, each as `report.json` has a study.
-fn cases_json(cases: &[Results]) -> Value {
-    json!({
-        "gelbench": env!("CARGO_PKG_VERSION"),
-        "passed": cases.iter().all(Results::passed),
-        "cases": cases.iter().map(Results::json).collect::<Vec<_>>(),
-    })
 }
 
 /// The exit code of a study of which a model has no solution.

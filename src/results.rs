@@ -3,8 +3,10 @@
 //! Every kind of study returns the same [`Results`]. [`Results::report`] and [`Results::json`] present the same
 //! content in the same order; `output` draws and encodes it.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use crate::document::stored::{self, StaticText, optional_static_text, static_text};
 use crate::error::Error;
 
 mod array;
@@ -67,21 +69,23 @@ pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;
 
 /// A claim of the publication, and the result found here.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Claim {
     /// The publication's words, shortened.
-    pub claim: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub claim: StaticText,
     /// The result found here.
     pub reproduced: String,
 }
 
 /// A model that has no solution at some of its load factors.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct End {
     /// The model, where it ended, and why.
     pub message: String,
     /// Advice on what to try.
-    pub advice: Option<&'static str>,
+    #[serde(deserialize_with = "optional_static_text")]
+    pub advice: Option<StaticText>,
     /// The exit code of a command that ends with it.
     pub exit_code: u8,
 }
@@ -97,27 +101,30 @@ impl From<&Error> for End {
 }
 
 /// Results at one stretch, load factor, instant or frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// The stretch, load factor, time in s or number of the frame.
     pub at: f64,
     /// The quantities of every model, by names with units; `null` where a model has no solution.
+    #[serde(with = "stored::json")]
     pub models: Map<String, Value>,
 }
 
-/// Findings of a study or a case.
-#[derive(Clone, Debug, Default)]
+/// Findings of a study or a case. Stored are those that the report of all cases has, not the fields and files of the case.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Outcome {
     /// Requirements, with the values found.
     pub checks: Vec<Check>,
     /// Claims of the publication.
     pub claims: Vec<Claim>,
     /// The problem that was solved, for machines.
+    #[serde(with = "stored::json")]
     pub problem: Map<String, Value>,
     /// The material.
     pub material: Option<Material>,
     /// The parameter along which the steps run: `stretch`, `load factor`, `time` or `frame`.
-    pub along: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub along: StaticText,
     /// The quantities of all models, step by step.
     pub steps: Vec<Step>,
     /// Explanations and tables. Pictures that no block places come after the last block.
@@ -125,12 +132,16 @@ pub struct Outcome {
     /// Pictures.
     pub figures: Vec<Figure>,
     /// How the pictures are drawn.
+    #[serde(skip)]
     pub style: PictureStyle,
     /// Fields of the models.
+    #[serde(skip)]
     pub grids: Vec<GridSeries>,
     /// Fields for readers of the report, written to other files or to none.
+    #[serde(skip)]
     pub explored: Vec<GridSeries>,
     /// Tables and other files beside the report: name and content.
+    #[serde(skip)]
     pub files: Vec<(String, Content)>,
     /// Measured times: name and seconds.
     pub times: Vec<(String, f64)>,
@@ -144,6 +155,7 @@ pub struct Outcome {
     /// force or moment; `None` where none was solved.
     pub balance: Option<f64>,
     /// The balance of every model, by its name.
+    #[serde(with = "stored::json")]
     pub balances: Map<String, Value>,
     /// What the study is computed for, at a glance: [`Headline::blocks`] of a sheet. Reports and terminals begin with it.
     pub headline: Vec<Block>,
@@ -171,14 +183,15 @@ impl Outcome {
 }
 
 /// The results of a study.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
     /// The study's name, from the name of its file.
     pub name: String,
     /// The study's title.
     pub title: String,
     /// The study's kind.
-    pub kind: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub kind: StaticText,
     /// The study's text; empty where there is none.
     pub text: String,
     /// The keys that the study does not state, with the defaults used.

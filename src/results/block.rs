@@ -1,9 +1,12 @@
 //! Parts of a report.
 
+use serde::{Deserialize, Serialize};
+
 use super::Drawing;
+use crate::document::stored::{StaticText, static_text};
 
 /// A part of a report.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Block {
     /// A heading of the given level, 1 to 3.
     Heading(u8, String),
@@ -14,7 +17,10 @@ pub enum Block {
     /// The picture of this index, with its caption.
     Figure(usize, String),
     /// Text in a language, such as `toml`, shown as it is.
-    Code(&'static str, String),
+    Code(
+        #[serde(deserialize_with = "static_text")] StaticText,
+        String,
+    ),
 }
 
 impl Block {
@@ -121,7 +127,7 @@ pub enum Content {
 }
 
 /// A picture and its caption.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// File name.
     pub name: String,

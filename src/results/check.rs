@@ -1,13 +1,15 @@
 //! Requirements on computed values, and their results.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Block, limit, or_dash};
 use crate::compare::judgement::Judgement;
+use crate::document::stored::{StaticText, static_text};
 use crate::units::number;
 
 /// The requirement on a computed value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Wanted {
     /// A value, within a tolerance in percent of it.
     Equal(f64, f64),
@@ -18,16 +20,18 @@ pub enum Wanted {
 }
 
 /// A checked value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// The quantity.
     pub quantity: String,
     /// Its unit.
-    pub unit: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub unit: StaticText,
     /// The requirement.
     pub wanted: Wanted,
     /// The source of the requirement.
-    pub source: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub source: StaticText,
     /// The computed value.
     pub computed: f64,
     /// The error of the reference itself, in the check's unit, where it is known.

@@ -188,7 +188,7 @@ fn check_stretch(
 
 /// One stretch, as a ratio or in percent.
 pub fn read_stretch(section: &Section<'_>, key: &'static str) -> f64 {
-    section.quantity(key, Dimension::Ratio, STRETCHES)
+    section.stretch(key, STRETCHES)
 }
 
 /// How a model is solved.

@@ -175,7 +175,7 @@ fn read_material(section: &Section, folder: &Path) -> Material {
 /// The stretch at the start, and the motion of the right grip from there.
 fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotion>) {
     let section = root.section("start").requiring(&["stretch"]);
-    let start = section.quantity("stretch", Dimension::Ratio, STRETCHES);
+    let start = section.stretch("stretch", STRETCHES);
     if let Some(card) = card.filter(|_| start != 0.0) {
         sections::check_range(&section, "stretch", &[start], card);
     }

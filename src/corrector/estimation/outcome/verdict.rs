@@ -30,6 +30,14 @@ impl Answer {
             Self::NotExplained => "not explained by this law, thickness and conditions",
         }
     }
+
+    /// The answer in words, where the data are those of another `model`.
+    pub fn given(self, model: &str) -> String {
+        match self {
+            Self::NotExplained => format!("not explained by {model}"),
+            other => other.words().to_owned(),
+        }
+    }
 }
 
 /// The answer with its evidence.
