@@ -15,6 +15,7 @@ use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
+mod changed;
 mod published;
 mod resistance;
 
@@ -88,6 +89,8 @@ pub struct FitRecord {
     pub softening: bool,
     /// The card, relative to this one, whose law is the base of the fitted softening; `None` where the law was fitted with it.
     pub base_card: Option<String>,
+    /// What the fit found: `key = value` in internal units; empty where it was not recorded.
+    pub values: Vec<String>,
 }
 
 impl Card {
@@ -325,6 +328,7 @@ fn read_fit(section: &Section) -> FitRecord {
             .then(|| section.count("relaxation_terms", 0, 6)),
         softening: section.has("softening") && section.flag("softening"),
         base_card: section.has("base_card").then(|| section.text("base_card")),
+        values: optional("values"),
     };
     section.unknown_keys();
     record
