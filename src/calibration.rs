@@ -21,7 +21,8 @@ mod trust;
 
 pub use card_text::{Provenance, card_text};
 pub use data::{
-    Conversion, FoundZero, KEYS, Observation, PRECONDITIONED, StrainColumn, Test, TestData, Times,
+    ColumnReading, Conversion, FoundZero, KEYS, Observation, PRECONDITIONED, StrainColumn,
+    TableReading, Test, TestData, Times,
 };
 pub use fit::{Fit, Relaxed, fit};
 pub use ranking::{best, rank};

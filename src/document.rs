@@ -13,6 +13,7 @@ use crate::budget::Budget;
 use crate::error::{Diagnostic, Error, Severity, Source};
 use crate::units::{SIZES, on_the_end};
 
+mod chosen;
 mod columns;
 mod comments;
 mod decimals;
@@ -33,6 +34,7 @@ mod table;
 mod text;
 mod written;
 
+pub use chosen::{ChosenColumns, ColumnRole, FoundColumns, column_named};
 pub use columns::{Column, is_pixel, plain_name};
 pub use comments::comments;
 pub use edited::{EditedDocument, NewValue};

@@ -8,7 +8,6 @@
 //!
 //! All lengths are in mm. A marker that was not found in a frame is absent from it.
 
-mod chosen;
 pub mod columns;
 mod frames;
 mod layouts;
@@ -17,15 +16,16 @@ mod on_mesh;
 mod outside;
 mod plausible;
 mod read;
+mod role;
 mod rows;
 mod subset;
 mod table;
 mod understood;
 
-pub use chosen::{ChosenColumns, Role, column_named};
 pub use frames::{Frame, Marker, MarkerSeries};
 pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, read};
+pub use role::{ChosenColumns, Role};
 pub use rows::ReadSettings;
 pub use subset::Subset;
 pub use table::read_lines;

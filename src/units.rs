@@ -201,10 +201,13 @@ impl Dimension {
         }
     }
 
-    /// A single quantity of this dimension, as written in a file.
-    pub fn one_example(self) -> &'static str {
-        let example = self.example();
-        example.split_once(" or ").map_or(example, |(_, last)| last)
+    /// A quantity of this dimension as written in a file, its number left out: a number in a hint would be another material's.
+    pub fn blank(self) -> String {
+        let example = self.example().trim_matches('"');
+        match example.split_once(' ') {
+            Some((_, unit)) if self != Self::Ratio => format!("\"… {unit}\""),
+            _ => "…".to_owned(),
+        }
     }
 
     /// An example of a well-formed quantity, for hints.
@@ -213,7 +216,7 @@ impl Dimension {
             Self::Length => "\"2 mm\"",
             Self::Area => "\"20 mm^2\"",
             Self::Force => "\"1.5 N\"",
-            Self::Stress => "\"0.0611 MPa\"",
+            Self::Stress => "\"1 MPa\"",
             Self::Density => "\"1020 kg/m^3\"",
             Self::Mass => "\"5 g\"",
             Self::Time => "\"10 s\"",

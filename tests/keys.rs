@@ -58,7 +58,7 @@ fn keys_of_choices_are_found_with_unit_range_and_default() {
         ),
         (
             "specimen",
-            "| `pressure` | stress | must be stated, such as `\"0.0611 MPa\"` | with `kind` `\"pressure\"` |",
+            "| `pressure` | stress | must be stated, such as `\"1 MPa\"` | with `kind` `\"pressure\"` |",
         ),
         (
             "specimen",

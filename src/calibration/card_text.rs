@@ -1,6 +1,7 @@
 //! The material card of a fit, as text.
 
 use std::fmt::{Display, Write};
+use std::path::Path;
 
 use nalgebra::DMatrix;
 
@@ -129,6 +130,11 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
     if reading.len() > 0 {
         put(&mut text, "reading", list(reading));
     }
+    let values = fit.parameters.iter();
+    let values = values.map(|own| format!("{} = {}", own.key, own.value));
+    if values.len() > 0 {
+        put(&mut text, "values", list(values));
+    }
     text
 }
 
@@ -254,6 +260,12 @@ fn softening(text: &mut String, fit: &Fit) {
     );
 }
 
+/// The last part of a file's path.
+fn file_name(path: &str) -> String {
+    let name = Path::new(path).file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
 /// The figures and the warnings of the fit in one line.
 fn note(fit: &Fit, tests: &[TestData]) -> String {
     let quality = &fit.quality;
@@ -279,6 +291,14 @@ fn note(fit: &Fit, tests: &[TestData]) -> String {
     if let Some(verdict) = &quality.verdict {
         note += "; residuals: ";
         note += &verdict.sentence();
+    }
+    for test in tests {
+        let _ = write!(
+            note,
+            "; {}: {}",
+            file_name(&test.name),
+            test.table.sentence()
+        );
     }
     for remark in tests.iter().flat_map(|test| &test.remarks) {
         note += "; ";

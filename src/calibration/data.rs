@@ -1,5 +1,7 @@
 //! Test data: reading of tables and records, the meaning of their columns, zeros and cycles, and impossible values.
 
+mod choice;
+mod columns;
 mod conversion;
 mod cycles;
 mod layout;
@@ -8,10 +10,12 @@ mod reading;
 mod record;
 mod roles;
 mod rounding;
+mod table_reading;
 mod test_data;
 mod zero;
 
 pub use conversion::Conversion;
 pub use cycles::{Branches, PRECONDITIONED};
 pub use reading::KEYS;
+pub use table_reading::{ColumnReading, TableReading};
 pub use test_data::{FoundZero, Observation, StrainColumn, Test, TestData, Times};

@@ -90,7 +90,9 @@ pub struct ConvertArguments {
 
 /// A card by its name or path.
 pub fn load(name: &str) -> Result<Card, Error> {
-    Card::load(name, Path::new("."))
+    let card = Card::load(name, Path::new("."))?;
+    warn(card.changed_since_fit().as_slice());
+    Ok(card)
 }
 
 /// All of some results, or the faults of all of them.

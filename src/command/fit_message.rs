@@ -17,6 +17,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
             test.stress_measure.name(),
             test.observations.len()
         );
+        text += &format!("               {}\n", test.table.sentence());
         for remark in &test.remarks {
             text += &format!("               {remark}\n");
         }
@@ -272,13 +273,12 @@ const SAME: f64 = 1e-3;
 pub fn refit(card: &Card, fit: &Fit, tests: &[TestData]) -> (String, bool) {
     let mut text = format!("{}: {}\n", card.name, card.title);
     let mut worst = 0.0_f64;
-    let terms = card.viscosity.relaxation.iter();
-    let terms = terms.flat_map(|term| [term.share, term.time]);
-    let softening = card.law.softening().into_iter();
-    let softening = softening.flat_map(|own| [own.r, own.m, own.beta]);
-    let of_law = card.parameters.iter().take(fit.law_parameters().len());
-    let old = of_law.map(|old| old.value).chain(terms).chain(softening);
-    let parameters = old.zip(&fit.parameters);
+    let old = card.fitted_values();
+    let value = |key: &str| {
+        let known = old.iter().find(|(known, _)| known == key);
+        known.map_or(f64::INFINITY, |(_, value)| *value)
+    };
+    let parameters = fit.parameters.iter().map(|new| (value(new.key), new));
     for ((old, new), estimate) in parameters.zip(&fit.quality.estimates) {
         let change = (new.value - old).abs();
         // A parameter at a bound has no standard error.

@@ -49,7 +49,7 @@ impl FileKind {
         match (self, self.case()) {
             (_, Some(case)) => case.study,
             (Self::Markers, _) => markers::TEMPLATE,
-            (Self::Card, _) => include_str!("../../materials/neo-hooke.toml"),
+            (Self::Card, _) => include_str!("new_card.toml"),
             _ => plate::DEFAULT,
         }
     }

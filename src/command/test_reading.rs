@@ -57,6 +57,10 @@ pub struct ReadingArguments {
     /// Largest stretch λ before the record, of a specimen that was preconditioned; for `--softening`
     #[arg(long, value_name = "STRETCH", allow_hyphen_values = true)]
     preconditioned: Option<String>,
+    /// Columns by their quantity, such as strain=Extension,stress="Load (N)"; also strain_1, strain_2, stress_1, stress_2 and time. Columns
+    /// without names, or of equal names, have numbers: strain=2,stress=1
+    #[arg(long, value_name = "WHAT=COLUMN")]
+    columns: Vec<String>,
 }
 
 impl ReadingArguments {
@@ -79,6 +83,7 @@ impl ReadingArguments {
             self.zero,
             self.ramp,
             self.preconditioned,
+            Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs

@@ -29,6 +29,14 @@ impl Column {
         }
     }
 
+    /// Gives it the unit of a line below the names: brackets behind its name that hold no unit belong to the name.
+    pub(super) fn add_unit(&mut self, unit: &str) {
+        if let Some(remark) = self.unit.take_if(|own| !is_unit(own) && is_unit(unit)) {
+            self.written = format!("{} ({remark})", self.written);
+        }
+        self.unit.get_or_insert(unit.to_owned());
+    }
+
     /// Name and unit as written.
     pub fn head(&self) -> String {
         match &self.unit {

@@ -57,6 +57,11 @@ impl EditedDocument {
         set(&mut self.table, path, value)
     }
 
+    /// Removes a section or a value at the top, where there is one.
+    pub fn remove(&mut self, key: &str) {
+        self.table.remove(key);
+    }
+
     /// Whether there is a value at a path of names and of places in lists from 0 on.
     pub fn holds(&self, path: &[&str]) -> bool {
         self.at(path).is_some()

@@ -74,21 +74,43 @@ impl<'a> Head<'a> {
     /// # Errors
     /// A fault where they contradict each other.
     pub fn setting(&self, key: &str, named: Option<&str>) -> Faulty<Option<String>> {
-        let mut said: Vec<(&str, &str, Range<usize>)> = Vec::new();
+        // A remark may follow the word: `nominal (first Piola-Kirchhoff)`.
+        let word = |value: &str| {
+            value
+                .split(['(', ','])
+                .next()
+                .unwrap_or_default()
+                .trim()
+                .to_owned()
+        };
+        self.agreed(key, named, &word)
+    }
+
+    /// The whole statement of the file or the command line about `key`.
+    ///
+    /// # Errors
+    /// A fault where they contradict each other.
+    pub fn text(&self, key: &str) -> Faulty<Option<String>> {
+        self.agreed(key, None, &str::to_owned)
+    }
+
+    /// The statement about `key`, `read` from what the head has.
+    fn agreed(
+        &self,
+        key: &str,
+        named: Option<&str>,
+        read: &dyn Fn(&str) -> String,
+    ) -> Faulty<Option<String>> {
+        let mut said: Vec<(&str, String, Range<usize>)> = Vec::new();
         if let Some(named) = named {
-            said.push((
-                "the name of a column",
-                named,
-                self.table.columns_place.clone(),
-            ));
+            let place = self.table.columns_place.clone();
+            said.push(("the name of a column", named.to_owned(), place));
         }
         if let Some((value, place)) = self.pairs.get(key) {
-            // A remark may follow the word: `nominal (first Piola-Kirchhoff)`.
-            let word = value.split(['(', ',']).next().unwrap_or_default().trim();
-            said.push(("the header", word, place.clone()));
+            said.push(("the header", read(value), place.clone()));
         }
         if let Some(value) = self.given.get(key) {
-            said.push(("the command line", value.trim(), 0..0));
+            said.push(("the command line", value.trim().to_owned(), 0..0));
         }
         for pair in said.windows(2) {
             let [(one, first, place), (other, second, _)] = pair else {
@@ -101,7 +123,7 @@ impl<'a> Head<'a> {
                 return Err(self.fault(place.clone(), message, "state it once, or identically"));
             }
         }
-        Ok(said.first().map(|(_, value, _)| (*value).to_owned()))
+        Ok(said.into_iter().next().map(|(_, value, _)| value))
     }
 
     /// One of several names.

@@ -4,6 +4,9 @@ use std::ops::Range;
 
 use super::decimals::is_number;
 
+/// The number of lines by which separators, names, units and rows are distinguished.
+pub(super) const SURVEYED: usize = 1000;
+
 /// A text without byte-order mark and old line ends; lines that begin with stars, as some programs write them first,
 /// become remarks.
 pub(super) fn plain_text(text: &str) -> String {
@@ -25,7 +28,6 @@ pub(super) fn plain_text(text: &str) -> String {
 /// The separator of the columns: that of the first line that is not a comment, if it gives as many fields in most
 /// lines; otherwise the first one that most lines have.
 pub(super) fn delimiter(text: &str) -> Option<u8> {
-    const SURVEYED: usize = 1000;
     const ALL: [u8; 3] = [b';', b'\t', b','];
     let lines = text.split(['\n', '\r']);
     let lines = lines.filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
@@ -46,6 +48,58 @@ pub(super) fn delimiter(text: &str) -> Option<u8> {
             all.find(|delimiter| most(&|line| count(line, *delimiter) > 0))
         })
         .or(first)
+}
+
+/// The text of a table whose columns are separated by blanks with a tab at the beginning of each gap, so that every place
+/// stays; any other text as it is.
+pub(super) fn blanks_to_tabs(text: String) -> String {
+    let is_record = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
+    let records: Vec<&str> = text.lines().filter(is_record).take(SURVEYED).collect();
+    let mut widths: Vec<usize> = records.iter().filter_map(|line| numbers(line)).collect();
+    widths.sort_unstable();
+    if 2 * widths.len() <= records.len() {
+        return text;
+    }
+    let width = widths[widths.len() / 2];
+    let mut bytes = text.clone().into_bytes();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let all = [1, 2].map(|least| gaps(line, least));
+        let fitting = all.into_iter().find(|gaps| gaps.len() + 1 == width);
+        for gap in fitting.filter(|_| is_record(&line)).unwrap_or_default() {
+            bytes[start + gap] = b'\t';
+        }
+        start += line.len();
+    }
+    String::from_utf8(bytes).unwrap_or(text)
+}
+
+/// How many numbers with blanks between them a line has; `None` for any other line.
+fn numbers(line: &str) -> Option<usize> {
+    let is_plain = |field: &str| is_number(field) && !field.ends_with(',');
+    let fields = || line.trim_end().split(' ').filter(|field| !field.is_empty());
+    (fields().count() > 1 && fields().all(is_plain)).then(|| fields().count())
+}
+
+/// Where the blanks between fields begin, at least so many: not within brackets or quotes, nor before a unit in brackets.
+fn gaps(line: &str, least: usize) -> Vec<usize> {
+    let (mut gaps, mut within) = (Vec::new(), false);
+    let mut blanks: Option<usize> = None;
+    for (at, letter) in line.trim_end().char_indices() {
+        if letter == ' ' && !within {
+            blanks.get_or_insert(at);
+            continue;
+        }
+        let is_gap = |from: &usize| *from > 0 && at - from >= least && !"[(".contains(letter);
+        gaps.extend(blanks.take().filter(is_gap));
+        within = match letter {
+            '"' => !within,
+            '[' | '(' => true,
+            ']' | ')' => false,
+            _ => within,
+        };
+    }
+    gaps
 }
 
 /// The place of the remark right above a place, apart from empty lines.

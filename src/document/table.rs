@@ -1,4 +1,4 @@
-//! Tables of numbers as laboratories write them: commas, semicolons or tabs, decimal points or commas, a head of
+//! Tables of numbers as laboratories write them: commas, semicolons, tabs or blanks, decimal points or commas, a head of
 //! `# key: value` lines or a preamble, names with units in brackets or in a line of their own.
 
 use std::ops::Range;
@@ -8,7 +8,8 @@ use std::sync::Arc;
 use super::columns::{Above, Column, unquoted};
 use super::decimals::{Decimals, NotANumber, is_hole};
 use super::encoding::TextEncoding;
-use super::lines::{delimiter, is_name, line_at, plain_text, remark_above};
+use super::lines::{SURVEYED, blanks_to_tabs, delimiter, is_name};
+use super::lines::{line_at, plain_text, remark_above};
 use super::{Faults, text::read_data};
 use crate::error::{Diagnostic, Error, Source};
 
@@ -40,9 +41,6 @@ impl Table {
     /// The description of a table, for users who gave something else.
     pub const HINT: &str = "a table is CSV: a header line of names with units, and rows of numbers";
 
-    /// The number of lines by which names, units and rows are distinguished.
-    const SURVEYED: usize = 1000;
-
     /// Reads a file in the encoding that its bytes show; `hint` describes what it should be.
     ///
     /// # Errors
@@ -69,7 +67,7 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with every fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
-        let text = plain_text(text);
+        let text = blanks_to_tabs(plain_text(text));
         let delimiter = delimiter(&text);
         let mut table = Self {
             source: Arc::new(Source {
@@ -85,7 +83,8 @@ impl Table {
             nonsense: Vec::new(),
         };
         if delimiter.is_none() {
-            let hint = "a table has at least two columns, separated by commas, semicolons or tabs";
+            let hint =
+                "a table has at least two columns, separated by commas, semicolons, tabs or blanks";
             return Err(table.refuse(0..0, "there are no columns in this file", hint));
         }
         let faults = Faults::default();
@@ -116,7 +115,7 @@ impl Table {
         let first = surveyed.records().map_while(Result::ok);
         let first = first.filter(|record| !record.iter().all(str::is_empty));
         let fields = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
-        let first: Vec<Vec<String>> = first.map(fields).take(Self::SURVEYED).collect();
+        let first: Vec<Vec<String>> = first.map(fields).take(SURVEYED).collect();
         let above = Above::of(&first);
         let mut decimals = Decimals::default();
         let mut line = 0;
@@ -152,8 +151,8 @@ impl Table {
     fn add_units(&mut self, record: &csv::StringRecord) {
         for (column, field) in self.columns.iter_mut().zip(record) {
             let unit = unquoted(field).trim_matches(['(', ')', '[', ']', ' ']);
-            if column.unit.is_none() && !unit.is_empty() {
-                column.unit = Some(unit.to_owned());
+            if !unit.is_empty() {
+                column.add_unit(unit);
             }
         }
     }

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::chosen::ChosenColumns;
 use super::frames::{Frame, Marker, MarkerSeries};
 use super::outside::within;
+use super::role::ChosenColumns;
 use super::understood::Understood;
 use crate::document::TextEncoding;
 use crate::error::Diagnostic;

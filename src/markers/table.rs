@@ -6,13 +6,13 @@
 
 use std::path::Path;
 
-use super::chosen::{FoundColumns, Role};
 use super::columns::{self, FRAME, Length, Names, TIME, Units, find, length, plain, required};
 use super::layouts::{Layout, NAMED, recognise};
+use super::role::Role;
 use super::rows::{FileRows, ReadSettings, Row};
 use super::subset::Subset;
 use super::understood::{ColumnTaken, Understood};
-use crate::document::{Table, is_pixel};
+use crate::document::{FoundColumns, Table, is_pixel};
 use crate::error::{Diagnostic, Error};
 
 /// What a file of markers is.
@@ -96,8 +96,12 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(table: &'a Table, chosen: &FoundColumns, reading: &ReadSettings) -> Result<Self, Error> {
-        let layout = match chosen.any_length() {
+    fn new(
+        table: &'a Table,
+        chosen: &FoundColumns<Role>,
+        reading: &ReadSettings,
+    ) -> Result<Self, Error> {
+        let layout = match chosen.any(&Role::LENGTHS) {
             true => &NAMED,
             false => recognise(table),
         };
@@ -113,7 +117,7 @@ impl<'a> Reader<'a> {
         let units = Units {
             given: reading.unit,
             corrected: common.as_deref(),
-            pixels: layout.pixels || chosen.any_length() && names().flatten().any(is_pixel),
+            pixels: layout.pixels || chosen.any(&Role::LENGTHS) && names().flatten().any(is_pixel),
         };
         let of = |index: usize| match &heads[index] {
             Some(head) => length(table, head.clone(), units),
@@ -151,7 +155,7 @@ impl<'a> Reader<'a> {
         };
         let hint = "write a number in every field of this column, or leave it empty where nothing was found";
         table.check_numbers_or_holes(reader.read(), hint)?;
-        reader.overlooks_none(layout, chosen.any_length(), &reading.ignored_columns)
+        reader.overlooks_none(layout, chosen.any(&Role::LENGTHS), &reading.ignored_columns)
     }
 
     /// Refuses columns that nobody reads, and points that leave their plane; where the user names the columns, others are only

@@ -15,6 +15,7 @@ use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
+mod changed;
 mod parameter_uncertainty;
 mod published;
 mod resistance;
@@ -93,6 +94,8 @@ pub struct FitRecord {
     pub base_card: Option<String>,
     /// The uncertainty of the law's parameters; `None` where the residuals were no noise, or nothing is recorded.
     pub uncertainty: Option<ParameterUncertainty>,
+    /// What the fit found: `key = value` in internal units; empty where it was not recorded.
+    pub values: Vec<String>,
 }
 
 impl Card {
@@ -331,6 +334,7 @@ fn read_fit(section: &Section) -> FitRecord {
         softening: section.has("softening") && section.flag("softening"),
         base_card: section.has("base_card").then(|| section.text("base_card")),
         uncertainty: ParameterUncertainty::read(section),
+        values: optional("values"),
     };
     section.unknown_keys();
     record

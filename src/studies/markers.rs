@@ -129,6 +129,7 @@ impl MarkerStudy {
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
         field.warnings.extend(told);
+        field.warnings.extend(card.changed_since_fit());
         let SpecimenMesh {
             mut mesh,
             cell_size,

@@ -184,6 +184,10 @@ impl VariedCard {
             _ => self.document.holds(place),
         };
         let is_set = is_known && self.document.set(place, value).is_ok();
+        if is_set {
+            // How it was fitted holds no longer.
+            self.document.remove("fit");
+        }
         self.is_varied |= is_set;
         is_set
     }

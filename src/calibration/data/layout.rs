@@ -2,15 +2,18 @@
 
 use std::ops::Range;
 
+use super::choice::choose;
+use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{Turns, preconditioned};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
-use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
+use super::roles::{Role, check_columns};
 use super::rounding::WrittenColumn;
+use super::table_reading::TableReading;
 use super::test_data::{Loaded, Observation, StrainColumn, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};
 use crate::error::{Diagnostic, Error};
-use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::material::parameters::StressMeasure;
 use crate::statistics::farthest;
 use crate::units::Dimension;
 
@@ -28,14 +31,17 @@ pub struct Layout {
     machine: Option<Machine>,
     /// Column and factor to s; a fault where the unit is unknown.
     time: Option<Faulty<Scaled>>,
+    /// What each column is read as.
+    roles: Vec<Role>,
 }
 
 impl Layout {
     /// Determines the meaning of the columns; all missing information is reported at once.
     pub fn new(head: &Head) -> Result<Self, Vec<Diagnostic>> {
-        let roles = roles(head);
         let mut faults = Faults::default();
         let test = faults.of(head.choice("test", None, &Test::NAMES));
+        let (roles, questions) = choose(head, test);
+        faults.0.extend(questions);
         let strains = faults.of(strains(head, &roles));
         let stresses = faults.of(stresses(head, &roles));
         let machine = faults.of(machine(head, &roles));
@@ -59,6 +65,7 @@ impl Layout {
             strain_ratio,
             machine,
             time: time(head, &roles),
+            roles,
         })
     }
 
@@ -136,6 +143,7 @@ impl Layout {
             preconditioned: preconditioned(head, self.test, farthest(widest))?,
             left_out,
             found_zero: part.found_zero,
+            table: TableReading::of(head, &self.roles, &part.rows),
             remarks: part.remarks,
             head: head.written(),
             warnings: warnings.into_iter().flatten().collect(),
@@ -227,153 +235,4 @@ impl Faults {
         }
         None
     }
-}
-
-/// A test begins at a stretch of 1; a test that begins beyond this factor of it may be in percent.
-const AT_REST: f64 = 10.0;
-
-/// Whether a column of stretches without a unit contains plain ratios.
-fn is_plain_stretch(head: &Head, column: usize) -> bool {
-    let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
-    values.fold(f64::INFINITY, f64::min) < AT_REST
-}
-
-/// Column and factor to a ratio, or to MPa.
-type Scaled = (usize, f64);
-
-/// Column, factor to MPa and axis of a stress.
-type StressColumn = (usize, f64, usize);
-
-fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Scaled>; 2])> {
-    let Some((first, role)) = of_kind(roles, Kind::Strain).min_by_key(|(_, role)| role.axis) else {
-        let names = "`stretch`, `nominal_strain` or `logarithmic_strain`";
-        return Err(no_column(head, "strains", names));
-    };
-    let displaced = role.measure == Some(DISPLACEMENT);
-    let measure = if displaced {
-        StrainColumn::Strain(StrainMeasure::Nominal)
-    } else {
-        head.choice("strain measure", role.measure, &StrainColumn::NAMES)?
-    };
-    let scaled = |column: usize| -> Faulty<Scaled> {
-        let named = &head.table.columns[column];
-        let factor = if displaced {
-            let unit = head.factor("strain unit", named, Dimension::Length)?;
-            unit / head.required_quantity("length", Dimension::Length)?
-        } else {
-            let plain = measure == StrainColumn::Stretch && is_plain_stretch(head, column);
-            let unit = head.setting("strain unit", named.unit.as_deref())?;
-            match unit {
-                None if plain => 1.0,
-                _ => head.factor("strain unit", named, Dimension::Ratio)?,
-            }
-        };
-        Ok((column, factor))
-    };
-    let across = of_kind(roles, Kind::Strain).find(|(_, role)| role.axis == 1);
-    let across = across.map(|(column, _)| scaled(column)).transpose()?;
-    Ok((measure, [Some(scaled(first)?), across]))
-}
-
-fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<StressColumn>)> {
-    let Some((_, role)) = of_kind(roles, Kind::Stress).next() else {
-        let names = "`nominal_stress`, `cauchy_stress` or `force`";
-        return Err(no_column(head, "stresses", names));
-    };
-    let loaded = role.measure == Some(FORCE);
-    let measure = if loaded {
-        StressMeasure::Nominal
-    } else {
-        head.choice("stress measure", role.measure, &StressMeasure::NAMES)?
-    };
-    let direction = match head.setting("direction", None)?.as_deref() {
-        None | Some("1") => 0,
-        Some("2") => 1,
-        Some(other) => {
-            let message = format!("the direction {other} is not 1 or 2");
-            let hint = "1 is the axis of the strain column, 2 the one across";
-            return Err(head.fault(head.place("direction"), message, hint));
-        }
-    };
-    let mut columns = Vec::new();
-    for (column, role) in of_kind(roles, Kind::Stress) {
-        let named = &head.table.columns[column];
-        let factor = if loaded {
-            let unit = head.factor("stress unit", named, Dimension::Force)?;
-            unit / area(head)?
-        } else {
-            head.factor("stress unit", named, Dimension::Stress)?
-        };
-        columns.push((column, factor, role.axis.max(direction)));
-    }
-    Ok((measure, columns))
-}
-
-/// The cross-section of the specimen in mm²: the stated one, or width times thickness.
-fn area(head: &Head) -> Faulty<f64> {
-    let stated = head.quantity("area", Dimension::Area)?;
-    let sides = ["width", "thickness"].map(|key| head.quantity(key, Dimension::Length));
-    match (stated, sides) {
-        (Some(area), [Ok(None), Ok(None)]) => Ok(area),
-        (None, [Ok(None), Ok(None)]) => {
-            let mut fault = head.missing("area", "20 mm^2");
-            let hint = fault.hint.take().unwrap_or_default();
-            fault.hint = Some(format!("{hint}; or width and thickness of the specimen"));
-            Err(fault)
-        }
-        (None, [width, thickness]) => {
-            let side = |side: Option<f64>, key| side.ok_or_else(|| head.missing(key, "2 mm"));
-            Ok(side(width?, "width")? * side(thickness?, "thickness")?)
-        }
-        (Some(_), _) => {
-            let message = "the area is stated, and width or thickness too";
-            Err(head.fault(head.place("area"), message, "state the area, or both sides"))
-        }
-    }
-}
-
-/// The specimen of a table with one column of displacements and one of forces.
-fn machine(head: &Head, roles: &[Role]) -> Faulty<Option<Machine>> {
-    let only = |kind, measure| {
-        let mut own = of_kind(roles, kind);
-        let first = own
-            .next()
-            .is_some_and(|(_, role)| role.measure == Some(measure));
-        first && own.next().is_none()
-    };
-    if !only(Kind::Strain, DISPLACEMENT) || !only(Kind::Stress, FORCE) {
-        return Ok(None);
-    }
-    Ok(Some(Machine {
-        length: head.required_quantity("length", Dimension::Length)?,
-        area: area(head)?,
-        presses: head.setting("test", None)?.as_deref() == Some("compression"),
-    }))
-}
-
-/// The column of times with its factor.
-fn time(head: &Head, roles: &[Role]) -> Option<Faulty<Scaled>> {
-    let (column, _) = of_kind(roles, Kind::Time).next()?;
-    let factor = head.factor("time unit", &head.table.columns[column], Dimension::Time);
-    Some(factor.map(|factor| (column, factor)))
-}
-
-fn no_column(head: &Head, what: &str, names: &str) -> Box<Diagnostic> {
-    let columns: Vec<_> = head.table.columns.iter().map(|one| &*one.name).collect();
-    let hint = format!("name one {names}; the columns are: {}", columns.join(", "));
-    let place = head.table.columns_place.clone();
-    head.fault(place, format!("there is no column of {what}"), &hint)
-}
-
-/// ε₂/ε₁ of nominal strains, for a biaxial test without a second column.
-fn strain_ratio(head: &Head) -> Faulty<f64> {
-    const KEY: &str = "strain ratio";
-    let Some(ratio) = head.setting(KEY, None)? else {
-        return Err(head.missing(KEY, "0.5"));
-    };
-    let number = ratio.parse::<f64>().ok().filter(|ratio| ratio.is_finite());
-    number.ok_or_else(|| {
-        let message = format!("the strain ratio {ratio} is not a number");
-        head.fault(head.place(KEY), message, "it is ε₂/ε₁ of nominal strains")
-    })
 }

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use super::choice::COLUMNS;
 use super::cycles::PRECONDITIONED;
 use super::layout::Layout;
 use super::test_data::TestData;
@@ -10,7 +11,7 @@ use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// The statements about test data that a file or the command line must make.
-pub const KEYS: [&str; 16] = [
+pub const KEYS: [&str; 17] = [
     "test",
     "stress measure",
     "strain measure",
@@ -27,6 +28,7 @@ pub const KEYS: [&str; 16] = [
     "zero",
     "ramp",
     PRECONDITIONED,
+    COLUMNS,
 ];
 
 impl TestData {

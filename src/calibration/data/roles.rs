@@ -1,7 +1,7 @@
 //! The meaning of the names of columns.
 
 use super::test_data::Test;
-use crate::document::{Faulty, Head};
+use crate::document::{Column, Faulty, Head};
 
 /// The kind of quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,18 @@ pub enum Kind {
     Other,
 }
 
+impl Kind {
+    /// Its name; empty for a column that is not read.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Strain => "strain",
+            Self::Stress => "stress",
+            Self::Time => "time",
+            Self::Other => "",
+        }
+    }
+}
+
 /// The meaning of a column's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Role {
@@ -23,8 +35,8 @@ pub struct Role {
     pub kind: Kind,
     /// The measure, where the name states it.
     pub measure: Option<&'static str>,
-    /// 0 or 1.
-    pub axis: usize,
+    /// 0 or 1, where the name has a number.
+    pub numbered: Option<usize>,
 }
 
 /// The measure of a column of displacements.
@@ -98,74 +110,73 @@ const TIMES: [&str; 10] = [
     "时间",
 ];
 
+/// What kind of name a column has: where several columns may be the same quantity, the first kind counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Naming {
+    /// One that people choose.
+    Usual,
+    /// One that machines give to their displacements and forces.
+    Machine,
+    /// One that machines give to what they evaluate of displacements and forces.
+    Evaluation,
+}
+
 impl Role {
-    const fn strain(measure: Option<&'static str>, axis: usize) -> Self {
-        Self::measured(Kind::Strain, measure, axis)
-    }
+    /// The role of a column that is not read.
+    pub const OTHER: Self = Self::new(Kind::Other, None, None);
 
-    const fn stress(measure: Option<&'static str>, axis: usize) -> Self {
-        Self::measured(Kind::Stress, measure, axis)
-    }
-
-    const fn other(kind: Kind) -> Self {
-        Self::measured(kind, None, 0)
-    }
-
-    const fn measured(kind: Kind, measure: Option<&'static str>, axis: usize) -> Self {
+    /// A role.
+    pub const fn new(kind: Kind, measure: Option<&'static str>, numbered: Option<usize>) -> Self {
         Self {
             kind,
             measure,
-            axis,
+            numbered,
         }
     }
 
-    fn named(name: &str) -> Self {
-        let (stem, axis) = axis_of(name);
-        match stem {
-            "stretch" | "lambda" | "λ" => Self::strain(Some("stretch"), axis),
-            "strain" => Self::strain(None, axis),
-            "nominal_strain" | "engineering_strain" => Self::strain(Some("nominal"), axis),
-            "logarithmic_strain" | "true_strain" => Self::strain(Some("logarithmic"), axis),
-            "displacement" | "extension" => Self::strain(Some(DISPLACEMENT), axis),
-            "stress" => Self::stress(None, axis),
-            "nominal_stress" | "engineering_stress" | "first_piola_kirchhoff_stress" => {
-                Self::stress(Some("nominal"), axis)
-            }
-            "cauchy_stress" | "true_stress" => Self::stress(Some("cauchy"), axis),
-            "force" | "load" => Self::stress(Some(FORCE), axis),
-            name if TIMES.contains(&name) => Self::other(Kind::Time),
-            _ => Self::other(Kind::Other),
-        }
+    /// 0 or 1; a column without a number is along the first axis.
+    pub fn axis(&self) -> usize {
+        self.numbered.unwrap_or(0)
     }
 
-    /// The meaning of a name that only machines write: it counts where no other column is of its kind.
-    fn of_machine(name: &str) -> Option<Self> {
-        let (stem, axis) = axis_of(name);
+    /// The meaning of a column by its name, and what kind of name it is.
+    pub fn of(column: &Column) -> (Self, Naming) {
+        let (stem, axis) = axis_of(&column.name);
         let is = |names: &[&str]| names.contains(&stem);
-        if is(&MACHINE_DISPLACEMENTS) {
-            return Some(Self::strain(Some(DISPLACEMENT), axis));
-        }
-        is(&MACHINE_FORCES).then(|| Self::stress(Some(FORCE), axis))
-    }
-
-    /// The meaning of a name that only machines write beside displacements and forces: it counts where there are none of these.
-    fn of_machine_s_evaluation(name: &str) -> Option<Self> {
-        let (stem, axis) = axis_of(name);
-        if MACHINE_STRAINS.contains(&stem) {
-            return Some(Self::strain(None, axis));
-        }
-        MACHINE_STRESSES
-            .contains(&stem)
-            .then(|| Self::stress(None, axis))
+        let (kind, measure) = match stem {
+            "stretch" | "lambda" | "λ" => (Kind::Strain, Some("stretch")),
+            "strain" => (Kind::Strain, None),
+            "nominal_strain" | "engineering_strain" => (Kind::Strain, Some("nominal")),
+            "logarithmic_strain" | "true_strain" => (Kind::Strain, Some("logarithmic")),
+            "displacement" | "extension" => (Kind::Strain, Some(DISPLACEMENT)),
+            "stress" => (Kind::Stress, None),
+            "nominal_stress" | "engineering_stress" | "first_piola_kirchhoff_stress" => {
+                (Kind::Stress, Some("nominal"))
+            }
+            "cauchy_stress" | "true_stress" => (Kind::Stress, Some("cauchy")),
+            "force" | "load" => (Kind::Stress, Some(FORCE)),
+            _ if is(&TIMES) => (Kind::Time, None),
+            _ if is(&MACHINE_DISPLACEMENTS) => (Kind::Strain, Some(DISPLACEMENT)),
+            _ if is(&MACHINE_FORCES) => (Kind::Stress, Some(FORCE)),
+            _ if is(&MACHINE_STRAINS) => (Kind::Strain, None),
+            _ if is(&MACHINE_STRESSES) => (Kind::Stress, None),
+            _ => (Kind::Other, None),
+        };
+        let naming = match () {
+            () if is(&MACHINE_DISPLACEMENTS) || is(&MACHINE_FORCES) => Naming::Machine,
+            () if is(&MACHINE_STRAINS) || is(&MACHINE_STRESSES) => Naming::Evaluation,
+            () => Naming::Usual,
+        };
+        (Self::new(kind, measure, axis), naming)
     }
 }
 
 /// A name without the number of its axis, and the axis.
-fn axis_of(name: &str) -> (&str, usize) {
+fn axis_of(name: &str) -> (&str, Option<usize>) {
     match name.rsplit_once('_') {
-        Some((stem, "1")) => (stem, 0),
-        Some((stem, "2")) => (stem, 1),
-        _ => (name, 0),
+        Some((stem, "1")) => (stem, Some(0)),
+        Some((stem, "2")) => (stem, Some(1)),
+        _ => (name, None),
     }
 }
 
@@ -175,60 +186,28 @@ pub fn of_kind(roles: &[Role], kind: Kind) -> impl Iterator<Item = (usize, &Role
     all.filter(move |(_, role)| role.kind == kind)
 }
 
-/// The meaning of the columns' names; the first two columns of a file without names are strain and stress.
-pub fn roles(head: &Head) -> Vec<Role> {
-    let columns = &head.table.columns;
-    if columns.iter().all(|column| column.name.is_empty()) {
-        let plain = [Role::strain(None, 0), Role::stress(None, 0)];
-        return plain.into_iter().take(columns.len()).collect();
-    }
-    let named = columns.iter().map(|column| Role::named(&column.name));
-    let mut roles: Vec<Role> = named.collect();
-    for kind in [Kind::Strain, Kind::Stress] {
-        for meaning in [Role::of_machine, Role::of_machine_s_evaluation] {
-            if of_kind(&roles, kind).next().is_some() {
-                break;
-            }
-            for (role, column) in roles.iter_mut().zip(columns) {
-                let own = meaning(&column.name).filter(|own| own.kind == kind);
-                *role = own.unwrap_or(*role);
-            }
-        }
-    }
-    roles
-}
-
-/// Refuses columns that are not consistent: each axis has one strain and one stress, all strains have one measure, and so have all stresses.
+/// Refuses columns that are not consistent: all strains have one measure, and so have all stresses.
 pub fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
     let place = || head.table.columns_place.clone();
     for (kind, what) in [(Kind::Strain, "strain"), (Kind::Stress, "stress")] {
-        let mut first: Option<&Role> = None;
-        for (column, role) in of_kind(roles, kind) {
+        let first = of_kind(roles, kind).next();
+        let other = |(_, role): &(usize, &Role)| {
+            first.is_some_and(|(_, first)| first.measure != role.measure)
+        };
+        if let Some((column, _)) = of_kind(roles, kind).find(other) {
             let name = &head.table.columns[column].name;
-            let earlier = of_kind(roles, kind).find(|(_, other)| other.axis == role.axis);
-            if earlier.is_some_and(|(other, _)| other != column) {
-                let message = format!(
-                    "there are two columns of {what} along axis {}",
-                    role.axis + 1
-                );
-                let hint = "leave one out, or name them with _1 and _2 for the two axes";
-                return Err(head.fault(place(), message, hint));
-            }
-            if first.is_some_and(|first| first.measure != role.measure) {
-                let message = format!("`{name}` has another measure than the column before it");
-                let hint = format!("give every {what} in the same measure");
-                return Err(head.fault(place(), message, &hint));
-            }
-            first = Some(role);
+            let message = format!("`{name}` has another measure than the column before it");
+            let hint = format!("give every {what} in the same measure");
+            return Err(head.fault(place(), message, &hint));
         }
     }
     let strains = of_kind(roles, Kind::Strain).count();
     if strains > 1 && test != Test::Biaxial {
         let message = format!("the strains of a {} test have one column", test.name());
-        let hint = "leave the other out, or call the test biaxial";
+        let hint = "choose one with --columns strain=NAME, or call the test biaxial";
         return Err(head.fault(place(), message, hint));
     }
-    let numbered = of_kind(roles, Kind::Stress).any(|(_, role)| role.axis == 1);
+    let numbered = of_kind(roles, Kind::Stress).any(|(_, role)| role.axis() == 1);
     if numbered && head.setting("direction", None)?.is_some() {
         let hint = "leave the direction out";
         let message = "the columns of stress name their axes, and a direction is given too";

@@ -1,5 +1,6 @@
 //! Test data: the strains of a specimen, and the stresses that were measured.
 
+use super::table_reading::TableReading;
 use crate::document::{Statements, name_of};
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
@@ -175,6 +176,8 @@ pub struct TestData {
     pub left_out: Vec<Observation>,
     /// The zero that was found in the record, if one was.
     pub found_zero: Option<FoundZero>,
+    /// The columns and rows of the file that were read.
+    pub table: TableReading,
     /// Descriptions of the part of a record that was taken, and of what was subtracted.
     pub remarks: Vec<String>,
     /// The head's statements on source, specimen, DOI and licence.

@@ -108,7 +108,7 @@ impl<'a> Section<'a> {
     /// A quantity with a unit, in the internal unit of `dimension`.
     pub fn quantity(&self, key: &'static str, dimension: Dimension, bound: Bound) -> f64 {
         self.asks(key, Some(Takes::Quantity(dimension, bound)));
-        match self.value_like(key, dimension.one_example()) {
+        match self.value_like(key, &dimension.blank()) {
             Some(value) => self.quantity_of(key, value, dimension, bound),
             None => f64::NAN,
         }
@@ -220,7 +220,7 @@ impl<'a> Section<'a> {
 
     /// A list of quantities of one dimension.
     pub fn quantities(&self, key: &'static str, dimension: Dimension, bound: Bound) -> Vec<f64> {
-        self.list(key, (dimension, dimension.one_example()), bound, MOST_BARE)
+        self.list(key, (dimension, &dimension.blank()), bound, MOST_BARE)
     }
 
     /// A list of stretches λ − 1. Numbers without a percent sign, in quotes or not, that could as well be λ are refused.

@@ -4,9 +4,9 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use crate::corrector::estimation::{FORCE_CLASS, MeasuredForce};
-use crate::document::Table;
+use crate::document::{Table, column_named};
 use crate::error::{Diagnostic, Error};
-use crate::markers::{Frame, MarkerSeries, column_named, columns};
+use crate::markers::{Frame, MarkerSeries, columns};
 use crate::solve::vector::largest;
 use crate::units::{self, Dimension};
 

@@ -1,64 +1,46 @@
 //! Columns named by the user, with their roles.
 
-use crate::document::{Column, Table, plain_name};
+use super::{Column, Table, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
 
-/// The role of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// The place along x.
-    X,
-    /// The place along y.
-    Y,
-    /// The displacement along x.
-    Ux,
-    /// The displacement along y.
-    Uy,
-    /// Standard deviation of each component of the displacement.
-    StandardDeviation,
-    /// The number of the frame.
-    Frame,
-    /// The time of the frame.
-    Time,
-    /// The number of the marker.
-    Id,
-}
-
-impl Role {
-    /// The roles by their names.
-    pub const NAMES: [(&'static str, Self); 8] = [
-        ("x", Self::X),
-        ("y", Self::Y),
-        ("ux", Self::Ux),
-        ("uy", Self::Uy),
-        ("standard_deviation", Self::StandardDeviation),
-        ("frame", Self::Frame),
-        ("time", Self::Time),
-        ("id", Self::Id),
-    ];
+/// What a column of a table may be for some reader.
+pub trait ColumnRole: Copy + PartialEq + 'static {
+    /// The roles by the names that users write.
+    const NAMES: &'static [(&'static str, Self)];
+    /// A choice as a user writes it.
+    const EXAMPLE: &'static str;
 }
 
 /// Columns by their roles, as the user names them.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ChosenColumns(Vec<(Role, String)>);
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChosenColumns<R>(Vec<(R, String)>);
 
-impl ChosenColumns {
+impl<R> Default for ChosenColumns<R> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<R: ColumnRole> ChosenColumns<R> {
     /// Reads parts such as `ux=disp_u`.
     ///
     /// # Errors
     /// A fault where a part is malformed, its role is unknown, or a role or a column occurs twice.
     pub fn parse<'a>(parts: impl IntoIterator<Item = &'a str>) -> Result<Self, Diagnostic> {
-        let mut all: Vec<(Role, String)> = Vec::new();
+        let mut all: Vec<(R, String)> = Vec::new();
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
         for part in parts {
             let Some((role, name)) = part.split_once('=') else {
-                let hint = "write a quantity and the name of its column, as in --columns x=x_px,y=y_px,ux=disp_u,uy=disp_v";
-                return fault(format!("`{part}` names no column"), hint);
+                let hint = format!(
+                    "write a quantity and the name of its column, as in --columns {}",
+                    R::EXAMPLE
+                );
+                return fault(format!("`{part}` names no column"), &hint);
             };
             let (role, name) = (role.trim(), name.trim());
-            let found = Role::NAMES.iter().find(|(known, _)| *known == role);
+            let found = R::NAMES.iter().find(|(known, _)| *known == role);
             let Some((_, found)) = found else {
-                let known = Role::NAMES.map(|(known, _)| known);
+                let known: Vec<_> = R::NAMES.iter().map(|(known, _)| *known).collect();
                 let hint = suggestion(role, &known, "known quantities:");
                 return fault(format!("`{role}` is not a known quantity"), &hint);
             };
@@ -85,7 +67,7 @@ impl ChosenColumns {
     ///
     /// # Errors
     /// [`Error::Input`] with every name that the table does not have, or has twice.
-    pub(super) fn on(&self, table: &Table) -> Result<FoundColumns, Error> {
+    pub fn on(&self, table: &Table) -> Result<FoundColumns<R>, Error> {
         let (mut found, mut faults) = (Vec::new(), Vec::new());
         for (role, name) in &self.0 {
             match column_named(table, name) {
@@ -101,25 +83,25 @@ impl ChosenColumns {
 }
 
 /// Columns that the user named, by their places in a table.
-#[derive(Debug, Default)]
-pub(super) struct FoundColumns(Vec<(Role, usize)>);
+#[derive(Debug)]
+pub struct FoundColumns<R>(Vec<(R, usize)>);
 
-impl FoundColumns {
+impl<R: ColumnRole> FoundColumns<R> {
     /// The column that was named for a role.
-    pub fn of(&self, role: Role) -> Option<usize> {
+    pub fn of(&self, role: R) -> Option<usize> {
         let mut all = self.0.iter();
         all.find(|(known, _)| *known == role)
             .map(|(_, index)| *index)
     }
 
-    /// Whether a place or a displacement was named.
-    pub fn any_length(&self) -> bool {
-        let lengths = [Role::X, Role::Y, Role::Ux, Role::Uy];
-        lengths.iter().any(|role| self.of(*role).is_some())
+    /// Whether a column was named for one of some roles.
+    pub fn any(&self, roles: &[R]) -> bool {
+        roles.iter().any(|role| self.of(*role).is_some())
     }
 }
 
-/// The only column with a name: as written, with or without its unit, otherwise in any case.
+/// The only column with a name: as written, with or without its unit, otherwise in any case; of columns that their names do not tell
+/// apart, the one of a number from 1 on.
 ///
 /// # Errors
 /// A fault with the columns that there are, where there is none of this name, or more than one.
@@ -141,17 +123,26 @@ pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
             [] => {}
             [index] => return Ok(index),
             _ => {
+                let numbers: Vec<_> = of_name.iter().map(|at| (at + 1).to_string()).collect();
                 let message = format!("the file has {} columns `{name}`", of_name.len());
-                let hint = format!("name one of {all}, or rename one in the file");
+                let hint = format!(
+                    "name one of {all}, or write its number: {}",
+                    numbers.join(" or ")
+                );
                 return Err(table.fault(table.columns_place.clone(), message, &hint));
             }
         }
     }
+    let number = name.parse::<usize>().ok();
+    if let Some(number) = number.filter(|number| (1..=heads.len()).contains(number)) {
+        return Ok(number - 1);
+    }
     let known = heads.iter().map(String::as_str);
     let hint = match heads.iter().all(String::is_empty) {
-        true => {
-            "the columns of this file have no names: write a line of names above the rows".into()
-        }
+        true => format!(
+            "the columns of this file have no names: write their numbers, 1 to {}",
+            heads.len()
+        ),
         false => {
             let near = nearest(name, known).map(|near| format!("did you mean `{near}`? "));
             format!("{}the file has {all}", near.unwrap_or_default())

@@ -1,0 +1,302 @@
+//! Which columns of a table are read. Where several may be the same quantity and differ, the user is asked.
+
+use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
+use super::test_data::Test;
+use crate::document::{ChosenColumns, Column, ColumnRole, FoundColumns, Head};
+use crate::error::{Diagnostic, Error};
+use crate::statistics::extremes;
+use crate::units::{self, Dimension};
+
+mod readings;
+
+/// The key under which the columns are stated.
+pub const COLUMNS: &str = "columns";
+
+/// A quantity whose column a user may name: its kind, and the axis where it is stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity(Kind, Option<usize>);
+
+impl ColumnRole for Quantity {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("strain", Self(Kind::Strain, None)),
+        ("strain_1", Self(Kind::Strain, Some(0))),
+        ("strain_2", Self(Kind::Strain, Some(1))),
+        ("stress", Self(Kind::Stress, None)),
+        ("stress_1", Self(Kind::Stress, Some(0))),
+        ("stress_2", Self(Kind::Stress, Some(1))),
+        ("time", Self(Kind::Time, None)),
+    ];
+    const EXAMPLE: &'static str = "strain=Extension,stress=\"Load (N)\"";
+}
+
+/// What each column is read as, with questions where more than one reading is possible.
+pub fn choose(head: &Head, test: Option<Test>) -> (Vec<Role>, Vec<Diagnostic>) {
+    let columns = &head.table.columns;
+    let unread = || vec![Role::OTHER; columns.len()];
+    let chosen = match chosen(head) {
+        Ok(chosen) => chosen,
+        Err(faults) => return (unread(), faults),
+    };
+    let mut choice = Choice {
+        head,
+        test,
+        roles: unread(),
+        questions: Vec::new(),
+    };
+    for (_, quantity) in Quantity::NAMES {
+        if let Some(column) = chosen.of(*quantity) {
+            choice.roles[column] = stated(head, column, *quantity);
+        }
+    }
+    match columns.iter().all(|column| column.name.is_empty()) {
+        true => choice.order(),
+        false => [Kind::Strain, Kind::Stress, Kind::Time]
+            .into_iter()
+            .for_each(|kind| choice.of_names(kind)),
+    }
+    (choice.roles, choice.questions)
+}
+
+/// The columns that are stated.
+fn chosen(head: &Head) -> Result<FoundColumns<Quantity>, Vec<Diagnostic>> {
+    let text = head.text(COLUMNS).map_err(|fault| vec![*fault])?;
+    let parts = text.iter().flat_map(|text| text.split(','));
+    let chosen = ChosenColumns::parse(parts).map_err(|fault| vec![fault])?;
+    chosen.on(head.table).map_err(|error| match error {
+        Error::Input(faults) => faults,
+        other => vec![Diagnostic::error("", other.to_string())],
+    })
+}
+
+/// The role of a column that was stated: the measure is that of its name, or of its unit.
+fn stated(head: &Head, column: usize, Quantity(kind, numbered): Quantity) -> Role {
+    let column = &head.table.columns[column];
+    let named = Role::of(column).0;
+    let measure = Some(named.measure).filter(|_| named.kind == kind).flatten();
+    Role::new(
+        kind,
+        measure.or_else(|| of_unit(head, column, kind)),
+        numbered,
+    )
+}
+
+/// The measure of a column that its unit shows: of lengths and forces.
+fn of_unit(head: &Head, column: &Column, kind: Kind) -> Option<&'static str> {
+    let unit = unit(head, column, kind)?;
+    let is_of = |dimension| units::factor(&unit, dimension).is_ok();
+    match kind {
+        Kind::Strain if is_of(Dimension::Length) => Some(DISPLACEMENT),
+        Kind::Stress if is_of(Dimension::Force) => Some(FORCE),
+        _ => None,
+    }
+}
+
+/// The unit of a column, or the one that is stated for its kind.
+pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
+    let said = || head.setting(&format!("{} unit", kind.name()), None);
+    column.unit.clone().or_else(|| said().ok().flatten())
+}
+
+/// The choice while it is made.
+struct Choice<'a> {
+    head: &'a Head<'a>,
+    test: Option<Test>,
+    roles: Vec<Role>,
+    questions: Vec<Diagnostic>,
+}
+
+impl Choice<'_> {
+    /// Whether a column of a kind has been chosen.
+    fn has(&self, kind: Kind) -> bool {
+        of_kind(&self.roles, kind).next().is_some()
+    }
+
+    /// Chooses by the names of columns.
+    fn of_names(&mut self, kind: Kind) {
+        if self.has(kind) {
+            return;
+        }
+        let columns = 0..self.roles.len();
+        let named: Vec<Named> = columns
+            .filter_map(|column| self.named(kind, column))
+            .collect();
+        let [first, second]: [Vec<Named>; 2] = match self.is_one(kind, &named) {
+            true => [
+                named.into_iter().map(Named::of_one_axis).collect(),
+                Vec::new(),
+            ],
+            false => {
+                let (second, first) = named.into_iter().partition(|own| own.role.axis() == 1);
+                [first, second]
+            }
+        };
+        [first, second]
+            .iter()
+            .for_each(|candidates| self.of_candidates(kind, candidates));
+    }
+
+    /// A column that is not chosen yet and has numbers, where its name is one of a kind.
+    fn named(&self, kind: Kind, column: usize) -> Option<Named> {
+        let own = &self.head.table.columns[column];
+        let (mut role, naming) = Role::of(own);
+        let is_free = self.roles[column].kind == Kind::Other && role.kind == kind;
+        let mut values = self.values((column, 1.0)).into_iter();
+        if !is_free || !values.any(f64::is_finite) {
+            return None;
+        }
+        role.measure = role.measure.or_else(|| of_unit(self.head, own, kind));
+        Some(Named {
+            column,
+            role,
+            naming,
+        })
+    }
+
+    /// Whether all columns of a kind stand for one quantity: a test of one axis has one stress, and only columns that are all numbered, or
+    /// those of a biaxial test, are of two axes.
+    fn is_one(&self, kind: Kind, named: &[Named]) -> bool {
+        let numbered = named.iter().filter(|own| own.role.numbered.is_some());
+        let is_mixed = numbered.count() < named.len();
+        match self.test {
+            None | Some(Test::Biaxial) => false,
+            Some(Test::Uniaxial) if kind == Kind::Stress => true,
+            _ => is_mixed || kind == Kind::Time,
+        }
+    }
+
+    /// Chooses one of the columns that may be the same quantity; where others differ from it, the user is asked.
+    fn of_candidates(&mut self, kind: Kind, candidates: &[Named]) {
+        let Some(first) = candidates.iter().min_by_key(|own| (own.naming, own.column)) else {
+            return;
+        };
+        self.roles[first.column] = first.role;
+        let differing = |other: &&Named| other.column != first.column && !self.agree(first, other);
+        if !candidates.iter().any(|other| differing(&other)) {
+            return;
+        }
+        let quantity = match (kind, first.role.axis(), self.test) {
+            (_, 1, _) => format!("{}_2", kind.name()),
+            (_, _, Some(Test::Biaxial)) => format!("{}_1", kind.name()),
+            _ => kind.name().to_owned(),
+        };
+        let each = candidates.iter();
+        let options = each.map(|own| self.option(&[(&quantity, own.column)]));
+        let message = format!(
+            "{}: {} columns may be the {}, and they do not agree",
+            self.head.table.source.name,
+            candidates.len(),
+            kind.name()
+        );
+        let question = question(message, options.collect());
+        self.questions.push(question);
+    }
+
+    /// Finds the columns of a table without names: their order is known where one alone is possible.
+    fn order(&mut self) {
+        let count = self.roles.len();
+        let free = |kind: Kind, own: &Self| -> Vec<usize> {
+            match of_kind(&own.roles, kind).next() {
+                Some((column, _)) => vec![column],
+                None => (0..count)
+                    .filter(|column| own.roles[*column].kind == Kind::Other)
+                    .collect(),
+            }
+        };
+        let stresses = free(Kind::Stress, self);
+        let strains = free(Kind::Strain, self).into_iter();
+        let strains = strains.filter(|column| self.may_be_strain(*column));
+        let pairs: Vec<[usize; 2]> = strains
+            .flat_map(|strain| stresses.iter().map(move |stress| [strain, *stress]))
+            .filter(|[strain, stress]| strain != stress)
+            .collect();
+        let Some([strain, stress]) = pairs.first().copied() else {
+            return;
+        };
+        for (column, kind) in [(strain, Kind::Strain), (stress, Kind::Stress)] {
+            if !self.has(kind) {
+                self.roles[column] = stated(self.head, column, Quantity(kind, None));
+            }
+        }
+        if pairs.len() > 1 {
+            let options = pairs.iter();
+            let options = options
+                .map(|[strain, stress]| self.option(&[("strain", *strain), ("stress", *stress)]));
+            let message = format!(
+                "{}: the columns have no names, and more than one reading is possible",
+                self.head.table.source.name
+            );
+            let question = question(message, options.collect());
+            self.questions.push(question);
+        }
+    }
+
+    /// Whether a column's values are possible as what is stated of the strain: stretches are positive.
+    fn may_be_strain(&self, column: usize) -> bool {
+        let stated = self.head.setting("strain measure", None).ok().flatten();
+        let percent = self.head.setting("strain unit", None).ok().flatten();
+        let unit = units::factor(percent.as_deref().unwrap_or("-"), Dimension::Ratio);
+        let least = extremes(self.values((column, unit.unwrap_or(1.0))).into_iter())[0];
+        match stated.as_deref() {
+            Some("stretch") => least > 0.0,
+            Some("nominal") => least > -1.0,
+            _ => true,
+        }
+    }
+
+    /// How to state some columns on the command line, with the values that they have.
+    fn option(&self, columns: &[(&str, usize)]) -> String {
+        let table = self.head.table;
+        let (mut written, mut ranges) = (Vec::new(), Vec::new());
+        for (quantity, column) in columns {
+            let [low, high] = extremes(self.values((*column, 1.0)).into_iter());
+            let unit = table.columns[*column].unit.as_deref().unwrap_or_default();
+            let range = format!("{quantity} from {low} to {high} {unit}");
+            written.push(format!("{quantity}={}", self.written(*column)));
+            ranges.push(range.trim_end().to_owned());
+        }
+        let written = written.join(",");
+        let quoted = match written
+            .contains(|letter: char| !letter.is_alphanumeric() && !"=,_".contains(letter))
+        {
+            true => format!("\"{written}\""),
+            false => written,
+        };
+        format!("--columns {quoted} ({})", ranges.join(", "))
+    }
+
+    /// A column's name, or its number where the name cannot be stated.
+    fn written(&self, column: usize) -> String {
+        let columns = &self.head.table.columns;
+        let head = columns[column].head();
+        let alike = columns.iter().filter(|other| other.head() == head).count();
+        match head.is_empty() || alike > 1 || head.contains([',', '"', '\\', '$', '`', ';']) {
+            true => (column + 1).to_string(),
+            false => head,
+        }
+    }
+}
+
+/// A column whose name says what it may be.
+#[derive(Clone, Copy)]
+struct Named {
+    column: usize,
+    role: Role,
+    naming: Naming,
+}
+
+impl Named {
+    /// A number in the name of a column, such as that of a load cell, is no axis of a test that has one.
+    fn of_one_axis(mut self) -> Self {
+        self.role.numbered = None;
+        self
+    }
+}
+
+/// The question which of some readings is meant.
+fn question(message: String, options: Vec<String>) -> Diagnostic {
+    let hint = format!(
+        "choose one: {}; or write `# {COLUMNS}: …` with it at the top of the file",
+        options.join(", or ")
+    );
+    Diagnostic::error("", message).hint(hint)
+}
