@@ -16,6 +16,6 @@ mod zero;
 
 pub use conversion::Conversion;
 pub use cycles::{Branches, PRECONDITIONED};
-pub use reading::KEYS;
+pub use reading::{KEYS, SPECIMEN};
 pub use table_reading::{ColumnReading, TableReading};
 pub use test_data::{FoundZero, Observation, StrainColumn, Test, TestData, Times};

@@ -61,6 +61,9 @@ pub struct ReadingArguments {
     /// without names, or of equal names, have numbers: strain=2,stress=1
     #[arg(long, value_name = "WHAT=COLUMN")]
     columns: Vec<String>,
+    /// Name of the specimen, where all files are protocols of one
+    #[arg(long, value_name = "NAME")]
+    specimen: Option<String>,
 }
 
 impl ReadingArguments {
@@ -84,6 +87,7 @@ impl ReadingArguments {
             self.ramp,
             self.preconditioned,
             Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
+            self.specimen,
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs

@@ -145,7 +145,7 @@ impl Layout {
             found_zero: part.found_zero,
             table: TableReading::of(head, &self.roles, &part.rows),
             remarks: part.remarks,
-            head: head.written(),
+            head: head.statements(),
             warnings: warnings.into_iter().flatten().collect(),
         })
     }

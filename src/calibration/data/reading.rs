@@ -11,7 +11,7 @@ use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// The statements about test data that a file or the command line must make.
-pub const KEYS: [&str; 17] = [
+pub const KEYS: [&str; 18] = [
     "test",
     "stress measure",
     "strain measure",
@@ -29,7 +29,11 @@ pub const KEYS: [&str; 17] = [
     "ramp",
     PRECONDITIONED,
     COLUMNS,
+    SPECIMEN,
 ];
+
+/// The key of the name of the specimen: tests with the same one are protocols of one specimen.
+pub const SPECIMEN: &str = "specimen";
 
 impl TestData {
     /// Reads a file; `reading` supplements the file's own statements, by [`KEYS`].

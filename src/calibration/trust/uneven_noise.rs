@@ -1,7 +1,9 @@
 //! Noise that grows with the stress, and specimens that differ: what intervals of even noise do not hold.
 
+use std::collections::BTreeSet;
+
 use super::quality::Quality;
-use crate::calibration::data::{Observation, TestData};
+use crate::calibration::data::{Observation, SPECIMEN, TestData};
 use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::statistics::cochran;
@@ -25,8 +27,8 @@ pub fn noise_warnings(
     let has_intervals = quality.has_intervals();
     let residuals = WeightedResiduals { law, weighting };
     let uneven = has_intervals.then(|| uneven(quality, weighting)).flatten();
-    let specimens = residuals.specimens(tests, has_intervals);
-    uneven.into_iter().chain(specimens).collect()
+    let differing = residuals.differing(tests, has_intervals);
+    uneven.into_iter().chain(differing).collect()
 }
 
 struct WeightedResiduals<'a> {
@@ -77,34 +79,62 @@ impl WeightedResiduals<'_> {
         (count >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
     }
 
-    /// Whether specimens of one kind of test differ by more than their noise.
-    fn specimens(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
+    /// Whether tests of one kind differ by more than their noise: those of several specimens, or those of one that the law does not describe.
+    fn differing(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
         let alike = |test: &&TestData| (test.test, &test.axes) == (tests[0].test, &tests[0].axes);
         if tests.len() < 2 || !tests.iter().all(|test| alike(&test)) {
             return None;
         }
         let factors: Option<Vec<[f64; 2]>> = tests.iter().map(|test| self.factor(test)).collect();
         let factors = factors?;
-        let squares = cochran(&factors);
         let freedom = factors.len() as f64 - 1.0;
         // χ² by Wilson's and Hilferty's cube root.
-        let deviate = ((squares / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
+        let deviate = ((cochran(&factors) / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
             / (2.0 / (9.0 * freedom)).sqrt();
         (deviate > CLEARLY).then(|| {
-            let plain = factors.iter().map(|[factor, _]| factor).sum::<f64>() / factors.len() as f64;
-            let spread = factors.iter().map(|[factor, _]| (factor - plain).powi(2)).sum::<f64>();
-            let of_mean = 100.0 * (spread / freedom / factors.len() as f64).sqrt();
-            let told: Vec<String> = factors.iter().map(|[factor, _]| format!("{factor:.3}")).collect();
-            let then = match has_intervals {
-                true => "The intervals apply to these specimens only",
-                false => "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law",
-            };
-            format!(
-                "the specimens differ by more than the noise of each: they are {} times as stiff as the law. {then}; their mean gives the \
-                 material's stiffness to ± {of_mean:.2} % (standard error)",
-                told.join(", "),
-            )
+            let factors: Vec<f64> = factors.iter().map(|[factor, _]| *factor).collect();
+            difference(&factors, count_of_specimens(tests), has_intervals)
         })
+    }
+}
+
+/// How many specimens the tests state; `None` where not all of them state one.
+fn count_of_specimens(tests: &[TestData]) -> Option<usize> {
+    let names: Option<BTreeSet<&String>> =
+        tests.iter().map(|test| test.head.get(SPECIMEN)).collect();
+    names.map(|names| names.len())
+}
+
+/// The warning about tests that are some times as stiff as the law.
+fn difference(factors: &[f64], specimens: Option<usize>, has_intervals: bool) -> String {
+    let count = factors.len() as f64;
+    let mean = factors.iter().sum::<f64>() / count;
+    let spread = factors.iter().map(|factor| (factor - mean).powi(2));
+    let of_mean = 100.0 * (spread.sum::<f64>() / (count - 1.0) / count).sqrt();
+    let stiffness: Vec<String> = factors
+        .iter()
+        .map(|factor| format!("{factor:.3}"))
+        .collect();
+    let differ = format!(
+        "the tests differ by more than the noise of each: they are {} times as stiff as the law",
+        stiffness.join(", ")
+    );
+    let of_one = "this law does not describe all of its protocols";
+    let of_several = format!(
+        "they differ, and their mean gives the material's stiffness to ± {of_mean:.2} % (standard error); {}",
+        if has_intervals {
+            "the intervals apply to these specimens only"
+        } else {
+            "fit each specimen by itself to judge the law"
+        }
+    );
+    match specimens {
+        Some(1) => format!("{differ}. They are of one specimen: {of_one}"),
+        Some(_) => format!("{differ}. The specimens: {of_several}"),
+        None => format!(
+            "{differ}. Either they are of one specimen: then {of_one}. Or they are of several: then {of_several}. State which with --specimen NAME \
+             for one, or with `# {SPECIMEN}: NAME` at the top of each file"
+        ),
     }
 }
 
@@ -117,6 +147,25 @@ mod tests {
     use crate::calibration::{FitSettings, TestData, Weighting, fit};
     use crate::document::Statements;
     use crate::material::registry::Law;
+
+    #[test]
+    fn protocols_of_one_specimen_are_no_specimens_that_differ() {
+        let warning = |specimens| super::difference(&[0.9, 1.1], specimens, false);
+        let [one, several, unknown] = [Some(1), Some(2), None].map(warning);
+        let says = |text: &str| {
+            [
+                one.contains(text),
+                several.contains(text),
+                unknown.contains(text),
+            ]
+        };
+        assert_eq!(
+            says("does not describe all of its protocols"),
+            [true, false, true]
+        );
+        assert_eq!(says("fit each specimen by itself"), [false, true, true]);
+        assert_eq!(says("--specimen NAME"), [false, false, true]);
+    }
 
     /// Tension of a neo-Hookean strip with noise of a size for each stress.
     fn tension(c10: f64, seed: u64, noise: fn(f64) -> f64) -> TestData {
@@ -169,7 +218,7 @@ mod tests {
 
     #[test]
     fn specimens_that_differ_by_more_than_their_noise_are_told() {
-        let differ = "specimens differ";
+        let differ = "tests differ";
         let of = |moduli: [f64; 3]| {
             let tests = moduli
                 .iter()
