@@ -7,6 +7,7 @@ mod cycles;
 mod layout;
 mod plausible;
 mod reading;
+mod readings;
 mod record;
 mod roles;
 mod rounding;

@@ -61,6 +61,9 @@ pub struct ReadingArguments {
     /// without names, or of equal names, have numbers: strain=2,stress=1
     #[arg(long, value_name = "WHAT=COLUMN")]
     columns: Vec<String>,
+    /// All files are one specimen, under several protocols; files of several specimens state `# sample: NAME` each
+    #[arg(long)]
+    one_specimen: bool,
 }
 
 impl ReadingArguments {
@@ -84,6 +87,7 @@ impl ReadingArguments {
             self.ramp,
             self.preconditioned,
             Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
+            self.one_specimen.then(|| "one".to_owned()),
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs

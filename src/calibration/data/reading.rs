@@ -4,14 +4,14 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::choice::COLUMNS;
-use super::cycles::PRECONDITIONED;
+use super::cycles::{PRECONDITIONED, SAMPLE};
 use super::layout::Layout;
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// The statements about test data that a file or the command line must make.
-pub const KEYS: [&str; 17] = [
+pub const KEYS: [&str; 18] = [
     "test",
     "stress measure",
     "strain measure",
@@ -29,6 +29,7 @@ pub const KEYS: [&str; 17] = [
     "ramp",
     PRECONDITIONED,
     COLUMNS,
+    SAMPLE,
 ];
 
 impl TestData {

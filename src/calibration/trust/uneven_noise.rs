@@ -1,7 +1,9 @@
 //! Noise that grows with the stress, and specimens that differ: what intervals of even noise do not hold.
 
+use std::collections::BTreeSet;
+
 use super::quality::Quality;
-use crate::calibration::data::{Observation, TestData};
+use crate::calibration::data::{Observation, Test, TestData};
 use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::statistics::{cochran, rank_correlation};
@@ -80,12 +82,14 @@ impl WeightedResiduals<'_> {
         }
     }
 
-    /// How many times the law's stress a test measured, and its variance by the noise of its own, neighbours of which may correlate.
-    fn factor(&self, test: &TestData) -> Option<[f64; 2]> {
-        let count = test.observations.len();
-        let rows = test.observations.iter();
+    /// How many times the law's stress was measured in some protocols, and its variance by the noise of their own, neighbours of which
+    /// may correlate.
+    fn factor(&self, protocols: &[Protocol]) -> Option<[f64; 2]> {
+        let rows = protocols
+            .iter()
+            .flat_map(|own| own.rows.iter().map(|one| (own.test, one)));
         let pairs: Vec<[f64; 2]> = rows
-            .map(|one| self.fitted_and_residual(test, one))
+            .map(|(test, one)| self.fitted_and_residual(test, one))
             .collect();
         let square: f64 = pairs.iter().map(|[fitted, _]| fitted * fitted).sum();
         let along: f64 = pairs.iter().map(|[fitted, left]| fitted * left).sum();
@@ -98,39 +102,117 @@ impl WeightedResiduals<'_> {
         let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let correlation = (products / squares).clamp(0.0, 0.99);
         let fewer = (1.0 + correlation) / (1.0 - correlation);
-        let variance = fewer * squares / (count as f64 - 1.0) / square;
-        (count >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
+        let variance = fewer * squares / (pairs.len() as f64 - 1.0) / square;
+        (pairs.len() >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
     }
 
-    /// Whether specimens of one kind of test differ by more than their noise.
+    /// Whether specimens, or protocols, of one kind of test differ from the law by more than their noise. Only a user knows which of them are
+    /// one specimen: a wrong law and specimens that differ make alike residuals.
     fn specimens(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
         let alike = |test: &&TestData| (test.test, &test.axes) == (tests[0].test, &tests[0].axes);
-        if tests.len() < 2 || !tests.iter().all(|test| alike(&test)) {
+        if !tests.iter().all(|test| alike(&test)) {
             return None;
         }
-        let factors: Option<Vec<[f64; 2]>> = tests.iter().map(|test| self.factor(test)).collect();
+        let protocols: Vec<Protocol> = tests.iter().flat_map(Protocol::of).collect();
+        let samples: BTreeSet<_> = tests
+            .iter()
+            .filter_map(|test| test.sample.as_ref())
+            .collect();
+        let is_stated = tests.iter().all(|test| test.sample.is_some());
+        let what = match tests[0].test {
+            Test::Biaxial => "protocols",
+            _ => "tests",
+        };
+        match (is_stated, samples.len()) {
+            (true, 2..) => {
+                let of = |sample: &&String| {
+                    let own = protocols
+                        .iter()
+                        .filter(|one| one.test.sample.as_ref() == Some(sample));
+                    own.copied().collect()
+                };
+                let groups: Vec<Vec<Protocol>> = samples.iter().map(of).collect();
+                Some(specimens_differ(&self.differing(&groups)?, has_intervals))
+            }
+            (stated, _) => {
+                let each: Vec<Vec<Protocol>> = protocols.into_iter().map(|own| vec![own]).collect();
+                let factors = listed(&self.differing(&each)?);
+                let differ = format!(
+                    "the stresses of the {} {what} are {factors} times those of the law, which is more than the noise of each",
+                    each.len()
+                );
+                Some(match stated {
+                    true => {
+                        format!("this law does not explain the specimen: {differ}; try another law")
+                    }
+                    false => format!(
+                        "{differ}. Either this law does not explain them, or they are specimens that differ: the residuals of both look alike. State \
+                         which: `--one-specimen`, or `# sample: NAME` in each file"
+                    ),
+                })
+            }
+        }
+    }
+
+    /// The factors of some groups of protocols where they differ by more than chance.
+    fn differing(&self, groups: &[Vec<Protocol>]) -> Option<Vec<f64>> {
+        if groups.len() < 2 {
+            return None;
+        }
+        let factors: Option<Vec<[f64; 2]>> = groups.iter().map(|own| self.factor(own)).collect();
         let factors = factors?;
-        let squares = cochran(&factors);
         let freedom = factors.len() as f64 - 1.0;
         // χ² by Wilson's and Hilferty's cube root.
-        let deviate = ((squares / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
+        let deviate = ((cochran(&factors) / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
             / (2.0 / (9.0 * freedom)).sqrt();
-        (deviate > CLEARLY).then(|| {
-            let plain = factors.iter().map(|[factor, _]| factor).sum::<f64>() / factors.len() as f64;
-            let spread = factors.iter().map(|[factor, _]| (factor - plain).powi(2)).sum::<f64>();
-            let of_mean = 100.0 * (spread / freedom / factors.len() as f64).sqrt();
-            let told: Vec<String> = factors.iter().map(|[factor, _]| format!("{factor:.3}")).collect();
-            let then = match has_intervals {
-                true => "The intervals apply to these specimens only",
-                false => "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law",
-            };
-            format!(
-                "the specimens differ by more than the noise of each: they are {} times as stiff as the law. {then}; their mean gives the \
-                 material's stiffness to ± {of_mean:.2} % (standard error)",
-                told.join(", "),
-            )
-        })
+        (deviate > CLEARLY).then(|| factors.iter().map(|[factor, _]| *factor).collect())
     }
+}
+
+/// A part of a test that was pulled one way.
+#[derive(Clone, Copy)]
+struct Protocol<'a> {
+    test: &'a TestData,
+    rows: &'a [Observation],
+}
+
+impl<'a> Protocol<'a> {
+    fn of(test: &'a TestData) -> impl Iterator<Item = Self> {
+        let all = test.protocols().into_iter();
+        all.filter(|rows| rows.len() >= FEWEST)
+            .map(move |rows| Self { test, rows })
+    }
+}
+
+/// Numbers of three decimals.
+fn listed(factors: &[f64]) -> String {
+    let each: Vec<String> = factors
+        .iter()
+        .map(|factor| format!("{factor:.3}"))
+        .collect();
+    each.join(", ")
+}
+
+/// The warning about specimens with some stiffnesses over that of the law.
+fn specimens_differ(factors: &[f64], has_intervals: bool) -> String {
+    let count = factors.len() as f64;
+    let mean = factors.iter().sum::<f64>() / count;
+    let spread = factors
+        .iter()
+        .map(|factor| (factor - mean).powi(2))
+        .sum::<f64>();
+    let of_mean = 100.0 * (spread / (count - 1.0) / count).sqrt();
+    let then = match has_intervals {
+        true => "The intervals apply to these specimens only",
+        false => {
+            "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law"
+        }
+    };
+    format!(
+        "the specimens differ by more than the noise of each: they are {} times as stiff as the law. {then}; their mean gives the \
+         material's stiffness to ± {of_mean:.2} % (standard error)",
+        listed(factors)
+    )
 }
 
 #[cfg(test)]
@@ -192,19 +274,102 @@ mod tests {
         assert!(found >= 6, "{found} of 10");
     }
 
+    /// The warnings of a fit of neo-Hooke to three strips of some moduli, of samples with some names.
+    fn of_strips(moduli: [f64; 3], samples: [Option<&str>; 3]) -> String {
+        let tests = moduli.iter().zip(samples).zip(0..);
+        let tests = tests.map(|((c10, sample), seed)| TestData {
+            sample: sample.map(str::to_owned),
+            ..tension(*c10, seed, |_| 0.003)
+        });
+        let tests: Vec<TestData> = tests.collect();
+        let law = Law::named("neo-hooke").unwrap();
+        let found = fit(law, &tests, &FitSettings::default()).unwrap();
+        assert!(found.quality.has_intervals());
+        found.quality.warnings.join("; ")
+    }
+
     #[test]
-    fn specimens_that_differ_by_more_than_their_noise_are_told() {
-        let differ = "specimens differ";
-        let of = |moduli: [f64; 3]| {
-            let tests = moduli
-                .iter()
-                .zip(0..)
-                .map(|(c10, seed)| tension(*c10, seed, |_| 0.003));
-            warned(&tests.collect::<Vec<_>>(), Weighting::Absolute, differ)
+    fn tests_that_differ_by_more_than_their_noise_are_specimens_or_a_wrong_law() {
+        let unstated = [None; 3];
+        // The second so different that all residuals together are systematic.
+        for moduli in [[0.0502, 0.0518, 0.0509], [0.045, 0.055, 0.05]] {
+            let warned = of_strips(moduli, unstated);
+            assert!(
+                warned.contains("Either this law does not explain them, or they are specimens")
+            );
+            assert!(!warned.contains("their mean gives"), "{warned}");
+            let warned = of_strips(moduli, [Some("a"), Some("b"), Some("c")]);
+            assert!(
+                warned.contains("the specimens differ by more than the noise"),
+                "{warned}"
+            );
+            let warned = of_strips(moduli, [Some("a"); 3]);
+            assert!(
+                warned.contains("this law does not explain the specimen"),
+                "{warned}"
+            );
+        }
+        for samples in [unstated, [Some("a"); 3], [Some("a"), Some("b"), Some("c")]] {
+            let warned = of_strips([0.05; 3], samples);
+            assert!(!warned.contains("specimen"), "{warned}");
+        }
+    }
+
+    /// One sheet of Fung's energy c (e^Q − 1)/2, Q = 6 E₁² + 2.5 E₂² + 2 E₁ E₂ of Green's strains, at a ratio of strains.
+    fn protocol(ratio: [f64; 2], seed: u64) -> String {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut rows = String::new();
+        for row in 0..30 {
+            let stretch = ratio.map(|share| 1.0 + 0.3 * share * f64::from(row) / 29.0);
+            let [e, f] = stretch.map(|l| 0.5 * (l * l - 1.0));
+            let energy = 0.01 * (6.0 * e * e + 2.5 * f * f + 2.0 * e * f).exp();
+            let mut noise = || -> f64 {
+                let z: f64 = StandardNormal.sample(&mut random);
+                2e-4 * z
+            };
+            let stresses = [
+                energy * (6.0 * e + f) * stretch[0] + noise(),
+                energy * (2.5 * f + e) * stretch[1] + noise(),
+            ];
+            rows += &format!(
+                "{},{},{:.6},{:.6}\n",
+                stretch[0], stretch[1], stresses[0], stresses[1]
+            );
+        }
+        rows
+    }
+
+    #[test]
+    fn protocols_of_one_specimen_are_judged_alike_in_one_file_and_in_several() {
+        let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
+        let parts: Vec<String> = (0..)
+            .zip(ratios)
+            .map(|(seed, ratio)| protocol(ratio, seed))
+            .collect();
+        let warned = |files: &[String], sample: &str| {
+            let head = format!(
+                "# test: biaxial\n{sample}stretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n"
+            );
+            let read = |rows: &String| {
+                TestData::parse("a.csv", &format!("{head}{rows}"), &Statements::default()).unwrap()
+            };
+            let tests: Vec<TestData> = files.iter().map(read).collect();
+            let found = fit(
+                Law::named("fung-demiray").unwrap(),
+                &tests,
+                &FitSettings::default(),
+            )
+            .unwrap();
+            let mut warnings = found.quality.warnings.into_iter();
+            warnings.find(|one| one.contains("3 protocols")).unwrap()
         };
-        assert!(of([0.0502, 0.0518, 0.0509]));
-        // So different that all residuals together are systematic.
-        assert!(of([0.045, 0.055, 0.05]));
-        assert!(!of([0.05; 3]));
+        let in_one = warned(&[parts.concat()], "");
+        assert_eq!(in_one, warned(&parts, ""));
+        assert!(in_one.contains("--one-specimen"), "{in_one}");
+        let stated = warned(&parts, "# sample: a\n");
+        assert!(
+            stated.starts_with("this law does not explain the specimen"),
+            "{stated}"
+        );
     }
 }
