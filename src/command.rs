@@ -29,7 +29,6 @@ use journal::FolderJournal;
 use large::Large;
 use progress::{Progress, Shown, tell_files};
 use reference::FileKind;
-use serde_json::{Value, json};
 use terminal::{Outcome, Printed, complain, complain_of_end, print, print_report, warn};
 
 mod choice;
@@ -54,6 +53,7 @@ mod shell;
 mod sweep;
 mod terminal;
 mod test_reading;
+mod validate;
 mod workbench;
 
 const SAMPLES: &str = "Samples:
@@ -258,7 +258,7 @@ fn perform(command: Command) -> u8 {
         } => {
             printed.choose();
             cases.extend(field.then(|| validation::REAL_MEASUREMENTS.to_owned()));
-            validate(&cases, quick, output)
+            validate::run(&cases, quick, output)
         }
         Command::Workbench { files } => workbench::open(&files),
         Command::Materials { command } => materials::run(command),
@@ -301,69 +301,29 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let files = results_folder.finish()?;
     tell_files(&files);
     print_report(|| results.json())?;
-    conclude(
-        &[results],
-        &format!("{} files in {}", files.len(), folder.display()),
-    )
-}
-
-fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
-    let chosen = kinds::choose(names, quick)?;
-    // A part never takes the place of the whole report.
-    let part = match &*chosen {
-        [case] => case.name,
-        all if all.len() == kinds::KINDS.len() => "",
-        _ => "several",
-    };
-    let usual = || Path::new("output/validation").join(part);
-    let folder = &folder.unwrap_or_else(usual);
-    let mut results = ResultFolder::open(folder, "validate", &[])?;
-    interrupt::guard(&results);
-    let progress = Progress::of(chosen.len() as u64);
-    let mut cases = Vec::new();
-    for case in chosen {
-        let told = |what: &str| progress.tell(&format!("{}: {what}", case.name));
-        told("begins");
-        let told = studies::Progress::to(&told);
-        cases.push(kinds::compute_or_fail(case, told)?);
-        progress.advance();
-    }
-    let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
-    let mut warnings = output::write_document(&mut results, "REPORT", &blocks, &figures)?;
-    let times = validation::report::times(&cases);
-    warnings.extend(output::write_document(&mut results, "TIMES", &times, &[])?);
-    drop(progress);
-    warn(&warnings);
-    tell_files(&results.finish()?);
-    print_report(|| cases_json(&cases))?;
-    let report = folder.join("REPORT.md");
-    conclude(&cases, &format!("report: {}", report.display()))
-}
-
-/// All cases for machines, each as `report.json` has a study.
-fn cases_json(cases: &[Results]) -> Value {
-    json!({
-        "gelbench": env!("CARGO_PKG_VERSION"),
-        "passed": cases.iter().all(Results::passed),
-        "cases": cases.iter().map(Results::json).collect::<Vec<_>>(),
-    })
+    let page = folder.join("report.html");
+    let page = with_report.then(|| format!("open {}\n", page.display()));
+    let written = format!("{} files in {}\n", files.len(), folder.display());
+    let parts = [
+        results.headline(),
+        page.unwrap_or_default(),
+        results.agreement(),
+        written,
+    ];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    conclude(&[results], &parts.join("\n"))
 }
 
 /// The exit code of a study of which a model has no solution.
 const NO_SOLUTION: u8 = 3;
 
-/// Prints warnings, headline figures, checks and where the results are, and decides on the exit code.
-fn conclude(results: &[Results], written: &str) -> Outcome {
+/// Prints the results in words, then warnings, and decides on the exit code.
+fn conclude(results: &[Results], words: &str) -> Outcome {
+    print(words)?;
     let outcomes = || results.iter().map(|results| &results.outcome);
     for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
         warn(&[Diagnostic::warning("", warning.clone())]);
     }
-    let summaries: String = outcomes().map(|outcome| &*outcome.summary).collect();
-    let told = match summaries.is_empty() {
-        true => message::checks(results),
-        false => summaries,
-    };
-    print(&format!("{told}\n{written}\n"))?;
     let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
     let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
     ends.iter().for_each(|end| complain_of_end(end));

@@ -28,6 +28,7 @@ mod keys;
 mod lines;
 mod records;
 mod section;
+pub mod stored;
 mod syntax;
 mod table;
 mod text;

@@ -191,6 +191,9 @@ pub enum SolveFault {
         /// The tolerance that was asked for.
         tolerance: f64,
     },
+    /// A search for parameters that ended where their sum of squares still falls.
+    #[error("the search ended at no minimum of the sum of squares")]
+    NoMinimum,
     /// A motion that needs more steps than are allowed.
     #[error(
         "about {needed:.1e} steps of at most {longest:.1e} s are needed, and {allowed:.1e} are allowed"
@@ -213,8 +216,10 @@ pub enum SolveFault {
         /// The shortest step in s that was tried.
         step: f64,
     },
-    /// A fault of finding a field near measured displacements.
-    #[error("{0}")]
+    /// A fault of finding a field near measured displacements, which is no evidence against the law.
+    #[error(
+        "verdict: the data cannot judge, as no equilibrium with this law, thickness and conditions was reached near the markers: {0}"
+    )]
     OfMeasured(Box<Self>),
     /// A number is not finite, so nothing computed from it means anything.
     #[error("{0} is not a finite number")]
@@ -261,6 +266,9 @@ impl SolveFault {
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
                 "take smaller steps up to this point (stretches, load factors, or the interval of a motion), or raise the iteration limit"
+            }
+            Self::NoMinimum => {
+                "keep parameters near values that are expected (`--bound`), take more starts (`--starts`), or choose a law with fewer parameters"
             }
             Self::Explodes { .. } => {
                 "look at the supports and loads at that time; take shorter steps or generalised-α, and if generalised-α fails, `spectral_radius = 1`"

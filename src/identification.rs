@@ -38,7 +38,7 @@ mod smoothing;
 mod spikes;
 mod suspects;
 mod types;
-mod warnings;
+mod verdict;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape, UnknownForm};
@@ -48,7 +48,8 @@ pub use recording::Recording;
 pub use sample::Sample;
 use suspects::examine;
 pub use types::{FittedMotion, HiddenLag, Identification, IdentificationSettings};
-use warnings::{Faults, warnings};
+pub use verdict::RecordingVerdict;
+use verdict::{Evidence, Faults, largest, notes};
 
 #[cfg(test)]
 mod tests;
@@ -169,15 +170,11 @@ fn begin<'a>(
         shape: settings.shapes[index],
         range: arguments[index],
     });
-    let floor = |signal: &[f64]| {
-        LEAST_NOISE
-            * signal
-                .iter()
-                .fold(0.0, |most: f64, value| most.max(value.abs()))
-    };
     let noise = [
-        extension.noise.max(floor(&recording.extension)),
-        force.noise.max(floor(&recording.force)),
+        extension
+            .noise
+            .max(LEAST_NOISE * largest(&recording.extension)),
+        force.noise.max(LEAST_NOISE * largest(&recording.force)),
     ];
     let joint = Joint {
         recording,
@@ -300,7 +297,7 @@ impl<'a> Fit<'a> {
             .iter_mut()
             .for_each(|function| function.reach = reach);
         let [stiffness, damping] = functions;
-        let mut identification = Identification {
+        let identification = Identification {
             settings,
             stiffness,
             damping,
@@ -309,19 +306,41 @@ impl<'a> Fit<'a> {
             misfit,
             freedom,
             hidden_lag: None,
+            verdict: RecordingVerdict::default(),
             warnings: Vec::new(),
         };
+        Some(self.judged(identification, found, signals))
+    }
+
+    /// The result with its verdict; without intervals where it is not explained.
+    fn judged(
+        &self,
+        mut found: Identification,
+        fit: &PenalisedFit,
+        signals: &(SignalSpline, SignalSpline),
+    ) -> Identification {
+        let joint = self.joint;
         let faults = Faults::of(joint.recording);
-        identification.warnings = warnings(&identification, joint.recording, signals, &faults);
+        let mut suspects = Vec::new();
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
         if !signals.0.coarse && !signals.1.coarse && faults.are_few() {
-            let examined = examine(joint, &self.state, &identification, found);
-            identification
-                .warnings
-                .extend(suspects::warning(&examined.sure));
-            identification.hidden_lag = examined.hidden_lag;
+            let examined = examine(joint, &self.state, &found, fit);
+            (suspects, found.hidden_lag) = (examined.sure, examined.hidden_lag);
         }
-        Some(identification)
+        let evidence = Evidence {
+            recording: joint.recording,
+            signals,
+            faults: &faults,
+            suspects: &suspects,
+        };
+        found.verdict = evidence.verdict(&found);
+        found.warnings = notes(&found, joint.recording);
+        if !found.is_explained() {
+            found.hidden_lag = None;
+            found.stiffness.withhold_intervals();
+            found.damping.withhold_intervals();
+        }
+        found
     }
 
     fn motion(&self) -> FittedMotion {

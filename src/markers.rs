@@ -23,7 +23,7 @@ mod table;
 mod understood;
 
 pub use frames::{Frame, Marker, MarkerSeries};
-pub use plausible::{MarkersOnMesh, THICK, check_thickness, place_on, unit_ratio};
+pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, read};
 pub use role::{ChosenColumns, Role};
 pub use rows::ReadSettings;

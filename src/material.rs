@@ -47,7 +47,7 @@ mod battery;
 
 pub use arruda_boyce::ArrudaBoyce;
 pub use body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-pub use card::Card;
+pub use card::{Card, ParameterUncertainty};
 pub use code::{Code, CodeLaw};
 pub use compressible_neo_hooke::CompressibleNeoHooke;
 pub use fung_demiray::FungDemiray;

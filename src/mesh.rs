@@ -15,6 +15,7 @@ mod locate;
 mod neighbours;
 mod nodal_field;
 mod outline;
+mod parts;
 mod plate;
 mod refine;
 mod rounding;
@@ -23,6 +24,7 @@ mod shapes;
 mod strips;
 mod triangulate;
 
+pub use angles::REENTRANT;
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_2, GAUSS_3, GAUSS_4, GAUSS_5, QuadraturePoint, lobatto};
 pub use cells::{Group, Mesh, decimals_for};
@@ -34,6 +36,8 @@ pub use import::{
 };
 pub use interpolation::Interpolation;
 pub use nodal_field::NodalField;
+pub(crate) use outline::corners;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
+pub use parts::Parts;
 pub use rounding::Polygon;
 pub use shapes::{Misfit, Shape};

@@ -3,7 +3,6 @@
 //! No mechanics enters here: an unknown is a number in a vector, an element is a term of a sum.
 
 mod aggregation;
-mod approach;
 pub mod assembly;
 mod bracing;
 mod composed;
@@ -15,7 +14,6 @@ mod iterative;
 mod journal;
 pub mod krylov;
 mod loading;
-mod nested;
 pub mod newton;
 mod nodal;
 pub mod path;
@@ -28,7 +26,6 @@ pub mod sparse;
 pub mod tangent;
 pub mod vector;
 
-pub use approach::{Approach, FirstTangent, Nearness};
 pub use assembly::Assembly;
 pub use composed::{After, DeadForces, Sum};
 pub use connectivity::Connectivity;
@@ -36,7 +33,6 @@ pub use equilibrium::equilibrium;
 pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, Stage, State};
-pub use nested::{Carry, Ladder};
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;

@@ -10,6 +10,7 @@ mod correlation;
 mod curve;
 mod curve_noise;
 mod durbin_watson;
+mod growing_noise;
 mod neighbours;
 mod ranks;
 mod spline;
@@ -20,6 +21,7 @@ pub use correlation::{Correlation, Decay, Sites, Whitening};
 pub use curve::Curve;
 pub use curve_noise::{CurveNoise, CurveResiduals};
 pub use durbin_watson::DurbinWatson;
+pub use growing_noise::sizes as growing_sizes;
 pub use neighbours::nearest;
 pub use ranks::{quantile, rank_correlation};
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
@@ -74,6 +76,12 @@ impl Estimate {
             standard_error,
             interval: [value - half, value + half],
         }
+    }
+
+    /// The standard deviation of a normal distribution with its interval, which reaches farther than 1.96 standard errors where data
+    /// are few.
+    pub fn normal_deviation(&self) -> f64 {
+        0.5 * (self.interval[1] - self.interval[0]) / normal_reach()
     }
 
     /// A value without uncertainty.

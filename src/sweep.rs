@@ -36,7 +36,7 @@ mod variable;
 pub use altered::BaseStudy;
 pub use figures::Row;
 #[cfg(feature = "pictures")]
-pub use folder::{Shard, Share, SweepFolder, join};
+pub use folder::{Shard, Share, SweepFolder, free_folder, join};
 pub use plan::{FittedParameters, Method, Run, Sampling};
 pub use points::Points;
 pub use results::{Statistics, blocks, cautions, figures, json, statistics};

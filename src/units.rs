@@ -9,11 +9,13 @@ mod figures;
 mod linear;
 mod ranges;
 mod remedy;
+mod sheet_size;
 
 pub use figures::{decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
-pub use remedy::bare_ratio;
+pub use remedy::{bare_ratio, could_be_stretch_ratios};
+pub use sheet_size::implausible_sheet;
 
 /// The kind of a physical quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,47 +10,8 @@ use tempfile::TempDir;
 
 mod common;
 
+use common::measured::{NOT_EXPLAINED, corrected, second_frame};
 use common::{gelbench, number, report_of_correction as report, root, words};
-
-/// Frame 2 of the example's markers, those that `keep` holds of.
-fn second_frame(keep: impl Fn([f64; 2]) -> bool) -> String {
-    let text = fs::read_to_string(root().join("examples/measured_plate.csv")).unwrap();
-    let mut kept = String::from("x [mm],y [mm],ux [mm],uy [mm]\n");
-    for line in text.lines().filter(|line| line.starts_with("2,")) {
-        let place: Vec<f64> = line
-            .split(',')
-            .skip(1)
-            .take(2)
-            .map(|x| x.parse().unwrap())
-            .collect();
-        if keep([place[0], place[1]]) {
-            kept += &format!("{}\n", &line[2..]);
-        }
-    }
-    kept
-}
-
-/// Corrects markers of the plate with rigid grips and free long edges; what is printed and the report.
-fn corrected(text: &str, more: &[&str], code: i32) -> (String, Value) {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("plate.csv"), text).unwrap();
-    let thickness = if more.contains(&"--thickness") {
-        vec![]
-    } else {
-        vec!["--thickness", "2 mm"]
-    };
-    let usual = ["correct", "plate.csv", "--material", "pva-10"];
-    let robust = if more.contains(&"--robust") {
-        vec![]
-    } else {
-        vec!["--robust", "tukey"]
-    };
-    let edges = ["--rigid", "left,right", "--free", "top,bottom"];
-    let arguments = [&usual[..], &thickness[..], &robust[..], &edges[..], more].concat();
-    let done = gelbench(folder.path(), &arguments).code(code);
-    let printed = words(&done.get_output().stdout) + &words(&done.get_output().stderr);
-    (printed, report(folder.path()))
-}
 
 /// Corrects markers of the plate of whose grips nothing is known, with free long edges.
 fn loosely_corrected(text: &str, more: &[&str]) -> (String, Value) {
@@ -71,9 +32,6 @@ fn loosely_corrected(text: &str, more: &[&str]) -> (String, Value) {
     let done = gelbench(folder.path(), &arguments).code(0);
     (words(&done.get_output().stdout), report(folder.path()))
 }
-
-/// The exit code where the data are not explained.
-const NOT_EXPLAINED: i32 = 5;
 
 /// The force on the right edge along x with its interval.
 fn right_force(report: &Value) -> [f64; 3] {
@@ -388,21 +346,4 @@ fn cells_that_are_given_are_not_made_smaller() {
     let mesh = root().join("validation/measured/skin_forearm/skin_mesh.msh");
     let given = said(&["--mesh", mesh.to_str().unwrap()]);
     assert!(given.contains("leave out --refine"), "{given}");
-}
-
-#[test]
-fn a_mirrored_axis_of_the_pictures_is_named() {
-    let text = second_frame(|_| true);
-    let mirrored = |line: &str| {
-        let (rest, uy) = line.rsplit_once(',').unwrap();
-        match uy.parse::<f64>() {
-            Ok(uy) => format!("{rest},{}\n", -uy),
-            Err(_) => format!("{line}\n"),
-        }
-    };
-    let turned: String = text.lines().map(mirrored).collect();
-    let (told, _) = corrected(&turned, &[], 5);
-    assert!(told.contains("along y seem to be mirrored"), "{told}");
-    let (told, _) = corrected(&text, &[], 0);
-    assert!(!told.contains("mirrored"), "{told}");
 }

@@ -27,11 +27,19 @@ fn an_identified_law_is_taken_by_a_study() {
         printed.contains("K(·) in N/mm") && printed.contains("misfit: "),
         "{printed}"
     );
-    // With another mass, spring and dashpot explain nothing.
+    assert!(printed.contains("verdict: explained\n"), "{printed}");
+    // With another mass, spring and dashpot do not explain the recording, though the misfit is small.
     let right = fs::read_to_string(here.join("spring.csv")).unwrap();
-    let wrong = right.replace("# mass: 200 g", "# mass: 400 g");
+    let wrong = right.replace("# mass: 200 g", "# mass: 230 g");
     fs::write(here.join("wrong.csv"), wrong).unwrap();
-    gelbench(here, &["identify", "wrong.csv"]).code(5);
+    let refused = gelbench(here, &["identify", "wrong.csv"]).code(5);
+    let printed = words(&refused.get_output().stdout);
+    assert!(
+        printed.contains("verdict: not explained by one spring with one dashpot")
+            && printed.contains("a mass that is smaller by")
+            && !printed.contains("95 %"),
+        "{printed}"
+    );
     for ending in ["png", "json"] {
         assert!(here.join("law/spring").with_extension(ending).exists());
     }

@@ -83,7 +83,7 @@ fn all_laws_are_ranked_and_the_best_stable_one_that_the_data_tell_is_written() {
     assert!(
         folder
             .path()
-            .join("output/materials/treloar_1944_uniaxial-arruda-boyce.toml")
+            .join("output/materials/treloar_1944_uniaxial-yeoh.toml")
             .exists()
     );
 }

@@ -441,9 +441,9 @@ fn a_field_in_metres_labelled_mm_is_told() {
     fs::write(folder.path().join("plate.csv"), uniaxial(0.001)).unwrap();
     let arguments = [&PLATE[..], &["--free", "top,bottom"]].concat();
     let done = gelbench(folder.path(), &arguments).code(1);
-    let told = words(&done.get_output().stderr);
+    let told = words(&done.get_output().stdout);
     assert!(
-        told.contains("is not a thin sheet") && told.contains("--unit"),
+        told.contains("assumes a thin sheet") && told.contains("--unit"),
         "{told}"
     );
 }

@@ -33,7 +33,7 @@ class Correction(Results):
 
     @property
     def verdict(self) -> str:
-        """``explained``, ``explained with correlated noise``, or ``not explained by this law, thickness and conditions``."""
+        """``explained``, ``explained with correlated noise``, ``the data cannot judge``, or ``not explained by this law, thickness and conditions``."""
         return self._verdict
 
     @property

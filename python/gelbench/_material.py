@@ -158,7 +158,7 @@ class Material:
         Returns
         -------
         Material
-            With a card of its own, without the record of a fit.
+            With a card of its own, whose citation names the card that it was made from; without source, quality and record of a fit.
 
         Raises
         ------

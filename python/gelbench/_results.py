@@ -102,7 +102,7 @@ class Results(InMemory):
 
     @property
     def summary(self) -> str:
-        """The headline figures of plates and measured fields, as the command prints them; empty for studies of other kinds."""
+        """What the command prints: forces and displacements of the groups, largest stress and stretch, then how far the models agree."""
         return self._core.summary
 
     @property
@@ -179,7 +179,8 @@ class Results(InMemory):
         return [Path(path) for path in self._core.write(None if folder is None else os.fspath(folder))]
 
     def __repr__(self) -> str:
-        return f"<gelbench.{type(self).__name__} {self.title!r}: {'passed' if self.passed else 'not passed'}>"
+        verdict = "passed" if self.passed else "not passed"
+        return f"{self.title}: {verdict}\n\n{self.summary}".rstrip()
 
     def _repr_html_(self) -> str:
         pictures = list(self.pictures.values())[:2]

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._errors import SolveError, WriteError, fault
 from ._material import Material, in_memory, needs_card, on_disk, shipped
+from ._material import material as _material
 from ._progress import Progress, callback
 from ._quantities import PathLike, finite, floats, magnitudes, number, text
 from ._results import Results
@@ -34,6 +35,14 @@ class StudyInMemory:
     material: Material
     _sections: dict[str, Any]
     _mesh: _core.GivenMesh | None = None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name == "material":
+            value = _material(value)
+        elif not name.startswith("_"):
+            kind = type(self).__name__
+            raise AttributeError(f"{name} of a {kind} cannot be assigned; create another {kind} with it")
+        super().__setattr__(name, value)
 
     def study(self, factors: Factors | None = None, *, card: PathLike | None = None) -> str:
         """The text of the study, which ``gelbench run`` computes with bit-identical results.

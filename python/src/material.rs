@@ -58,10 +58,26 @@ impl MaterialCard {
                 .set(&["parameters", key], &value)
                 .map_err(refused)?;
         }
-        let text = match values.is_empty() {
-            true => card.text.clone(),
-            false => without_fit(&document.text()),
-        };
+        if values.is_empty() {
+            return Ok((**card).clone());
+        }
+        let changes: Vec<String> = values
+            .iter()
+            .map(|(key, value)| format!("{key} = {value}"))
+            .collect();
+        let origin = format!("the card `{}` with {}", card.name, changes.join(", "));
+        let statements = [
+            (&["title"][..], &*origin),
+            (&["source", "citation"], &*origin),
+            (&["source", "doi"], ""),
+            (&["source", "specimen"], ""),
+            (&["source", "note"], ""),
+        ];
+        for (key, statement) in statements {
+            let statement = NewValue::Text(statement.to_owned());
+            document.set(key, &statement).map_err(refused)?;
+        }
+        let text = without_fit(&document.text());
         Card::parse(&card.name, &format!("{}.toml", card.name), &text)
     }
 
@@ -86,16 +102,18 @@ pub fn watched(card: Card, watch: &Arc<Watch>) -> Card {
     }
 }
 
-/// The text of a card without how it was fitted, which holds no longer.
+/// The text of a card without how it was fitted, and without comments, which say that too.
 fn without_fit(text: &str) -> String {
     let mut kept = true;
-    let of_others = text.split_inclusive('\n').filter(|line| {
+    let of_others = text.lines().filter(|line| {
         if line.starts_with('[') {
             kept = line.trim() != "[fit]";
         }
-        kept
+        kept && !line.starts_with('#')
     });
-    of_others.collect()
+    let without_errors =
+        of_others.map(|line| line.split(" # standard error").next().unwrap_or(line));
+    without_errors.map(|line| format!("{line}\n")).collect()
 }
 
 #[pymethods]

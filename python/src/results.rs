@@ -108,8 +108,8 @@ impl Results {
     }
 
     #[getter]
-    fn summary(&self) -> &str {
-        &self.results.outcome.summary
+    fn summary(&self) -> String {
+        self.results.summary()
     }
 
     #[getter]

@@ -97,6 +97,16 @@ def test_parameters_are_changed_by_their_keys(in_rust):
         in_rust.with_parameters(c01=1.0)
 
 
+def test_a_material_with_other_parameters_does_not_claim_the_source_of_the_first():
+    fitted = gb.Material.from_card("treloar-ogden-3")
+    assert "R²" in fitted.note and fitted.doi
+    changed = fitted.with_parameters(mu_2=0.5)
+    assert "treloar-ogden-3" in changed.citation and "mu_2 = 0.5" in changed.citation
+    assert changed.doi == "" and changed.note == ""
+    assert not any(claim in changed.text for claim in ("R²", "Treloar", "standard error", "[fit]", "refit"))
+    assert fitted.with_parameters() == fitted
+
+
 def test_a_law_in_python_says_that_it_is_slow():
     with pytest.warns(gb.PerformanceWarning, match="slower"):
         gb.Material.from_law(neo_hooke)

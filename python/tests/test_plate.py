@@ -227,3 +227,16 @@ def test_ten_thousand_calls_leave_nothing_behind():
 
     before = calls(1_000)
     assert calls(10_000) - before < 4_000  # kB
+
+
+def test_what_is_assigned_to_a_plate_has_an_effect_or_is_refused():
+    plate = gb.Plate(30, 10, 2, "neo-hooke", cells=(6, 2))
+    for name in ("thickness", "length", "cells", "factors"):
+        with pytest.raises(AttributeError, match="create another Plate"):
+            setattr(plate, name, 99)
+    soft = plate.solve("mass-spring", 0.2).force
+    c10 = plate.material.parameters["c10"].value
+    plate.material = plate.material.with_parameters(c10=2 * c10)
+    assert plate.solve("mass-spring", 0.2).force == pytest.approx(2 * soft, rel=1e-6)
+    plate.material = "pva-10"
+    assert plate.material.name == "pva-10"

@@ -3,13 +3,15 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
+use nalgebra::DMatrix;
+
 use super::data::TestData;
 use super::fit::Fit;
 use super::softened::Softened;
 use crate::document::Statements;
 use crate::document::quoted;
-use crate::material::Softening;
 use crate::material::registry::MARLOW_TABLE;
+use crate::material::{ParameterUncertainty, Softening};
 use crate::units::Dimension;
 
 /// The origin of a card's data.
@@ -117,6 +119,12 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
     if bounds.len() > 0 {
         put(&mut text, "bounds", list(bounds));
     }
+    for (key, list) in uncertainty(fit)
+        .iter()
+        .flat_map(ParameterUncertainty::lines)
+    {
+        put(&mut text, key, list);
+    }
     let reading = provenance.reading.iter();
     let reading = reading.map(|(key, value)| format!("{key}: {value}"));
     if reading.len() > 0 {
@@ -128,6 +136,28 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
         put(&mut text, "values", list(values));
     }
     text
+}
+
+/// The covariance of the law's parameters that are estimated, where the residuals are noise.
+fn uncertainty(fit: &Fit) -> Option<ParameterUncertainty> {
+    let quality = &fit.quality;
+    let law = fit.law_parameters();
+    let estimated = |index: &usize| quality.estimates[*index].standard_error.is_finite();
+    let known: Vec<usize> = (0..law.len()).filter(estimated).collect();
+    if known.is_empty() || !quality.has_intervals() {
+        return None;
+    }
+    let deviation = |index: usize| quality.estimates[index].normal_deviation();
+    Some(ParameterUncertainty {
+        keys: known
+            .iter()
+            .map(|index| law[*index].key.to_owned())
+            .collect(),
+        covariance: DMatrix::from_fn(known.len(), known.len(), |row, column| {
+            let [row, column] = [known[row], known[column]];
+            deviation(row) * quality.correlation[(row, column)] * deviation(column)
+        }),
+    })
 }
 
 /// The statements of the data's heads about a key.

@@ -16,7 +16,7 @@
 use super::data::{Observation, Test, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::regression::refined_zero::Found;
-use super::regression::{Misfit, Rival, Search, refined_zero, settled};
+use super::regression::{Misfit, Rival, Search, check_minimum, ordered, refined_zero, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;
 use super::trust::{Assessment, Quality, noise_warnings, warnings};
@@ -165,7 +165,7 @@ impl Residuals for Curve<'_> {
 ///
 /// # Errors
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
-/// within the bounds describe the data at all.
+/// within the bounds describe the data at all; [`Error::Solve`] when the search ends at no minimum.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
     let mut fit = nearest(law, tests, settings)?;
     fit.doubt_zeros(tests);
@@ -224,6 +224,7 @@ pub(in crate::calibration) fn nearest(
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
+    check_minimum(&misfit, law, &parameters, &minimum.values, &bounds)?;
     let begun = Found {
         misfit,
         values: minimum.values,
@@ -261,7 +262,8 @@ fn finished(
         values,
         bounds: begun.bounds.clone(),
     };
-    let found = found.with_zeros(&is_noise);
+    let mut found = found.with_zeros(&is_noise);
+    found.values = ordered(parameters, &found.bounds, found.values);
     let (fitted, built) = found.misfit.build(&found.values);
     let moved = found.misfit.moved_tests(&found.values);
     let quality = given.assess(&found.misfit, &moved, &found.values, &found.bounds, |own| {
@@ -291,16 +293,11 @@ fn warned(assessment: &Assessment, parameters: &[Parameter], rival: Option<&Riva
     quality
 }
 
-/// The least significant size of each parameter: a thousandth of a usual one.
+/// The least size of each parameter that counts.
 fn sizes(parameters: &[Parameter], stiffness: f64) -> Vec<f64> {
-    let size = |parameter: &Parameter| {
-        let [low, high] = parameter.usual.map(f64::abs);
-        1e-3 * match parameter.is_stress() {
-            true => stiffness,
-            false => low.max(high),
-        }
-    };
-    parameters.iter().map(size).collect()
+    let all = parameters.iter();
+    all.map(|parameter| parameter.least_size(stiffness))
+        .collect()
 }
 
 /// All tests of one fit must have one stress measure.

@@ -6,6 +6,24 @@
 use nalgebra::{DMatrix, DVector};
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide};
 
+/// What a residual √n w (σ − σ(p)) is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// σ, a stress or the mean of n neighbouring ones, in MPa.
+    pub stress: f64,
+    /// w.
+    pub weight: f64,
+    /// n.
+    pub count: f64,
+}
+
+impl Measured {
+    /// The model's stress that leaves a residual, in MPa.
+    pub fn modelled(&self, residual: f64) -> f64 {
+        self.stress - residual / (self.count.sqrt() * self.weight)
+    }
+}
+
 /// Residuals of a model as a function of its parameters.
 pub trait Residuals {
     /// The number of residuals.
@@ -108,6 +126,101 @@ pub fn minimise(
     let mut found = start.to_vec();
     problem.mpfit(&mut found).ok()?;
     (sum_of_squares(model, &found) <= begin).then_some(found)
+}
+
+/// Improves `start` within `bounds` until it is a minimum, or for so many turns; `None` where the method fails from there.
+pub fn descend(model: &dyn Residuals, start: &[f64], bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
+    const TURNS: usize = 10;
+    let mut values = minimise(model, start, bounds, Precision::Full)?;
+    for _ in 0..TURNS {
+        let Some(lower) = lower(model, &values, bounds) else {
+            break;
+        };
+        values = minimise(model, &lower, bounds, Precision::Full).unwrap_or(lower);
+    }
+    Some(values)
+}
+
+/// Values near some others with a sum of squares that is smaller by more than a millionth of what the noise makes of it; `None` at a
+/// minimum. Tried are a Gauss–Newton step, halved as often as needed, and a small step of each value away from its bound.
+///
+/// # References
+/// D. M. Bates, D. G. Watts, Technometrics 23, 179 (1981), whose criterion the millionth is the square of
+pub fn lower(model: &dyn Residuals, values: &[f64], bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
+    const HALVINGS: i32 = 12;
+    const INSIDE: [f64; 3] = [1e-3, 1e-5, 1e-7];
+    let at = Tangent::new(model, values, bounds)?;
+    let limit = at.considerable()?;
+    let is_lower = |tried: &Vec<f64>| sum_of_squares(model, tried) < limit;
+    let along = |halvings: i32| at.moved(0.5_f64.powi(halvings));
+    let inside = (0..values.len()).filter(|index| !at.free.contains(index));
+    let inside = inside.filter(|index| (bounds[*index][1] - bounds[*index][0]).is_finite());
+    let inside = inside.flat_map(|index| INSIDE.map(|share| (index, share)));
+    let inside = inside.map(|(index, share)| {
+        let mut moved = values.to_vec();
+        let middle = 0.5 * (bounds[index][0] + bounds[index][1]);
+        moved[index] += share * (middle - values[index]);
+        moved
+    });
+    let mut steps = (0..HALVINGS).map(along).chain(inside);
+    steps.find(is_lower)
+}
+
+/// The residuals at some values and their derivatives by those that no bound holds.
+struct Tangent<'a> {
+    values: &'a [f64],
+    bounds: &'a [[f64; 2]],
+    free: Vec<usize>,
+    jacobian: DMatrix<f64>,
+    residual: DVector<f64>,
+}
+
+impl<'a> Tangent<'a> {
+    fn new(model: &dyn Residuals, values: &'a [f64], bounds: &'a [[f64; 2]]) -> Option<Self> {
+        let mut residual = DVector::zeros(model.count());
+        if !model.evaluate(values, residual.as_mut_slice()) {
+            return None;
+        }
+        let pairs = values.iter().zip(bounds);
+        let held = pairs.map(|(value, [low, high])| value <= low || value >= high);
+        let held: Vec<bool> = held.collect();
+        let free: Vec<usize> = (0..values.len()).filter(|index| !held[*index]).collect();
+        let jacobian = jacobian(model, values, &held, &vec![LEAST_SIZE; values.len()])?;
+        Some(Self {
+            values,
+            bounds,
+            jacobian: jacobian.select_columns(&free),
+            free,
+            residual,
+        })
+    }
+
+    /// A sum of squares that is considerably smaller; `None` where residuals are so small that no test tells them from nothing.
+    fn considerable(&self) -> Option<f64> {
+        const SHARE: f64 = 1e-6;
+        const NOTHING: f64 = 1e-6;
+        let sum = self.residual.norm_squared();
+        let columns = self.free.iter().zip(self.jacobian.column_iter());
+        let sizes = columns.map(|(index, column)| column.norm() * self.values[*index].abs());
+        let scale = sizes.fold(0.0, f64::max);
+        let freedom = self.residual.len().saturating_sub(self.values.len()).max(1);
+        let limit = sum * (1.0 - SHARE * self.values.len() as f64 / freedom as f64);
+        (sum > (NOTHING * scale).powi(2)).then_some(limit)
+    }
+
+    /// The values after a share of the Gauss–Newton step, within the bounds.
+    fn moved(&self, share: f64) -> Vec<f64> {
+        let mut moved = self.values.to_vec();
+        if self.free.is_empty() {
+            return moved;
+        }
+        let step = linear(&self.jacobian, &self.residual);
+        for (index, change) in self.free.iter().zip(step.iter().flat_map(|own| own.iter())) {
+            let [low, high] = self.bounds[*index];
+            moved[*index] = (self.values[*index] - share * change).clamp(low, high);
+        }
+        moved
+    }
 }
 
 /// ∂rᵢ/∂pⱼ by central differences, of second order in the step, or by a one-sided one where the model has no value on the other

@@ -10,9 +10,7 @@ use crate::material::parameters::StressMeasure;
 use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
 
 /// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that
-/// cannot be fitted are left out, with the reasons. All have the number of effective points of the law with the least
-/// variance of residuals: the number of independent points depends on the noise, not on a law that misses them.
-/// Zeros are not doubted, see [`Fit::doubt_zeros`].
+/// cannot be fitted are left out, with the reasons. Zeros are not doubted, see [`Fit::doubt_zeros`].
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
     // A fibre law needs to see two directions.
     let axis = |axis: usize| {
@@ -40,18 +38,6 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
         match outcome {
             Ok(fit) => fits.push(fit),
             Err(reason) => reasons.push(reason.to_string()),
-        }
-    }
-    let variance = |fit: &Fit| {
-        let quality = &fit.quality;
-        quality.weighted_sum / (quality.points - fit.parameters.len()) as f64
-    };
-    let closest = fits
-        .iter()
-        .min_by(|a, b| variance(a).total_cmp(&variance(b)));
-    if let Some(effective) = closest.map(|fit| fit.quality.effective_points()) {
-        for fit in &mut fits {
-            fit.quality.aicc = fit.quality.aicc_with(effective);
         }
     }
     fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));

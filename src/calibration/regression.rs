@@ -8,6 +8,4 @@ mod search;
 pub use misfit::{Misfit, Rows, Zero};
 pub use refined_zero::MovedZero;
 pub use reweighed::{Reweighed, settled};
-#[cfg(test)]
-pub use search::differs;
-pub use search::{Rival, Search};
+pub use search::{Rival, Search, check_minimum, ordered};

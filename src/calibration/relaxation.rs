@@ -10,10 +10,10 @@ use std::fmt::Write;
 use super::data::{Branches, TestData, Times};
 use super::fit::{Fit, Relaxed, check_measures, nearest};
 use super::least_squares::Residuals;
-use super::regression::{Reweighed, settled};
+use super::regression::{Reweighed, check_minimum, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::trust::{
-    AT_BOUND, Deviations, Judged, Quality, Values, aicc, at_bound, rounded, taken_zeros, warnings,
+    AT_BOUND, Deviations, Judged, Quality, Values, at_bound, rounded, taken_zeros, warnings,
 };
 use crate::error::Error;
 use crate::material::parameters::{Parameter, StressMeasure};
@@ -137,54 +137,40 @@ struct Whole<'a> {
 }
 
 impl Whole<'_> {
-    fn count(&self, terms: usize) -> f64 {
-        (self.law_parameters.len() + 2 * terms + 1) as f64
-    }
-
-    /// The fit with the smallest AICc; all have the effective points of the one with the least variance.
+    /// The fit with the smallest AICc.
     fn chosen(&self, elastic: Fit, candidates: Vec<(usize, Found)>) -> Result<Fit, Error> {
-        let rows = self.misfit.count() as f64;
-        let variance =
-            |(terms, found): &(usize, Found)| found.0 / (rows - self.count(*terms)).max(0.5);
-        let nearest = candidates
+        let mut judged = Vec::new();
+        for (terms, (_, values)) in candidates {
+            let criterion = self.judged(terms, &values)?.aicc(values.len());
+            judged.push((criterion, terms, values));
+        }
+        let tried = judged
             .iter()
-            .min_by(|a, b| variance(a).total_cmp(&variance(b)));
-        let judged = nearest
-            .map(|(terms, found)| self.judged(*terms, &found.1))
-            .transpose()?;
-        let effective = judged.map_or(rows, |judged| judged.effective(rows));
-        let criterion =
-            |(terms, found): &(usize, Found)| aicc(found.0, [rows, effective], self.count(*terms));
-        let tried: Vec<(usize, f64)> = candidates
-            .iter()
-            .map(|one| (one.0, criterion(one)))
-            .collect();
-        let best = candidates
-            .into_iter()
-            .min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
-        let Some((terms, found)) = best else {
-            return Ok(elastic);
-        };
-        let points = [rows, effective];
-        self.finished(elastic, terms, found, tried, points)
+            .map(|(criterion, terms, _)| (*terms, *criterion));
+        let tried: Vec<(usize, f64)> = tried.collect();
+        let best = judged.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        match best {
+            Some((_, terms, values)) => self.finished(elastic, terms, values, tried),
+            None => Ok(elastic),
+        }
     }
 
-    /// The fit with so many terms, whose AICc counts rows and effective points as given.
+    /// The fit with so many terms.
     fn finished(
         &self,
         elastic: Fit,
         terms: usize,
-        (sum, values): Found,
+        values: Vec<f64>,
         tried: Vec<(usize, f64)>,
-        counted: [f64; 2],
     ) -> Result<Fit, Error> {
         let bounds = self.limits(terms)?;
+        let mut parameters = parameters(self.law_parameters, terms, self.resolved);
+        check_minimum(self.misfit, self.law(), &parameters, &values, &bounds)?;
         let is_noise = |misfit: &ViscousMisfit, values: &[f64]| {
             self.judged_by(misfit, &bounds, values).is_noise()
         };
         let (misfit, values) = settled(self.misfit, values, &bounds, is_noise);
         let judged = self.judged_by(&misfit, &bounds, &values);
-        let mut parameters = parameters(self.law_parameters, terms, self.resolved);
         for (index, (parameter, value)) in parameters.iter_mut().zip(&values).enumerate() {
             parameter.value = if self.is_logarithmic(index) {
                 value.exp()
@@ -196,9 +182,8 @@ impl Whole<'_> {
         let fitted = self.misfit.law(&values);
         let relaxed = self.relaxed(&values, tried)?;
         let predicted = |test: usize, row: usize| relaxed.predicted[test][row];
-        let deviations = Deviations::of(self.tests, self.settings.weighting, &predicted);
-        let aicc = aicc(sum, counted, self.count(terms));
-        let mut quality = judged.quality(&*fitted, self.tests, &deviations, estimated, aicc);
+        let deviations = Deviations::of(self.tests, &predicted);
+        let mut quality = judged.quality(&*fitted, self.tests, &deviations, estimated);
         quality.warnings = warnings(&quality, &parameters, None);
         quality
             .warnings

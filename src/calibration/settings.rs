@@ -5,6 +5,7 @@ use crate::document::{Bound, name_of};
 use crate::error::{Error, suggestion};
 use crate::material::parameters::{Parameter, StrainMeasure};
 use crate::material::registry::Law;
+use crate::units::Dimension;
 
 /// The weighting of residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +97,8 @@ pub fn limits(
     check_bounds(law, parameters, bounds)?;
     let limit = |parameter: &Parameter| {
         let [low, high] = match parameter.bound {
+            // The law is the same at every other angle.
+            Bound::Any if parameter.dimension == Dimension::Angle => parameter.usual,
             Bound::Any => [f64::NEG_INFINITY, f64::INFINITY],
             // Next to nothing beside what the data speak of.
             Bound::Positive if parameter.is_stress() => [1e-9 * scale, f64::INFINITY],

@@ -8,10 +8,10 @@ use std::sync::Arc;
 use super::data::{Observation, TestData};
 use super::fit::{Fit, check_measures, nearest};
 use super::least_squares::Residuals;
-use super::regression::settled;
+use super::regression::{check_minimum, settled};
 use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};
-use super::trust::{Deviations, Quality, aicc, taken_zeros, warnings};
+use super::trust::{Deviations, Quality, taken_zeros, warnings};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
@@ -57,6 +57,7 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         let message = format!("{}: no softening describes the data", first.law.name);
         Error::input(message, "look at the strains, or choose another law")
     })?;
+    check_minimum(&misfit, first.law, &parameters, &values, &bounds)?;
     let search = Search {
         base,
         tests,
@@ -235,10 +236,7 @@ impl Whole<'_> {
         let weighting = self.settings.weighting;
         let judged = judged(self.misfit, self.tests, values, self.bounds, weighting);
         let estimates = judged.estimates(values);
-        let deviations = Deviations::of(self.tests, weighting, &|test, row| predicted[test][row]);
-        let n = self.misfit.count() as f64;
-        let counted = [n, judged.effective(n)];
-        let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
-        judged.quality(law, self.tests, &deviations, estimates, aicc)
+        let deviations = Deviations::of(self.tests, &|test, row| predicted[test][row]);
+        judged.quality(law, self.tests, &deviations, estimates)
     }
 }

@@ -9,7 +9,7 @@ mod warnings;
 
 pub use assessment::Assessment;
 pub use judged::{AT_BOUND, Judged, Values, at_bound};
-pub use quality::{Deviations, Quality, StableRange, aicc, rounded};
+pub use quality::{Deviations, Quality, StableRange, rounded};
 pub use uneven_noise::noise_warnings;
 pub use verdict::{Answer, Verdict};
 pub use warnings::{taken_zeros, warnings};

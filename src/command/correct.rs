@@ -17,7 +17,8 @@ mod request;
 pub mod together;
 mod values;
 
-use frames::{Told, correct, exit_code};
+pub use frames::exit_code;
+use frames::{Told, correct};
 pub use options::Options;
 use request::request;
 

@@ -8,7 +8,7 @@ use clap::{ArgGroup, Args};
 use super::choice::one_of;
 use super::fitted::{InTime, fitted, terms};
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, save, warn};
+use super::terminal::{Outcome, Printed, print, print_data, print_report, save, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
@@ -387,7 +387,7 @@ pub fn convert(arguments: ConvertArguments) -> Outcome {
     }
     .table(&data)?;
     match arguments.output {
-        None => print(&text)?,
+        None => print_data(&text)?,
         Some(file) => {
             output::refuse_inputs(&file, &[&arguments.data])?;
             let text = format!("# source: gelbench materials convert\n{text}");

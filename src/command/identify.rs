@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde_json::Value;
 
+use super::correct::exit_code;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
-use super::terminal::{NOT_EXPLAINED, Outcome, Printed, print, print_report, save, warn};
+use super::terminal::{Outcome, Printed, print, print_report, save, warn};
 use crate::budget::Need;
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
@@ -171,19 +172,15 @@ pub fn run(options: Options) -> Outcome {
     tell_files(&files);
     print_report(|| json)?;
     warn(warnings.as_slice());
-    for warning in &found.warnings {
-        warn(&[Diagnostic::warning("", warning)]);
-    }
+    let doubts = found.verdict.doubts.iter().chain(&found.warnings);
+    let doubts: Vec<_> = doubts.map(|one| Diagnostic::warning("", one)).collect();
+    warn(&doubts);
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&found, &recording, &path),
         folder.join(format!("{stem}.toml")).display()
     ))?;
-    Ok(if found.is_explained() {
-        0
-    } else {
-        NOT_EXPLAINED
-    })
+    Ok(exit_code(found.verdict.answer, found.verdict.is_sound()))
 }
 
 /// Writes law, figures and picture; returns a warning where the picture cannot be drawn.
@@ -210,9 +207,10 @@ fn file_name(path: &Path) -> String {
 
 fn message(found: &Identification, recording: &Recording, path: &Path) -> String {
     let mut text = format!(
-        "{}: {} instants\nnoise: {} mm in the extension, {} N in the force\nmisfit: {} (1 where force, motion and forms fit together)\n",
+        "{}: {} instants\n{}noise: {} mm in the extension, {} N in the force\nmisfit: {} (1 where force, motion and forms fit together)\n",
         path.display(),
         recording.times.len(),
+        verdict(found),
         number(found.noise[0]),
         number(found.noise[1]),
         number(found.misfit)
@@ -237,6 +235,18 @@ fn message(found: &Identification, recording: &Recording, path: &Path) -> String
     text
 }
 
+/// The verdict with its reasons.
+fn verdict(found: &Identification) -> String {
+    let mut text = format!("verdict: {}\n", found.verdict.words());
+    for reason in &found.verdict.reasons {
+        let _ = writeln!(text, "  {reason}");
+    }
+    if !found.is_explained() {
+        text += "  no standard errors, intervals and bands are given: they would mean nothing\n";
+    }
+    text
+}
+
 /// The coefficients of constants and polynomials.
 fn powers(function: &Function, unit: &str) -> String {
     let mut text = String::new();
@@ -249,28 +259,40 @@ fn powers(function: &Function, unit: &str) -> String {
         };
         let value = number(estimate.value);
         let error = number(estimate.standard_error);
-        let _ = writeln!(text, "  {value} ± {error}{per}   95 % {low} … {high}");
+        let _ = match estimate.standard_error.is_nan() {
+            true => writeln!(text, "  {value}{per}"),
+            false => writeln!(text, "  {value} ± {error}{per}   95 % {low} … {high}"),
+        };
     }
     text
 }
 
 fn curve(function: &Function, argument: &str) -> String {
     const PLACES: usize = 7;
-    let mut text = format!(
-        "  {argument:>14}  {:>10}  {:>10}  95 % pointwise; band\n",
-        "value", "std error"
-    );
+    let has_intervals = function
+        .at(function.basis.range[0])
+        .standard_error
+        .is_finite();
+    let mut text = format!("  {argument:>14}  {:>10}", "value");
+    if has_intervals {
+        let _ = write!(text, "  {:>10}  95 % pointwise; band", "std error");
+    }
+    text.push('\n');
     for x in function.places(PLACES) {
         let estimate = function.at(x);
-        let [low, high] = estimate.interval.map(number);
-        let [below, above] = function.band(x).map(number);
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "  {:>14}  {:>10}  {:>10}  {low} … {high}; {below} … {above}",
+            "  {:>14}  {:>10}",
             format!("{x:.3}"),
-            number(estimate.value),
-            number(estimate.standard_error)
+            number(estimate.value)
         );
+        if has_intervals {
+            let [low, high] = estimate.interval.map(number);
+            let [below, above] = function.band(x).map(number);
+            let error = number(estimate.standard_error);
+            let _ = write!(text, "  {error:>10}  {low} … {high}; {below} … {above}");
+        }
+        text.push('\n');
     }
     text
 }

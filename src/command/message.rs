@@ -9,11 +9,12 @@ use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::{Mode, far_end};
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::results::{Check, Results, Wanted, limit};
-use crate::units::number;
+
+/// Columns of a finding where no terminal says how many it has.
+const USUAL_COLUMNS: usize = 80;
 
 /// A finding with the lines of the file that it is about.
-pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
+pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) -> String {
     let message = match finding.key.as_str() {
         "" => finding.message.clone(),
         key => format!("{key}: {}", finding.message),
@@ -45,50 +46,13 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
         GraphicalTheme::unicode_nocolor()
     };
     let mut text = String::new();
-    let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(1);
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(columns.unwrap_or(USUAL_COLUMNS))
+        .with_context_lines(1);
     match handler.render_report(&mut text, report.as_ref()) {
         Ok(()) => text,
         Err(_) => format!("{finding}\n"),
     }
-}
-
-/// One line for each check of some cases, and their number.
-pub fn checks(cases: &[Results]) -> String {
-    let mut text = String::new();
-    let mut passed = [0, 0];
-    for (case, check) in cases
-        .iter()
-        .flat_map(|case| case.outcome.checks.iter().map(move |check| (case, check)))
-    {
-        passed[usize::from(check.passed())] += 1;
-        let (word, quantity) = (check.judgement().word(), &check.quantity);
-        text += &format!("{word} {}: {quantity}{}\n", case.kind, computed(check));
-        if let Some(remark) = check.judgement().remark() {
-            text += &format!("     {remark}\n");
-        }
-    }
-    text + &format!("{} of {} checks passed\n", passed[1], passed[0] + passed[1])
-}
-
-/// ` = 0.2 % (at most 0.5 %)`; nothing behind a fault, which has no value and no limit.
-fn computed(check: &Check) -> String {
-    if check.is_fault() {
-        return String::new();
-    }
-    let unit = match check.unit {
-        "–" => String::new(),
-        unit => format!(" {unit}"),
-    };
-    let wanted = match check.wanted {
-        Wanted::Equal(value, tolerance) => format!("{} ± {} %", limit(value), limit(tolerance)),
-        Wanted::AtMost(most) => format!("at most {}{unit}", limit(most)),
-        Wanted::AtLeast(least) => format!("at least {}{unit}", limit(least)),
-    };
-    let value = match check.computed.is_nan() {
-        true => "–".to_owned(),
-        false => number(check.computed),
-    };
-    format!(" = {value}{unit} ({wanted})")
 }
 
 /// One line of the list of cards.

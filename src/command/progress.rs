@@ -11,11 +11,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::terminal::columns_of_errors;
+
 /// How often a line is written where there is no bar.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 /// A terminal with fewer columns has no room for a bar.
-const FEWEST_COLUMNS: u16 = 60;
+const FEWEST_COLUMNS: usize = 60;
 
 /// What is shown of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,8 +113,7 @@ impl Drop for Progress {
 /// Whether standard error is a terminal on which a bar can be drawn.
 fn has_room() -> bool {
     let drawable = std::env::var("TERM").is_ok_and(|name| name != "dumb") || cfg!(windows);
-    let columns = terminal_size::terminal_size_of(std::io::stderr());
-    let wide = columns.is_some_and(|(width, _)| width.0 >= FEWEST_COLUMNS);
+    let wide = columns_of_errors().is_some_and(|columns| columns >= FEWEST_COLUMNS);
     std::io::stderr().is_terminal() && drawable && wide
 }
 

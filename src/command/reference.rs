@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::terminal::{Outcome, print};
+use super::terminal::{Outcome, print, print_data};
 use crate::document::{Bound, FoundKey, Key, Presence, Takes, comments, explore};
 use crate::error::Error;
 use crate::kinds;
@@ -119,7 +119,7 @@ pub fn write(name: PathBuf, kind: FileKind) -> Outcome {
 
 /// Prints the reference of one kind of files, or of all.
 pub fn print_keys(kind: Option<FileKind>) -> Outcome {
-    print(&match kind {
+    print_data(&match kind {
         Some(kind) => reference(&[kind]),
         None => reference(&FileKind::ALL),
     })?;

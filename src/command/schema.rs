@@ -3,13 +3,13 @@
 use serde_json::{Map, Value, json};
 
 use super::reference::FileKind;
-use super::terminal::{Outcome, print};
+use super::terminal::{Outcome, print_data};
 use crate::document::{Bound, FoundKey, Presence, Takes, comments};
 use crate::units::Dimension;
 
 /// Prints the schema of a kind of files.
 pub fn print_schema(kind: FileKind) -> Outcome {
-    print(&format!("{:#}\n", schema(kind)))?;
+    print_data(&format!("{:#}\n", schema(kind)))?;
     Ok(0)
 }
 

@@ -5,14 +5,14 @@ use std::path::Path;
 use clap::Command;
 use clap_complete::Shell;
 
-use super::terminal::{Outcome, print, save};
+use super::terminal::{Outcome, print, print_data, save};
 use crate::error::Error;
 
 /// Prints the completions of a shell.
 pub fn completions(shell: Shell, command: &mut Command) -> Outcome {
     let mut script = Vec::new();
     clap_complete::generate(shell, command, "gelbench", &mut script);
-    print(&String::from_utf8_lossy(&script))?;
+    print_data(&String::from_utf8_lossy(&script))?;
     Ok(0)
 }
 

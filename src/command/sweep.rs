@@ -88,12 +88,16 @@ fn shard(text: &str) -> Result<Shard, String> {
 pub fn run(options: Options) -> Outcome {
     options.printed.choose();
     let sweep = sweep(&options)?;
-    let usual = || Path::new("output").join(format!("{}_sweep", name(&options.study)));
-    let whole = options.output.clone().unwrap_or_else(usual);
     let share = match (options.shard, options.join) {
         (Some(shard), _) => Share::Shard(shard),
         (None, Some(parts)) => Share::Join(parts),
         (None, None) => Share::Whole,
+    };
+    let usual = Path::new("output").join(format!("{}_sweep", name(&options.study)));
+    let whole = match (&options.output, share) {
+        (Some(given), _) => given.clone(),
+        (None, Share::Whole) => sweep::free_folder(&sweep, usual)?,
+        (None, _) => usual,
     };
     let others = [options.fit.as_deref(), options.points.as_deref()];
     let inputs: Vec<&Path> = std::iter::once(&*options.study)

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use serde_json::Value;
+use textwrap::{Options, WordSeparator, WordSplitter};
 
 use super::message;
 use crate::error::{Diagnostic, Error};
@@ -40,17 +41,64 @@ impl Printed {
 /// Prints a report as JSON, if that is wanted.
 pub fn print_report(report: impl FnOnce() -> Value) -> Result<(), Error> {
     match IS_JSON.load(Ordering::Relaxed) {
-        true => print_to(&mut io::stdout().lock(), &format!("{:#}\n", report())),
+        true => print_data(&format!("{:#}\n", report())),
         false => Ok(()),
     }
 }
 
-/// Prints words for people; a reader that has gone away is no error.
+/// Columns of the terminal behind standard error; `None` where there is none.
+pub fn columns_of_errors() -> Option<usize> {
+    columns(terminal_size::terminal_size_of(io::stderr()))
+}
+
+/// `COLUMNS`, as shells and tests state it, goes before what a terminal says of itself.
+fn columns(terminal: Option<(terminal_size::Width, terminal_size::Height)>) -> Option<usize> {
+    /// Narrower lines cannot be read.
+    const LEAST: usize = 20;
+    let stated = std::env::var("COLUMNS").ok();
+    let stated = stated.and_then(|columns| columns.trim().parse().ok());
+    let known = stated.or(terminal.map(|(width, _)| usize::from(width.0)));
+    known
+        .filter(|columns| *columns > 0)
+        .map(|columns| columns.max(LEAST))
+}
+
+/// Lines that are longer than the terminal is wide, broken between words; what belongs to a line is indented below it.
+fn wrapped(text: &str, columns: Option<usize>) -> String {
+    let Some(columns) = columns else {
+        return text.to_owned();
+    };
+    let of_line = |line: &str| {
+        let indent = line.len() - line.trim_start_matches(' ').len() + 2;
+        let indent = " ".repeat(indent.min(columns / 2));
+        // Paths and options stay whole.
+        let options = Options::new(columns)
+            .subsequent_indent(&indent)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation)
+            .break_words(false);
+        textwrap::fill(line, options)
+    };
+    text.split('\n').map(of_line).collect::<Vec<_>>().join("\n")
+}
+
+/// Prints words for people, in lines that the terminal has room for; a reader that has gone away is no error.
 pub fn print(text: &str) -> Result<(), Error> {
     match IS_JSON.load(Ordering::Relaxed) {
-        true => print_to(&mut io::stderr().lock(), text),
-        false => print_to(&mut io::stdout().lock(), text),
+        true => print_to(
+            &mut io::stderr().lock(),
+            &wrapped(text, columns_of_errors()),
+        ),
+        false => {
+            let columns = columns(terminal_size::terminal_size_of(io::stdout()));
+            print_data(&wrapped(text, columns))
+        }
     }
+}
+
+/// Prints what is for programs as it is.
+pub fn print_data(text: &str) -> Result<(), Error> {
+    print_to(&mut io::stdout().lock(), text)
 }
 
 fn print_to(out: &mut dyn Write, text: &str) -> Result<(), Error> {
@@ -64,10 +112,13 @@ fn print_to(out: &mut dyn Write, text: &str) -> Result<(), Error> {
 
 /// Prints warnings.
 pub fn warn(warnings: &[Diagnostic]) {
-    let coloured = io::stderr().is_terminal();
     for warning in warnings {
-        let _ = write!(io::stderr(), "{}", message::diagnostic(warning, coloured));
+        let _ = write!(io::stderr(), "{}", diagnostic(warning));
     }
+}
+
+fn diagnostic(finding: &Diagnostic) -> String {
+    message::diagnostic(finding, io::stderr().is_terminal(), columns_of_errors())
 }
 
 /// Writes a file, and tells what was kept that stood in its place.
@@ -81,13 +132,15 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 
 /// Prints a fault with what may help.
 pub fn complain(error: &Error) {
-    let coloured = io::stderr().is_terminal();
-    let text = match error {
-        Error::Input(faults) => told(faults, &|fault| message::diagnostic(fault, coloured)),
+    let words = match error {
+        Error::Input(faults) => {
+            let _ = write!(io::stderr(), "{}", told(faults, &diagnostic));
+            return;
+        }
         Error::Solve { fault, .. } => format!("error: {error}\n  try: {}\n", fault.advice()),
         Error::Write { .. } => format!("error: {error}\n"),
     };
-    let _ = write!(io::stderr(), "{text}");
+    let _ = write!(io::stderr(), "{}", wrapped(&words, columns_of_errors()));
 }
 
 /// The words of some faults; of many with one cause the first ones stand for all.
@@ -113,7 +166,7 @@ fn told(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String 
 pub fn complain_of_end(end: &End) {
     let advice = end.advice.map(|advice| format!("  try: {advice}\n"));
     let text = format!("error: {}\n{}", end.message, advice.unwrap_or_default());
-    let _ = write!(io::stderr(), "{text}");
+    let _ = write!(io::stderr(), "{}", wrapped(&text, columns_of_errors()));
 }
 
 #[cfg(test)]
@@ -127,5 +180,14 @@ mod tests {
         faults.push(fault("b"));
         let text = told(&faults, &|fault| format!("{}\n", fault.message));
         assert_eq!(text, "a\na\na\nb\n  and 37 more of the same\n");
+    }
+
+    #[test]
+    fn only_lines_longer_than_the_terminal_are_broken_between_words() {
+        let text = "  force on --edge-gap is 12.5 N\n\nshort   line\n";
+        let broken = "  force on\n    --edge-gap is 12.5\n    N\n\nshort   line\n";
+        assert_eq!(wrapped(text, Some(22)), broken);
+        assert_eq!(wrapped(text, Some(80)), text);
+        assert_eq!(wrapped(text, None), text);
     }
 }

@@ -18,6 +18,10 @@
 //! else                cannot be judged
 //! ```
 
+use serde::{Deserialize, Serialize};
+
+use crate::document::stored::{StaticText, static_text};
+
 /// Deviations below this, in percent, are due to solvers and rounding.
 pub const ROUNDING_PERCENT: f64 = 1e-6;
 
@@ -25,12 +29,12 @@ pub const ROUNDING_PERCENT: f64 = 1e-6;
 pub const OWN_SHARE: f64 = 0.1;
 
 /// The judgement of a requirement.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Judgement {
     /// Within the limit.
     Pass,
     /// Within the limit because there is nothing to measure, and why.
-    Exact(&'static str),
+    Exact(#[serde(deserialize_with = "static_text")] StaticText),
     /// Within the limit by a margin of ten times the reference's own error, which is more than a tenth of the deviation.
     PassByMargin,
     /// Beyond the limit, or NaN.

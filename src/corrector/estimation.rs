@@ -42,8 +42,8 @@ mod transfer;
 mod uncertainty;
 
 pub use given::{
-    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Specimen, Unnamed,
-    name_parts,
+    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Specimen,
+    UncertainLaw, Unnamed, name_parts,
 };
 pub use joint::{
     Direction, ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame,

@@ -139,12 +139,6 @@ impl<'a> Section<'a> {
         self.written(key).is_some()
     }
 
-    /// Whether a key has a list of numbers without units.
-    pub fn is_of_numbers(&self, key: &'static str) -> bool {
-        let value = self.written(key);
-        value.is_some_and(|value| plain::is_list_of_numbers(value.get_ref()))
-    }
-
     /// Adds a finding about another file that this one names.
     pub fn add(&self, finding: Diagnostic) {
         self.faults.push(finding);

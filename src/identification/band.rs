@@ -15,7 +15,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Basis, Form};
-use crate::statistics::{Estimate, student_reach, student_tail};
+use crate::statistics::{Estimate, larger, student_reach, student_tail};
 
 /// An identified function.
 #[derive(Clone, Debug)]
@@ -39,13 +39,19 @@ impl Function {
         let estimate = |power: usize| {
             let unit = scale.powi(-i32::try_from(power).unwrap_or(i32::MAX));
             let value = self.coefficients[power] * unit;
-            let standard_error = self.covariance[(power, power)].max(0.0).sqrt() * unit;
+            let standard_error = larger(self.covariance[(power, power)], 0.0).sqrt() * unit;
             self.estimate(value, standard_error)
         };
         match self.basis.form {
             Form::Spline(_) => Vec::new(),
             Form::Constant | Form::Polynomial(_) => (0..self.basis.count()).map(estimate).collect(),
         }
+    }
+
+    /// Takes standard errors, intervals and bands away, which mean nothing where the recording is not explained.
+    pub fn withhold_intervals(&mut self) {
+        self.covariance.fill(f64::NAN);
+        self.reach = [f64::NAN; 2];
     }
 
     fn estimate(&self, value: f64, standard_error: f64) -> Estimate {
@@ -55,7 +61,7 @@ impl Function {
     /// The value at `x` with its standard error and its 95 % interval at this place alone.
     pub fn at(&self, x: f64) -> Estimate {
         let value = self.coefficients.dot(&self.basis.values(x, 0));
-        self.estimate(value, self.product(x, x).max(0.0).sqrt())
+        self.estimate(value, larger(self.product(x, x), 0.0).sqrt())
     }
 
     /// The 95 % band at `x`, which is valid at all places of both functions together.

@@ -1,5 +1,6 @@
 //! Least-squares splines of a signal over time, with as many parts as its noise allows.
 
+use super::verdict::{RESOLUTION, largest};
 use crate::solve::{Cholesky, FactorFault, SymmetricPattern};
 use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
@@ -148,7 +149,9 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
         intervals += 1 + intervals / 8;
     }
     let (_, mut found) = best?;
-    found.coarse = found.intervals + found.intervals / 8 + 1 > most;
+    // Without noise any number of parts would do better with more.
+    found.coarse = found.intervals + found.intervals / 8 + 1 > most
+        && found.noise > RESOLUTION * largest(signal);
     Some(found)
 }
 

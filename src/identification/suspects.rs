@@ -14,8 +14,9 @@ use super::basis::{Basis, Form};
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
 use super::types::{FittedMotion, HiddenLag, Identification};
+use super::verdict::{RESOLUTION, largest};
 
-/// t above which a suspect is reported: by chance in less than one recording of a thousand, with seven tried.
+/// t above which a suspect is reported: by chance in less than one recording of a thousand, with eight tried.
 const LIMIT: f64 = 4.0;
 
 /// The share of the residuals beyond the noise that a suspect has to explain: where forms are wrong, or the noise is not white, suspects explain a
@@ -33,7 +34,9 @@ pub enum Suspect {
     /// A constant on the extension in mm.
     ExtensionZero,
     /// A force that drifts, in N over the recording.
-    Drift,
+    ForceDrift,
+    /// An extension that drifts, in mm over the recording.
+    ExtensionDrift,
     /// A force that is late, in s.
     Lag,
     /// A mass that is larger than stated, in tonne.
@@ -45,10 +48,11 @@ pub enum Suspect {
 }
 
 impl Suspect {
-    const ALL: [Self; 7] = [
+    const ALL: [Self; 8] = [
         Self::ForceZero,
         Self::ExtensionZero,
-        Self::Drift,
+        Self::ForceDrift,
+        Self::ExtensionDrift,
         Self::Lag,
         Self::Mass,
         Self::StepOfK,
@@ -71,9 +75,13 @@ impl Suspect {
             Self::ExtensionZero => {
                 format!("a zero error of the extension of {}", around(1.0, "mm"))
             }
-            Self::Drift => format!(
+            Self::ForceDrift => format!(
                 "a force that drifts by {} over the recording",
                 around(1.0, "N")
+            ),
+            Self::ExtensionDrift => format!(
+                "an extension that drifts by {} over the recording",
+                around(1.0, "mm")
             ),
             Self::Lag => format!(
                 "a force that is recorded {} later than the motion",
@@ -121,7 +129,8 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
         match suspect {
             Suspect::ForceZero => [0.0, 1.0],
             Suspect::ExtensionZero => [1.0, 0.0],
-            Suspect::Drift => [0.0, (times[i] - times[0]) / duration - 0.5],
+            Suspect::ForceDrift => [0.0, (times[i] - times[0]) / duration - 0.5],
+            Suspect::ExtensionDrift => [(times[i] - times[0]) / duration - 0.5, 0.0],
             Suspect::Lag => [0.0, -rate(i)],
             Suspect::Mass => [0.0, motion.acceleration[i]],
             Suspect::StepOfK => [0.0, 0.5 * x.abs()],
@@ -148,6 +157,8 @@ struct Trial {
     error: f64,
     /// The share of the residuals' squares that it explains.
     taken: f64,
+    /// The largest change of a signal by it, over the largest value of that signal.
+    effect: f64,
     /// The change of the functions' coefficients for each unit of it.
     follow: DVector<f64>,
 }
@@ -183,9 +194,11 @@ fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedF
         let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
         let score = reduced.gradient[place] - follow.dot(&gradient);
         let is_own = information > OWN * square;
+        let amount = if is_own { score / information } else { 0.0 };
         Trial {
             suspect: *suspect,
-            amount: if is_own { score / information } else { 0.0 },
+            amount,
+            effect: amount.abs() * relative_size(joint, &columns[index]),
             error: match is_own {
                 true => (fit.misfit.max(1.0) / information).sqrt(),
                 false => f64::INFINITY,
@@ -195,6 +208,16 @@ fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedF
         }
     };
     tried.iter().enumerate().map(trial).collect()
+}
+
+/// The largest change of a signal by one unit of a suspect, over the largest value of that signal.
+fn relative_size(joint: &Joint, column: &Column) -> f64 {
+    let signals = [&joint.recording.extension, &joint.recording.force];
+    let of_signal = |index: usize| {
+        let most = column.iter().map(|of| of[index].abs()).fold(0.0, f64::max);
+        most * joint.noise[index] / largest(signals[index])
+    };
+    of_signal(0).max(of_signal(1))
 }
 
 /// Examines the recording of a fit.
@@ -208,7 +231,10 @@ pub fn examine(
     let beyond = (fit.misfit - 1.0).max(0.0) * fit.freedom;
     // Friction never drives a motion.
     let is_possible = |own: &&Trial| own.suspect != Suspect::Friction || own.amount > 0.0;
-    let is_sure = |own: &&Trial| own.taken > TAKEN * beyond && own.amount.abs() > LIMIT * own.error;
+    let is_sure = |own: &&Trial| {
+        let is_significant = own.amount.abs() > LIMIT * own.error;
+        own.taken > TAKEN * beyond && is_significant && own.effect > RESOLUTION
+    };
     let sure = trials.iter().filter(is_sure).filter(is_possible);
     let mut sure: Vec<Suspected> = sure
         .map(|own| Suspected {
@@ -248,8 +274,8 @@ fn hidden_lag(joint: &Joint, fit: &Identification, trial: &Trial) -> Option<Hidd
     (most.half_widths > 1.0).then_some(most)
 }
 
-/// The warning about the suspects.
-pub fn warning(suspects: &[Suspected]) -> Option<String> {
+/// What suspects say of the recording.
+pub fn description(suspects: &[Suspected]) -> Option<String> {
     let words = suspects
         .iter()
         .map(|own| own.suspect.words(own.amount, own.error));

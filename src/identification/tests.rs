@@ -52,6 +52,7 @@ fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
         assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
         assert!((d / Sample::damping(x) - 1.0).abs() < 5e-3, "{x}: {d}");
     }
+    assert!(found.verdict.is_sound(), "{:?}", found.verdict);
 }
 
 /// A massless spring and dashpot that a machine moves: f = K x + D ẋ.
@@ -159,10 +160,10 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         ..sample.recording()
     };
     let found = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
+    let reasons = found.verdict.reasons.join("; ");
     assert!(
-        !found.is_explained() && found.warnings[0].contains("do not fit together"),
-        "{:?}",
-        found.warnings
+        !found.is_explained() && reasons.contains("times the noise"),
+        "{reasons}"
     );
     let right = identify(
         &sample.recording(),
@@ -171,9 +172,9 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
     )
     .unwrap();
     assert!(
-        right.warnings.is_empty() && right.is_explained(),
+        right.warnings.is_empty() && right.verdict.is_sound(),
         "{:?}",
-        right.warnings
+        right.verdict
     );
     // A gap that the splines cannot bridge: the noise is taken for ten times what it is.
     let mut gap = sample.recording();
@@ -186,8 +187,8 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         });
     }
     let found = identify(&gap, IdentificationSettings::default(), &|_| ()).unwrap();
-    let told = |warning: &String| warning.contains("no rows between");
-    assert!(found.warnings.iter().any(told), "{:?}", found.warnings);
+    let doubts = found.verdict.doubts.join("; ");
+    assert!(doubts.contains("no rows between"), "{doubts}");
     // A ramp: every extension has one speed, and K x + D v cannot be told apart by free splines.
     let mut ramp = machine(|_| 0.2, |_| 0.05);
     for (i, x) in ramp.extension.iter_mut().enumerate() {

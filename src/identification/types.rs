@@ -3,6 +3,8 @@
 use super::band::Function;
 use super::basis::{Form, Shape};
 use super::joint::Argument;
+use super::verdict::RecordingVerdict;
+use crate::corrector::estimation::Answer;
 use crate::units::number;
 
 /// The settings of an identification.
@@ -25,10 +27,9 @@ impl Identification {
         ]
     }
 
-    /// Whether a spring and a dashpot explain the recording: what they leave of it beside the noise is smaller than the noise.
+    /// Whether a spring and a dashpot explain the recording.
     pub fn is_explained(&self) -> bool {
-        const MOST: f64 = 2.0;
-        self.misfit <= MOST
+        self.verdict.answer != Answer::NotExplained
     }
 }
 
@@ -75,7 +76,9 @@ pub struct Identification {
     pub freedom: f64,
     /// A lag that the recording does not exclude; `None` where none matters.
     pub hidden_lag: Option<HiddenLag>,
-    /// Warnings.
+    /// Whether a spring and a dashpot explain the recording; where they do not, standard errors, intervals and bands are NaN.
+    pub verdict: RecordingVerdict,
+    /// What the recording does not say, and no fault of it.
     pub warnings: Vec<String>,
 }
 

@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use nalgebra::{Matrix2, Vector2};
+
 /// One series of frames of one specimen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarkerSeries {
@@ -35,6 +37,33 @@ pub struct Marker {
     pub displacement: [f64; 2],
     /// Standard deviation of each component of the displacement in mm, where the data state it.
     pub standard_deviation: Option<f64>,
+}
+
+impl Frame {
+    /// The sum of the squares of its displacements in mm².
+    pub fn motion(&self) -> f64 {
+        let markers = self.markers.iter().map(|marker| marker.displacement);
+        markers.map(|[x, y]| x * x + y * y).sum()
+    }
+
+    /// ∂u/∂X of the linear field that is nearest to the markers; `None` where they lie on a line.
+    pub fn mean_gradient(&self) -> Option<Matrix2<f64>> {
+        let pairs = || {
+            self.markers
+                .iter()
+                .map(|one| (Vector2::from(one.place), Vector2::from(one.displacement)))
+        };
+        let count = self.markers.len() as f64;
+        let (places, displacements): (Vec<Vector2<f64>>, Vec<Vector2<f64>>) = pairs().unzip();
+        let [place, displacement] =
+            [places, displacements].map(|all| all.into_iter().sum::<Vector2<f64>>() / count);
+        let (mut squares, mut products) = (Matrix2::zeros(), Matrix2::zeros());
+        for (x, u) in pairs() {
+            squares += (x - place) * (x - place).transpose();
+            products += (u - displacement) * (x - place).transpose();
+        }
+        Some(products * squares.try_inverse()?)
+    }
 }
 
 impl MarkerSeries {

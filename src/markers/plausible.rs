@@ -4,7 +4,7 @@ use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::check_size;
-use crate::units::{decimals, extents};
+use crate::units::{decimals, extents, implausible_sheet};
 
 /// Displacements of more than so many sizes of the specimen are taken to be in another unit.
 const LARGEST: f64 = 20.0;
@@ -21,21 +21,11 @@ const MARGIN: f64 = 0.5;
 /// Ratios of the units of length that are in use.
 const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
 
-/// A sheet thicker than this share of its smaller extent is reported.
-pub const THICK: f64 = 0.5;
-
-/// Checks that a sheet is thin: otherwise one of the lengths is in another unit.
+/// Checks that a sheet is thin, and not too thin: otherwise one of the lengths is in another unit.
 pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
-    let extent = extent(mesh.nodes.iter().copied());
-    let across = extent[0].min(extent[1]);
-    (thickness > THICK * across).then(|| {
-        let message = format!(
-            "the specimen measures {} and is {thickness} mm thick: it is not a thin sheet",
-            extents(extent)
-        );
-        let hint = "check the units of the thickness and of the field; --unit corrects that of the field (such as --unit m)";
-        Diagnostic::warning("", message).hint(hint)
-    })
+    let message = implausible_sheet(extent(mesh.nodes.iter().copied()), thickness)?;
+    let hint = "check the units of the thickness and of the field; --unit corrects that of the field (such as --unit mm)";
+    Some(Diagnostic::warning("", message).hint(hint))
 }
 
 /// Checks that the data have displacements that are consistent with the places.

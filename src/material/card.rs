@@ -16,8 +16,11 @@ use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
 mod changed;
+mod parameter_uncertainty;
 mod published;
 mod resistance;
+
+pub use parameter_uncertainty::ParameterUncertainty;
 
 /// A material: law, parameters and provenance.
 #[derive(Clone, Debug)]
@@ -91,6 +94,8 @@ pub struct FitRecord {
     pub base_card: Option<String>,
     /// What the fit found: `key = value` in internal units; empty where it was not recorded.
     pub values: Vec<String>,
+    /// The uncertainty of the law's parameters; `None` where the residuals were no noise, or nothing is recorded.
+    pub uncertainty: Option<ParameterUncertainty>,
 }
 
 impl Card {
@@ -329,6 +334,7 @@ fn read_fit(section: &Section) -> FitRecord {
         softening: section.has("softening") && section.flag("softening"),
         base_card: section.has("base_card").then(|| section.text("base_card")),
         values: optional("values"),
+        uncertainty: ParameterUncertainty::read(section),
     };
     section.unknown_keys();
     record

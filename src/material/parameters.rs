@@ -126,7 +126,7 @@ pub struct Parameter {
     pub dimension: Dimension,
     /// The values that it may take.
     pub bound: Bound,
-    /// Range of the values of usual materials, for a parameter that is not a stress.
+    /// Range of the values of usual materials, for a parameter that is not a stress; of an angle, the period of the law.
     pub usual: [f64; 2],
 }
 
@@ -137,6 +137,25 @@ impl Parameter {
             Dimension::Ratio => "–",
             other => other.internal_unit(),
         }
+    }
+
+    /// The least size that counts, a thousandth of a usual one; `stress` is a usual stress.
+    pub fn least_size(&self, stress: f64) -> f64 {
+        const SHARE: f64 = 1e-3;
+        let [low, high] = self.usual.map(f64::abs);
+        SHARE
+            * if self.is_stress() {
+                stress
+            } else {
+                low.max(high)
+            }
+    }
+
+    /// Whether a value is an angle about which the law is symmetric.
+    pub fn is_symmetric_at(&self, value: f64) -> bool {
+        const SAME: f64 = 1e-9;
+        let is_end = |end: &f64| (value - end).abs() < SAME;
+        self.dimension == Dimension::Angle && self.usual.iter().any(is_end)
     }
 
     /// Whether energy and stress are proportional to it, as they are to every parameter that is a stress.
@@ -234,9 +253,9 @@ impl<'a> Parameters<'a> {
         exponent
     }
 
-    /// An angle in rad.
-    pub fn angle(&self, key: &'static str, usual: [f64; 2]) -> f64 {
-        self.ask(key, Dimension::Angle, Bound::Any, usual)
+    /// An angle in rad. Every angle gives the law that one within `period` gives, and the law does not change to first order at its ends.
+    pub fn angle(&self, key: &'static str, period: [f64; 2]) -> f64 {
+        self.ask(key, Dimension::Angle, Bound::Any, period)
     }
 
     /// A choice that a card states; the first one where there is no card.

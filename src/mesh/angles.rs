@@ -5,10 +5,19 @@ use std::f64::consts::PI;
 
 use super::cells::Mesh;
 
+/// An angle of the sheet in rad from which on a corner is re-entrant; a smaller one is between the chords of a curve.
+pub const REENTRANT: f64 = 210.0 * PI / 180.0;
+
 impl Mesh {
-    /// The largest angle of the sheet between two edges of its boundary, in rad: π where it is straight, 2π at the
-    /// tip of a crack. Nodes at which several parts of the boundary meet do not count.
+    /// The largest angle of the sheet between two edges of its boundary, in rad, see [`Self::boundary_angles`].
     pub fn largest_angle(&self) -> f64 {
+        let angles = self.boundary_angles().into_iter();
+        angles.fold(0.0, |most, (_, angle)| most.max(angle))
+    }
+
+    /// The angles of the sheet at the nodes of its boundary, in rad: π where it is straight, 2π at the tip of a crack. Nodes at which
+    /// several parts of the boundary meet do not count.
+    pub fn boundary_angles(&self) -> Vec<(usize, f64)> {
         // The directions in which the boundary enters and leaves a node.
         let mut at: BTreeMap<usize, [Vec<[f64; 2]>; 2]> = BTreeMap::new();
         let between = |from: usize, to: usize| {
@@ -20,13 +29,13 @@ impl Mesh {
             at.entry(to).or_default()[0].push(between(middle.unwrap_or(from), to));
             at.entry(from).or_default()[1].push(between(from, middle.unwrap_or(to)));
         }
-        let angles = at
-            .values()
-            .filter_map(|both| match &both.each_ref().map(Vec::as_slice) {
-                [[before], [after]] => Some(angle(*before, *after)),
-                _ => None,
-            });
-        angles.fold(0.0, f64::max)
+        let angle_at = |(node, both): (&usize, &[Vec<[f64; 2]>; 2])| match both {
+            [before, after] if before.len() == 1 && after.len() == 1 => {
+                Some((*node, angle(before[0], after[0])))
+            }
+            _ => None,
+        };
+        at.iter().filter_map(angle_at).collect()
     }
 }
 

@@ -25,12 +25,15 @@ use crate::statistics::{extremes, median};
 use crate::units::SIZES;
 
 mod alpha_shape;
+mod corners;
 mod fault;
 mod lattice;
 mod polygon;
+mod side_lines;
 mod sides;
 mod smoothing;
 
+pub(crate) use corners::corners;
 pub use fault::OutlineFault;
 use polygon::Polygon;
 
@@ -53,6 +56,8 @@ pub struct OutlineOfPoints {
     pub outline: Outline,
     /// The spacing of the points in mm.
     pub spacing: f64,
+    /// Root mean square of the distance of the outermost points from the outer line in mm: nothing where they lie on it.
+    pub roughness: f64,
     /// Whether the points lie irregularly, as where many of a grid are lost.
     pub is_scattered: bool,
     /// The reasons in words why the lines may not be those of the specimen.
@@ -83,7 +88,7 @@ impl Outline {
         if points.len() < 6 {
             return Err(OutlineFault::TooFew(points.len()));
         }
-        let (lines, spacing) = alpha_shape::lines(&points, 1.0)?;
+        let (mut lines, spacing) = alpha_shape::lines(&points, 1.0)?;
         let (mut outline, mut steps) = Self::behind(&lines, spacing)?;
         let mut doubts = Vec::new();
         let regular = regularity(&points, outline.area());
@@ -94,8 +99,8 @@ impl Outline {
                  dense grid: {regular:.2}, on a grid 1)"
             ));
             // Gaps at the edge are wider then; holes are found as usual.
-            let (wide, _) = alpha_shape::lines(&points, WIDER)?;
-            let (wide, steps_of_wide) = Self::behind(&wide, spacing)?;
+            let (wide_lines, _) = alpha_shape::lines(&points, WIDER)?;
+            let (wide, steps_of_wide) = Self::behind(&wide_lines, spacing)?;
             let wider = Self {
                 outer: wide.outer,
                 holes: outline.holes.clone(),
@@ -103,6 +108,7 @@ impl Outline {
             if wider.check().is_ok() {
                 outline = wider;
                 steps = steps_of_wide;
+                lines = wide_lines;
             }
         }
         if let Some([x, y]) = steps.first() {
@@ -114,6 +120,7 @@ impl Outline {
         }
         outline.check()?;
         Ok(OutlineOfPoints {
+            roughness: roughness(&lines, &outline.outer),
             outline,
             spacing,
             is_scattered,
@@ -319,6 +326,20 @@ impl Outline {
 /// A point with coordinates far below any size set to zero: triangulations cannot distinguish them from it.
 fn rounded(point: [f64; 2]) -> [f64; 2] {
     point.map(|x| if x.abs() < 1e-6 * SIZES[0] { 0.0 } else { x })
+}
+
+/// How far the outermost of some closed lines of points lies from an outer line, as root mean square.
+fn roughness(lines: &[Vec<[f64; 2]>], outer: &[[f64; 2]]) -> f64 {
+    let largest =
+        |a: &&Vec<[f64; 2]>, b: &&Vec<[f64; 2]>| polygon_area(a).total_cmp(&polygon_area(b));
+    let points = lines.iter().max_by(largest).into_iter().flatten();
+    let off = |point: &[f64; 2]| {
+        let edges = Polygon(outer).edges();
+        let off = edges.map(|edge| polygon::distance(edge, *point));
+        off.fold(f64::INFINITY, f64::min)
+    };
+    let squares: Vec<f64> = points.map(|point| off(point).powi(2)).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
 /// The median distance of points to their nearest neighbour over √(area/points).

@@ -11,7 +11,7 @@ use crate::results::Block;
 const STYLE: &str = "
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.7rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; }
-.wide { overflow-x: auto; }
+.wide { overflow-x: auto; } .wide + .wide { margin-top: 1rem; }
 table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #e2e2e2; }
 th { border-bottom: 2px solid #999; font-weight: 600; vertical-align: bottom; }
@@ -78,7 +78,8 @@ fn explore(explorer: &Explorer) -> Markup {
             }
             p {
                 "The colour scale of a step covers all models, without the extreme hundredth of the area at each end. Point at the sheet to read the \
-                 values of all models at the same place; drag over the curve to change the step. " (explorer.note)
+                 values of all models at the same place; drag over the curve to change the step; nothing was computed along \
+                 its dashes. " (explorer.note)
             }
         }
         script id="explorer-data" type="application/json" { (PreEscaped(&explorer.data)) }

@@ -52,16 +52,6 @@ impl Support {
     }
 }
 
-impl Load {
-    /// Whether the load is zero.
-    pub fn is_none(&self) -> bool {
-        match self {
-            Self::Traction(value) | Self::Force(value) => *value == [0.0; 2],
-            Self::Pressure(pressure) => *pressure == 0.0,
-        }
-    }
-}
-
 /// How a rigid grip is moved along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::boundary_conditions::{Drive, Support};
 use super::corner_forces::{Hold, Part, reaction_parts};
-use super::grip::RigidMotion;
 use super::groups::{named, refused};
+use super::rigid_motion::RigidMotion;
 use crate::error::Diagnostic;
 use crate::mesh::{Group, Mesh};
 use crate::statistics::extremes;

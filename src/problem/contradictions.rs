@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 use crate::units::Linear;
 
 /// Load factors at which motions are compared; two different motions, a turn and a line, agree at two of them at most.
-const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
+pub const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
 
 /// What a support prescribes for an unknown.
 #[derive(Clone, Copy)]

@@ -104,36 +104,12 @@ impl Loads {
 
     /// The potential of an energy with these loads at a load factor.
     pub fn on<'a>(&'a self, energy: impl Potential + 'a, factor: f64) -> Box<dyn Potential + 'a> {
-        self.pushing(energy, factor, |unknown| factor * self.force(unknown))
-    }
-
-    /// The same with other forces in N on the grips, independent of the load factor.
-    pub fn with_pulls<'a>(
-        &'a self,
-        energy: impl Potential + 'a,
-        factor: f64,
-        pulls: &[(usize, f64)],
-    ) -> Box<dyn Potential + 'a> {
-        self.pushing(energy, factor, |unknown| {
-            let own = pulls.iter().filter(|(pulled, _)| *pulled == unknown);
-            factor * self.forces[unknown] + own.map(|(_, force)| force).sum::<f64>()
-        })
-    }
-
-    fn pushing<'a>(
-        &'a self,
-        energy: impl Potential + 'a,
-        factor: f64,
-        force: impl Fn(usize) -> f64,
-    ) -> Box<dyn Potential + 'a> {
         if self.is_empty() {
             return Box::new(energy);
         }
         let unknowns = energy.unknowns();
-        let forces = self
-            .pushed
-            .iter()
-            .map(|unknown| (*unknown, force(*unknown)));
+        let pushed = self.pushed.iter();
+        let forces = pushed.map(|unknown| (*unknown, factor * self.force(*unknown)));
         let forces = DeadForces::new(unknowns, forces);
         let pressures = self.pressures.at(factor, unknowns);
         Box::new(Sum::new(Sum::new(energy, pressures), forces))

@@ -27,6 +27,15 @@ pub struct GroupState {
     pub rounding: f64,
 }
 
+impl GroupState {
+    /// Force along x and y in N and moment in N·mm; zero where they are of the size of rounding.
+    pub fn carried(&self) -> [f64; 3] {
+        let is_rounding = self.size > 0.0 && self.size <= 10.0 * self.rounding;
+        let [x, y] = self.force;
+        [x, y, self.moment].map(|value| if is_rounding { 0.0 } else { value })
+    }
+}
+
 /// Rounding of forces relative to E t times the largest displacement: a body that moves without strain has no other forces.
 const ROUNDING: f64 = 1e-11;
 

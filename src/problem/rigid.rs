@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::constraints::Constraints;
 use crate::error::Diagnostic;
-use crate::mesh::{Mesh, decimals_for};
+use crate::mesh::{Mesh, Parts, decimals_for};
 
 /// Eigenvalue of the conditions, relative to the largest, below which a motion is free: the square of how far
 /// apart two held nodes must be, relative to the mesh.
@@ -64,19 +64,18 @@ struct Bodies<'a> {
 
 impl<'a> Bodies<'a> {
     fn of(mesh: &'a Mesh) -> Self {
-        let mut parents: Vec<usize> = (0..mesh.cell_count()).collect();
+        let mut parts = Parts::new(mesh.cell_count());
         for pair in mesh
             .edges()
             .windows(2)
             .filter(|pair| pair[0].ends == pair[1].ends)
         {
-            let [one, other] = [pair[0], pair[1]].map(|edge| root(&mut parents, edge.cell));
-            parents[one.max(other)] = one.min(other);
+            parts.join(pair[0].cell, pair[1].cell);
         }
         let (mut numbers, mut cells) = (BTreeMap::new(), Vec::new());
         let mut of_node = vec![Vec::new(); mesh.nodes.len()];
         for cell in 0..mesh.cell_count() {
-            let body = *numbers.entry(root(&mut parents, cell)).or_insert_with(|| {
+            let body = *numbers.entry(parts.first(cell)).or_insert_with(|| {
                 cells.push(cell);
                 cells.len() - 1
             });
@@ -98,29 +97,23 @@ impl<'a> Bodies<'a> {
 
     /// Groups of bodies that hinges or ties couple; each body alone where there are too many.
     fn groups(&self, constraints: &Constraints) -> Vec<Vec<usize>> {
-        let mut parents: Vec<usize> = (0..self.cells.len()).collect();
-        if parents.len() > TOGETHER {
-            return parents.into_iter().map(|body| vec![body]).collect();
+        let bodies = self.cells.len();
+        if bodies > TOGETHER {
+            return (0..bodies).map(|body| vec![body]).collect();
         }
-        let mut join = |a: usize, b: usize| {
-            let [one, other] = [a, b].map(|body| root(&mut parents, body));
-            parents[one.max(other)] = one.min(other);
-        };
+        let mut parts = Parts::new(bodies);
         for own in &self.of_node {
-            own.windows(2).for_each(|pair| join(pair[0], pair[1]));
+            own.windows(2).for_each(|pair| parts.join(pair[0], pair[1]));
         }
         for (unknown, master) in &constraints.ties {
             let [own, others] = [unknown, master].map(|unknown| self.of_node[unknown / 2].first());
             if let (Some(own), Some(other)) = (own, others) {
-                join(*own, *other);
+                parts.join(*own, *other);
             }
         }
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for body in 0..self.cells.len() {
-            groups
-                .entry(root(&mut parents, body))
-                .or_default()
-                .push(body);
+            groups.entry(parts.first(body)).or_default().push(body);
         }
         groups.into_values().collect()
     }
@@ -257,15 +250,6 @@ fn direction(along: [f64; 2]) -> String {
         let sign = x.signum();
         format!("along ({:.3}, {:.3})", sign * x, sign * y)
     }
-}
-
-/// The smallest member, which represents a set.
-fn root(parents: &mut [usize], mut member: usize) -> usize {
-    while parents[member] != member {
-        parents[member] = parents[parents[member]];
-        member = parents[member];
-    }
-    member
 }
 
 #[cfg(test)]

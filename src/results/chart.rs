@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::material::scalar_function::ScalarFunction;
-
 /// Colours that most people can distinguish (Okabe and Ito).
 pub const PALETTE: [[u8; 3]; 6] = [
     [0, 114, 178],
@@ -62,8 +60,10 @@ impl Axis {
 /// The style of a line.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Stroke {
-    /// A line with a marker at each point.
+    /// Computed points as markers. The thin straight dashes between them only lead the eye: nothing was computed there.
     Marked,
+    /// The same with rings, inside of which the markers of another line can be seen.
+    Ringed,
     /// A line.
     Solid,
     /// A thin line, for curves that overlap themselves.
@@ -76,20 +76,18 @@ pub enum Stroke {
     Filled,
 }
 
-/// Computed points and, between them, cubics that keep their shape (those of [`ScalarFunction::table`]).
-fn curve_through(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    const PARTS: i32 = 16;
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let Ok(cubics) = ScalarFunction::table(points.clone()) else {
-        return points;
+/// Computed points of a path that begins at rest, where nothing acts and nothing has moved, with that point among them: between
+/// points of both signs, else first.
+pub fn from_rest(points: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = points.into_iter().collect();
+    let rest = match points.is_sorted_by_key(|[x, _]| *x) {
+        true => points.partition_point(|[x, _]| *x < 0.0),
+        false => 0,
     };
-    let between = points.windows(2).flat_map(|pair| {
-        let ([from, _], [to, _]) = (pair[0], pair[1]);
-        let place = move |part| from + (to - from) * f64::from(part) / f64::from(PARTS);
-        let amid = (1..PARTS).map(place).map(|x| [x, cubics.at(x)[0]]);
-        [pair[0]].into_iter().chain(amid)
-    });
-    between.chain(points.last().copied()).collect()
+    if points.get(rest).is_none_or(|[x, _]| *x != 0.0) {
+        points.insert(rest, [0.0; 2]);
+    }
+    points
 }
 
 /// One line of a chart.
@@ -121,13 +119,9 @@ impl Line {
         }
     }
 
-    /// Computed points, or the curve through them: cubics that keep their shape.
-    pub fn curve(label: &str, points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Self {
-        let points = match stroke {
-            Stroke::Points => points,
-            _ => curve_through(points),
-        };
-        Self::new(label, points, colour, stroke)
+    /// Whether dashes join its points, between which nothing was computed.
+    pub fn is_dashed_between_points(&self) -> bool {
+        matches!(self.stroke, Stroke::Marked | Stroke::Ringed)
     }
 
     /// A curve that is solid within a range of x and dashed outside of it.
@@ -181,6 +175,13 @@ impl LineChart {
             band: None,
         }
     }
+
+    /// What a legend says of the dashes between markers; `None` where there are none.
+    pub fn dashes(&self) -> Option<&'static str> {
+        let joins = |line: &Line| line.is_dashed_between_points() && line.points.len() > 1;
+        let any = self.lines.iter().any(joins);
+        any.then_some("dashes: nothing computed")
+    }
 }
 
 #[cfg(test)]
@@ -188,19 +189,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_curve_goes_through_its_points_and_nowhere_beyond_them() {
-        let points = vec![[0.0, 0.0], [1.0, 1.0], [1.5, 5.0], [4.0, 5.5]];
-        let curve = curve_through(points.clone());
-        assert!(points.iter().all(|point| curve.contains(point)));
-        assert!(curve.len() > 40 && curve.windows(2).all(|pair| pair[1][1] >= pair[0][1]));
-        // A path to negative load factors.
-        let mirrored = points.iter().map(|[x, y]| [-x, -y]).collect();
-        let other: Vec<_> = curve_through(mirrored).into_iter().rev().collect();
-        let differences = curve.iter().zip(&other);
-        for ([x, y], [a, b]) in differences {
-            assert!((x + a).abs() < 1e-12 && (y + b).abs() < 1e-12);
-        }
-        assert_eq!(curve_through(vec![[0.0, 0.0]]), [[0.0, 0.0]]);
-        assert_eq!(curve_through(Vec::new()), [[0.0; 2]; 0]);
+    fn a_path_from_rest_has_its_rest_once_between_points_of_both_signs_or_first() {
+        assert_eq!(from_rest([[0.5, 2.0]]), [[0.0, 0.0], [0.5, 2.0]]);
+        assert_eq!(from_rest([]), [[0.0, 0.0]]);
+        let both = [[-0.2, -1.0], [0.1, 0.4]];
+        assert_eq!(from_rest(both), [both[0], [0.0; 2], both[1]]);
+        let kept = [[-0.2, -1.0], [0.0, 0.0], [0.1, 0.4]];
+        assert_eq!(from_rest(kept), kept);
+        // Loading and unloading: in the order of the path.
+        let back = [[0.5, 2.0], [1.0, 5.0], [0.5, 1.0]];
+        assert_eq!(from_rest(back)[..2], [[0.0; 2], back[0]]);
+        let pressed = [[-0.1, -1.0], [-0.3, -4.0]];
+        assert_eq!(from_rest(pressed)[..2], [[0.0; 2], pressed[0]]);
     }
 }

@@ -1,13 +1,15 @@
 //! Requirements on computed values, and their results.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Block, limit};
+use super::{Block, limit, or_dash};
 use crate::compare::judgement::Judgement;
+use crate::document::stored::{StaticText, static_text};
 use crate::units::number;
 
 /// The requirement on a computed value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Wanted {
     /// A value, within a tolerance in percent of it.
     Equal(f64, f64),
@@ -18,16 +20,18 @@ pub enum Wanted {
 }
 
 /// A checked value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// The quantity.
     pub quantity: String,
     /// Its unit.
-    pub unit: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub unit: StaticText,
     /// The requirement.
     pub wanted: Wanted,
     /// The source of the requirement.
-    pub source: &'static str,
+    #[serde(deserialize_with = "static_text")]
+    pub source: StaticText,
     /// The computed value.
     pub computed: f64,
     /// The error of the reference itself, in the check's unit, where it is known.
@@ -139,6 +143,40 @@ impl Check {
 }
 
 impl Check {
+    /// The check in a line for a terminal, `pass force = 0.2 % (at most 0.5 %)`, of one case of several with its name, and a remark in a line
+    /// below.
+    fn line(&self, case: Option<&str>) -> String {
+        let judgement = self.judgement();
+        let case = case.map_or_else(String::new, |case| format!(" {case}:"));
+        let mut text = format!(
+            "{}{case} {}{}\n",
+            judgement.word(),
+            self.quantity,
+            self.values()
+        );
+        if let Some(remark) = judgement.remark() {
+            text += &format!("     {remark}\n");
+        }
+        text
+    }
+
+    /// ` = 0.2 % (at most 0.5 %)`; nothing behind a fault, which has no value and no limit.
+    fn values(&self) -> String {
+        if self.is_fault {
+            return String::new();
+        }
+        let unit = match self.unit {
+            "–" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let wanted = match self.wanted {
+            Wanted::Equal(value, tolerance) => format!("{} ± {} %", limit(value), limit(tolerance)),
+            Wanted::AtMost(most) => format!("at most {}{unit}", limit(most)),
+            Wanted::AtLeast(least) => format!("at least {}{unit}", limit(least)),
+        };
+        format!(" = {}{unit} ({wanted})", known(self.computed))
+    }
+
     /// The requirement in words.
     pub fn wanted(&self) -> String {
         match self.wanted {
@@ -185,12 +223,24 @@ pub fn verdict(checks: &[Check]) -> &'static str {
     }
 }
 
+/// A line for each check of some cases, with the names of these where there are several, and how many passed.
+pub fn check_lines<'a>(checks: impl IntoIterator<Item = (Option<&'a str>, &'a Check)>) -> String {
+    let (mut text, mut passed, mut count) = (String::new(), 0, 0);
+    for (case, check) in checks {
+        text += &check.line(case);
+        passed += usize::from(check.passed());
+        count += 1;
+    }
+    text + &format!("{passed} of {count} checks passed\n")
+}
+
+/// A figure; a dash for one that is not known.
+fn known(value: f64) -> String {
+    or_dash(Some(value), number)
+}
+
 /// A table of requirements.
 pub fn requirements(checks: &[Check]) -> Block {
-    let known = |value: f64| match value.is_nan() {
-        true => "–".to_owned(),
-        false => number(value),
-    };
     let row = |check: &Check| {
         vec![
             check.quantity.clone(),

@@ -4,7 +4,8 @@
 //! gradient in the centre of each cell, and at each node at the mean of the gradients there.
 
 use super::Array;
-use super::sheet_arrays::{Sheet, in_cells, nodal};
+use super::sheet::Sheet;
+use super::sheet_arrays::{in_cells, nodal};
 use crate::mass_spring::{MassSpring, SpringState};
 use crate::mesh::{CellShape, Mesh};
 

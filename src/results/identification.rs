@@ -59,18 +59,22 @@ fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Li
     };
     let curve = places.iter().map(|x| [*x, function.at(*x).value]);
     let darker = colour.map(|part| part / 2);
-    vec![
-        Line::new("from force and motion", points, GREY, Stroke::Points),
-        Line::new(
-            "95 % band",
-            edge(0).chain(edge(1).rev()),
-            colour,
-            Stroke::Filled,
-        ),
-        Line::new("95 % pointwise", end(0), colour, Stroke::Dashed),
-        Line::new("", end(1), colour, Stroke::Dashed),
-        Line::new("identified", curve, darker, Stroke::Solid),
-    ]
+    let mut lines = vec![Line::new(
+        "from force and motion",
+        points,
+        GREY,
+        Stroke::Points,
+    )];
+    if function.reach[0].is_finite() {
+        let band = edge(0).chain(edge(1).rev());
+        lines.extend([
+            Line::new("95 % band", band, colour, Stroke::Filled),
+            Line::new("95 % pointwise", end(0), colour, Stroke::Dashed),
+            Line::new("", end(1), colour, Stroke::Dashed),
+        ]);
+    }
+    lines.push(Line::new("identified", curve, darker, Stroke::Solid));
+    lines
 }
 
 fn residuals(found: &Identification, recording: &Recording) -> LineChart {
@@ -150,6 +154,11 @@ pub fn identification_json(found: &Identification, recording: &Recording, file: 
             "extension_mm": recording.extension[i] - found.motion.extension[i],
             "force_N": recording.force[i] - found.motion.force[i],
         })).collect::<Vec<_>>(),
+        "verdict": {
+            "answer": found.verdict.words(),
+            "reasons": found.verdict.reasons,
+            "doubts": found.verdict.doubts,
+        },
         "warnings": found.warnings,
     })
 }

@@ -1,19 +1,22 @@
 //! The material of a study, in words for the report and as data for programs.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::Block;
+use crate::document::stored;
 use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::law::HyperelasticLaw;
 use crate::material::stability::{SEARCHED, stable_range};
 
 /// The description of a material.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// The description for readers.
     pub blocks: Vec<Block>,
     /// The description for programs.
+    #[serde(with = "stored::json")]
     pub json: Value,
 }
 

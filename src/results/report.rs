@@ -7,6 +7,7 @@ impl Results {
     pub fn report(&self) -> Vec<Block> {
         let outcome = &self.outcome;
         let mut blocks = vec![Block::Heading(1, self.title.clone())];
+        blocks.extend(outcome.headline.iter().cloned());
         blocks.extend(judged(outcome));
         blocks.extend(ends(outcome));
         blocks.extend(paragraphs("Doubts", &outcome.doubts));

@@ -1,38 +1,10 @@
 //! Stress, strain and related quantities as arrays of a grid.
 
 use super::Array;
+use super::sheet::Sheet;
 use super::state::{LocalState, cell_states, nodal_states};
-use super::viscous_stress::ViscousStress;
 use super::wrinkling::Wrinkling;
-use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
-
-/// The data that determine the stresses of a sheet.
-#[derive(Clone, Copy)]
-pub struct Sheet<'a> {
-    /// The material.
-    pub law: &'a dyn HyperelasticLaw,
-    /// Thickness in mm.
-    pub thickness: f64,
-    /// The earlier displacement fields, which a law with a memory remembers.
-    pub past: &'a [&'a [f64]],
-    /// The viscous part of the stresses; `None` where the material has none.
-    pub viscous: Option<&'a ViscousStress>,
-}
-
-impl<'a> Sheet<'a> {
-    /// The same after some displacement fields.
-    #[must_use]
-    pub fn after(self, past: &'a [&'a [f64]]) -> Self {
-        Self { past, ..self }
-    }
-
-    /// The earlier fields and the present one.
-    fn fields(self, displacement: &'a [f64]) -> Vec<&'a [f64]> {
-        let past = self.past.iter().copied();
-        past.chain([displacement]).collect()
-    }
-}
 
 /// Arrays at the nodes, from the mean of the displacement gradients that the cells around each node have there.
 pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
@@ -63,7 +35,7 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
     let states = cell_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
-    let wrinkling = Wrinkling::of_cells(sheet.law, mesh, &states);
+    let wrinkling = Wrinkling::of_cells(sheet, mesh, displacement, &states);
     let states = || states.iter();
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));
     let nominal = states().flat_map(|state| {
@@ -73,8 +45,8 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states().map(value))
     };
-    let compressed = wrinkling.compressed.iter();
-    let compressed = compressed.map(|is| f64::from(u8::from(*is)));
+    let exceeded = wrinkling.exceeded.iter();
+    let exceeded = exceeded.map(|is| f64::from(u8::from(*is)));
     let thickness = states().map(|state| sheet.thickness * state.stretches[2]);
     let mut arrays = vec![
         Array::tensors("nominal_stress_MPa", nominal),
@@ -84,7 +56,7 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
             state.principal_cauchy()[0]
         }),
         Array::scalars("smallest_principal_cauchy_stress_MPa", wrinkling.smallest),
-        Array::scalars("wrinkling", compressed),
+        Array::scalars("wrinkling", exceeded),
         tensors("green_lagrange_strain", |state| state.green_lagrange),
         of(
             "largest_principal_green_lagrange_strain",

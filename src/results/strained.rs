@@ -8,19 +8,17 @@ use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 
-/// The warnings about the states of a model on a mesh, each at a named load: the worst stretches beyond the range of the card, if they are
-/// worth a warning, and the first state whose material is not stable.
+/// The warnings about the states of a model on a mesh, each at a named load: the worst stretches beyond the range of the card, and the first
+/// state whose material is not stable.
 pub fn warnings<'a>(
     card: &Card,
     model: &str,
     mesh: &Mesh,
-    is_worth: impl Fn(&Stretches) -> bool,
     states: impl Iterator<Item = (String, &'a [f64])> + Clone,
 ) -> Vec<String> {
     let mut states_again = states.clone();
     let stretches = states.map(|(load, u)| (load, Stretches::new(card, mesh, u)));
-    let worst = stretches.max_by(|(_, a), (_, b)| a.excess.total_cmp(&b.excess));
-    let worst = worst.filter(|(_, own)| is_worth(own));
+    let worst = stretches.max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share));
     let beyond = worst.and_then(|(load, own)| own.reason(card, &format!(" at {load}")));
     let unstable = states_again.find_map(|(load, u)| {
         let cell = unstable_cell(card, mesh, u)?;

@@ -13,7 +13,8 @@ use super::vector::{dot, moved, norm};
 /// The sum of element contributions into a sparse matrix over the free unknowns.
 #[derive(Debug)]
 pub struct Assembly {
-    free_index: FreeIndex,
+    /// Position of each unknown among the free ones.
+    free_index: Vec<u32>,
     /// The free unknowns, ascending.
     free: Vec<usize>,
     /// The free unknowns of each element.
@@ -24,31 +25,6 @@ pub struct Assembly {
     nodes: Arc<[[f64; 2]]>,
 }
 
-/// Position of each unknown among the free ones.
-#[derive(Clone, Debug)]
-pub struct FreeIndex(Vec<u32>);
-
-impl FreeIndex {
-    fn new(unknowns: usize, free: &[usize]) -> Self {
-        let mut positions = vec![NOWHERE; unknowns];
-        for (index, unknown) in free.iter().enumerate() {
-            positions[*unknown] = index as u32;
-        }
-        Self(positions)
-    }
-
-    /// Position of an unknown; `None` where it is held.
-    pub fn of(&self, unknown: usize) -> Option<usize> {
-        let position = self.0[unknown];
-        (position != NOWHERE).then_some(position as usize)
-    }
-
-    /// Gives an unknown the position of another one.
-    pub fn tie(&mut self, unknown: usize, master: usize) {
-        self.0[unknown] = self.0[master];
-    }
-}
-
 /// Unknowns from which on nested dissection pays: its analysis takes half the time of one by least degree, and from
 /// half a million unknowns on the factorisation takes one to three times less.
 const WORTH_DISSECTION: usize = 30_000;
@@ -57,13 +33,16 @@ impl Assembly {
     /// Prepares the assembly of `potential` with the unknowns marked in `fixed` held.
     pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Self {
         let free: Vec<usize> = (0..fixed.len()).filter(|i| !fixed[*i]).collect();
-        let free_index = FreeIndex::new(fixed.len(), &free);
+        let mut free_index = vec![NOWHERE; fixed.len()];
+        for (index, unknown) in free.iter().enumerate() {
+            free_index[*unknown] = index as u32;
+        }
         let connectivity = potential.connectivity();
         let mut elements = Connectivity::new(free.len());
         elements.reserve_as(connectivity);
         for element in 0..connectivity.elements() {
             let unknowns = connectivity.of(element).iter();
-            elements.push(unknowns.map(|unknown| free_index.0[*unknown as usize] as usize));
+            elements.push(unknowns.map(|unknown| free_index[*unknown as usize] as usize));
         }
         Self {
             nodes: Arc::clone(connectivity.nodes()),
@@ -74,19 +53,15 @@ impl Assembly {
         }
     }
 
-    /// Position of each unknown among the free ones.
-    pub fn free_indices(&self) -> &FreeIndex {
-        &self.free_index
-    }
-
     /// The free unknowns, ascending.
     pub fn free(&self) -> &[usize] {
         &self.free
     }
 
-    /// Position of an unknown among the free ones.
+    /// Position of an unknown among the free ones; `None` where it is held.
     pub fn free_index(&self, unknown: usize) -> Option<usize> {
-        self.free_index.of(unknown)
+        let position = self.free_index[unknown];
+        (position != NOWHERE).then_some(position as usize)
     }
 
     /// The place of each free unknown, if all are known.

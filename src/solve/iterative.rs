@@ -2,8 +2,7 @@
 
 use super::aggregation::Hierarchy;
 use super::assembly::Assembly;
-use super::nested::{Carry, Ladder, Nested};
-use super::nodal::{NodalMatrix, Nodes, Wanted, conjugate_gradients};
+use super::nodal::{NodalMatrix, Nodes, Solution, conjugate_gradients};
 use super::potential::{Inadmissible, Potential};
 use super::sparse::FactorFault;
 
@@ -34,21 +33,11 @@ const STALE: f64 = 1.6;
 pub struct Iterative {
     nodes: Nodes,
     matrix: NodalMatrix,
-    cycle: Cycle,
+    cycle: Option<Box<Hierarchy>>,
     /// Whether the cycle was made for the values taken last, or for others, or is to be made.
     made: Made,
     /// Iterations per digit with a cycle made for the tangent itself.
     pace: f64,
-    /// Iterations of all systems so far.
-    pub iterations: usize,
-}
-
-/// An approximate inverse of the matrix.
-enum Cycle {
-    /// Made from the matrix alone.
-    Aggregation(Option<Box<Hierarchy>>),
-    /// Over systems that were solved before.
-    Nested(Box<Nested>),
 }
 
 /// The values for which a cycle was made.
@@ -57,24 +46,6 @@ enum Made {
     ForThese,
     ForOthers,
     Not,
-}
-
-/// The result of solving a system.
-pub struct Solved {
-    /// The free unknowns.
-    pub x: Vec<f64>,
-    /// √(b · M b), which is about √(b · K⁻¹ b): the imbalance b in terms of the energy that it represents.
-    pub weight: f64,
-}
-
-impl Cycle {
-    /// z = M r.
-    fn apply(&mut self, r: &[[f64; 2]], z: &mut [[f64; 2]]) {
-        match self {
-            Self::Aggregation(cycle) => cycle.as_mut().expect("made").apply(r, z),
-            Self::Nested(cycle) => cycle.apply(r, z),
-        }
-    }
 }
 
 impl LinearSolver {
@@ -108,31 +79,10 @@ impl Iterative {
         (!skew.any(|couples| couples)).then(|| Self {
             matrix: NodalMatrix::new(&nodes, assembly.free(), potential),
             nodes,
-            cycle: Cycle::Aggregation(None),
+            cycle: None,
             made: Made::Not,
             pace: f64::INFINITY,
-            iterations: 0,
         })
-    }
-
-    /// Puts it on systems that were solved before; `carry` transfers their fields to this one.
-    pub fn put_on(&mut self, ladder: Ladder, assembly: &Assembly, carry: Carry) {
-        let cycle = ladder.above(assembly.free(), &self.nodes, carry);
-        self.cycle = Cycle::Nested(Box::new(cycle));
-        self.made = Made::Not;
-    }
-
-    /// The systems with this one as the finest; `None` where it was not put on others.
-    pub fn into_ladder(self, assembly: &Assembly) -> Option<Ladder> {
-        match self.cycle {
-            Cycle::Nested(cycle) => Some(Ladder::new(*cycle, self.nodes, assembly)),
-            Cycle::Aggregation(_) => None,
-        }
-    }
-
-    /// Whether the cycle goes over systems that were solved before.
-    pub fn is_nested(&self) -> bool {
-        matches!(self.cycle, Cycle::Nested(_))
     }
 
     /// Takes the tangent of a potential at another state; returns the energy there, and ∂Π/∂u at all unknowns. There
@@ -148,10 +98,9 @@ impl Iterative {
     ) -> Result<f64, Inadmissible> {
         let energy = self.matrix.linearise(potential, u, residual);
         // Aggregation is costly, and also serves for tangents near its own.
-        self.made = match (&self.cycle, self.made) {
-            (Cycle::Aggregation(_), Made::ForThese | Made::ForOthers) => Made::ForOthers,
-            _ => Made::Not,
-        };
+        if self.made == Made::ForThese {
+            self.made = Made::ForOthers;
+        }
         energy
     }
 
@@ -170,47 +119,41 @@ impl Iterative {
     /// # Errors
     /// [`FactorFault`] where K is not positive definite, or the iteration does not get there.
     pub fn solve(&mut self, b: &[f64], reduction: f64) -> Result<Vec<f64>, FactorFault> {
-        Ok(self.solve_as_far_as(b, |_| Wanted::Reduction(reduction))?.x)
-    }
-
-    /// The same, as exactly as is wanted at the weight of b.
-    ///
-    /// # Errors
-    /// As [`Self::solve`].
-    pub fn solve_as_far_as(
-        &mut self,
-        b: &[f64],
-        wanted: impl Fn(f64) -> Wanted,
-    ) -> Result<Solved, FactorFault> {
         let b = self.nodes.spread(b);
         loop {
-            self.prepare()?;
-            let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
-            let found = conjugate_gradients(&self.matrix, cycle, &b, &wanted, MOST);
-            self.iterations += found.as_ref().map_or(MOST, |found| found.iterations);
-            if let Ok(found) = &found {
-                let reached = match wanted(found.first) {
-                    Wanted::Size => true,
-                    Wanted::Reduction(reduction) => found.reduction <= reduction,
-                };
-                if reached {
-                    self.judge(found.iterations, found.reduction);
-                    return Ok(Solved {
-                        x: self.nodes.gather(&found.x),
-                        weight: found.first,
-                    });
-                }
+            let solution = self.iterate(&b, reduction, MOST);
+            if let Ok(solution) = &solution
+                && solution.reduction <= reduction
+            {
+                self.judge(solution.iterations, solution.reduction);
+                return Ok(self.nodes.gather(&solution.x));
             }
-            match (&self.cycle, self.made) {
-                // The smoother does not work on these cells.
-                (Cycle::Nested(_), _) => self.cycle = Cycle::Aggregation(None),
-                (_, Made::ForThese) => {
-                    return Err(found.err().unwrap_or(FactorFault::NotPositiveDefinite));
-                }
-                _ => {}
+            if self.made == Made::ForThese {
+                return Err(solution.err().unwrap_or(FactorFault::NotPositiveDefinite));
             }
             self.made = Made::Not;
         }
+    }
+
+    /// Conjugate gradients with the cycle, which is made if it has not been.
+    fn iterate(
+        &mut self,
+        b: &[[f64; 2]],
+        reduction: f64,
+        most: usize,
+    ) -> Result<Solution, FactorFault> {
+        if self.made == Made::Not {
+            self.cycle = None;
+        }
+        let cycle = match &mut self.cycle {
+            Some(cycle) => cycle,
+            None => {
+                let hierarchy = Hierarchy::new(&self.matrix.whole(), &self.nodes.motions())?;
+                self.made = Made::ForThese;
+                self.cycle.insert(Box::new(hierarchy))
+            }
+        };
+        conjugate_gradients(&self.matrix, |r, z| cycle.apply(r, z), b, reduction, most)
     }
 
     /// Discards a cycle that was made for other values and takes many more iterations than one made for its own.
@@ -227,45 +170,11 @@ impl Iterative {
         }
     }
 
-    /// Makes the cycle if it has not been made.
-    ///
-    /// # Errors
-    /// [`FactorFault`] where the tangent taken last has none.
-    pub fn prepare(&mut self) -> Result<(), FactorFault> {
-        if self.made == Made::Not {
-            match &mut self.cycle {
-                Cycle::Aggregation(cycle) => {
-                    *cycle = Some(Box::new(Hierarchy::new(
-                        &self.matrix.whole(),
-                        &self.nodes.motions(),
-                    )?));
-                }
-                Cycle::Nested(cycle) => cycle.take(&self.matrix.blocks)?,
-            }
-            self.made = Made::ForThese;
-        }
-        Ok(())
-    }
-
     /// Whether the tangent is positive definite, judged by some iterations from a start that has a part of every
     /// mode: with a good preconditioner a negative stiffness is isolated, and is found first.
     pub fn is_definite(&mut self) -> bool {
-        let iterations = match self.cycle {
-            Cycle::Aggregation(_) => 12,
-            Cycle::Nested(_) => 5,
-        };
-        if self.prepare().is_err() {
-            return false;
-        }
+        const ITERATIONS: usize = 12;
         let start = self.nodes.uneven();
-        let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
-        conjugate_gradients(
-            &self.matrix,
-            cycle,
-            &start,
-            |_| Wanted::Reduction(0.0),
-            iterations,
-        )
-        .is_ok()
+        self.iterate(&start, 0.0, ITERATIONS).is_ok()
     }
 }

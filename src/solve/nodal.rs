@@ -113,28 +113,16 @@ impl Nodes {
 }
 
 /// The result of conjugate gradients.
-pub struct Found {
+pub struct Solution {
     /// The approximate solution.
     pub x: Vec<[f64; 2]>,
     /// Iterations, each one product and one cycle.
     pub iterations: usize,
-    /// ‖b‖_M, with the preconditioner's norm.
-    pub first: f64,
-    /// ‖b − A x‖_M over ‖b‖_M before the last iteration that was allowed, or where the iteration ended before.
+    /// ‖b − A x‖_M over ‖b‖_M, with the preconditioner's norm, before the last iteration that was allowed, or where the iteration ended before.
     pub reduction: f64,
 }
 
-/// The accuracy wanted of a system with a right-hand side of some size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
-    /// The size of the right-hand side alone.
-    Size,
-    /// A reduction of the residual by a factor.
-    Reduction(f64),
-}
-
-/// x of A x = b by conjugate gradients with a preconditioner z = M r, for so many iterations, or as far as is wanted at the first size of
-/// the residual.
+/// x of A x = b by conjugate gradients with a preconditioner z = M r, for so many iterations, or until the residual has fallen by `reduction`.
 ///
 /// # Errors
 /// [`FactorFault::NotPositiveDefinite`] where a direction has no positive stiffness.
@@ -142,41 +130,37 @@ pub fn conjugate_gradients(
     matrix: &NodalMatrix,
     mut precondition: impl FnMut(&[[f64; 2]], &mut [[f64; 2]]),
     b: &[[f64; 2]],
-    wanted: impl FnOnce(f64) -> Wanted,
+    reduction: f64,
     most: usize,
-) -> Result<Found, FactorFault> {
+) -> Result<Solution, FactorFault> {
     let size = b.len();
     let mut r = b.to_vec();
     let mut z = vec![[0.0; 2]; size];
     precondition(&r, &mut z);
     let mut square = product(&r, &z);
     let first = square;
-    let mut found = Found {
+    let mut solution = Solution {
         x: vec![[0.0; 2]; size],
         iterations: 0,
-        first: first.max(0.0).sqrt(),
         reduction: 1.0,
     };
     if first == 0.0 {
-        found.reduction = 0.0;
-        return Ok(found);
+        solution.reduction = 0.0;
+        return Ok(solution);
     }
-    let Wanted::Reduction(reduction) = wanted(found.first) else {
-        return Ok(found);
-    };
     let mut direction = z.clone();
     let mut image = vec![[0.0; 2]; size];
-    while found.iterations < most && found.reduction > reduction {
+    while solution.iterations < most && solution.reduction > reduction {
         matrix.multiply(&direction, &mut image);
         let stiffness = product(&direction, &image);
         if !(stiffness > 0.0 && square > 0.0) {
             return Err(FactorFault::NotPositiveDefinite);
         }
         let length = square / stiffness;
-        add(&mut found.x, length, &direction);
+        add(&mut solution.x, length, &direction);
         add(&mut r, -length, &image);
-        found.iterations += 1;
-        if found.iterations == most {
+        solution.iterations += 1;
+        if solution.iterations == most {
             break;
         }
         // z of the iteration before: rounding makes the preconditioner slightly unsymmetric (Polak and Ribière).
@@ -190,9 +174,9 @@ pub fn conjugate_gradients(
             }
         }
         square = next;
-        found.reduction = (next.max(0.0) / first).sqrt();
+        solution.reduction = (next.max(0.0) / first).sqrt();
     }
-    Ok(found)
+    Ok(solution)
 }
 
 /// a ← a + s b.

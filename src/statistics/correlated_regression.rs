@@ -10,9 +10,12 @@
 //! # References
 //! D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977), doi:10.1080/01621459.1977.10480998
 
+use std::cmp::Ordering;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::chi_squared_limit;
 use super::correlation::{Correlation, Decay, Sites, Whitening};
 
 /// A regression whose rows would have variance one if they were white; two rows for each place.
@@ -29,7 +32,7 @@ pub struct CorrelatedRegression<'a> {
     pub slope: &'a DVector<f64>,
 }
 
-/// The likeliest noise.
+/// Noise that a regression may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrelatedNoise {
     /// Its correlation.
@@ -50,6 +53,7 @@ pub struct WhiteRegression {
 }
 
 /// Its likelihood.
+#[derive(Clone, Copy)]
 struct Score {
     /// −2 ln L.
     surprise: f64,
@@ -153,30 +157,44 @@ impl WhiteRegression {
 const SHARES: [f64; 4] = [0.25, 0.6, 0.9, 0.995];
 
 impl CorrelatedRegression<'_> {
-    /// The likeliest correlation with a length between half of `spacing` and `longest`; `None` where it is not determined.
-    pub fn likeliest(&self, spacing: f64, longest: f64) -> Option<CorrelatedNoise> {
-        const STEP: f64 = 1.8;
+    /// The correlations with a length between half of `spacing` and `longest` that a 95 % region of length and share holds, the
+    /// likeliest first; nothing where they are not determined.
+    pub fn plausible(&self, spacing: f64, longest: f64) -> Vec<CorrelatedNoise> {
         let white = WhiteRegression::new(self.design, self.residual, None);
-        let white = white.score(self.held, self.slope)?;
-        let lengths = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
-        let lengths: Vec<f64> = lengths.take_while(|length| *length <= longest).collect();
-        let first = self.best(Decay::Exponential, &lengths)?;
-        let length = first.0.length;
-        let around = [length / STEP, length, STEP * length];
-        let around = around.map(|length| length.min(longest));
-        let second = self.best(Decay::Smooth, &around);
-        let both = [Some(first), second].into_iter().flatten();
-        let best = both.min_by(|a, b| a.1.surprise.total_cmp(&b.1.surprise))?;
-        let (correlation, score) = self.refined(best, STEP.sqrt(), longest);
-        Some(CorrelatedNoise {
+        let white = white.score(self.held, self.slope);
+        let (Some(white), Some(tried)) = (white, self.search(spacing, longest)) else {
+            return Vec::new();
+        };
+        let least = tried[0].1.surprise;
+        let near = tried
+            .into_iter()
+            .filter(|(_, score)| score.surprise - least < chi_squared_limit(2.0, 0.05));
+        near.map(|(correlation, score)| CorrelatedNoise {
             correlation,
             variance: score.variance,
             evidence: white.surprise - score.surprise,
         })
+        .collect()
     }
 
-    /// The likeliest of some lengths and shares.
-    fn best(&self, decay: Decay, lengths: &[f64]) -> Option<(Correlation, Score)> {
+    /// All correlations that are tried, the likeliest first.
+    fn search(&self, spacing: f64, longest: f64) -> Option<Vec<(Correlation, Score)>> {
+        const STEP: f64 = 1.8;
+        let lengths = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
+        let lengths: Vec<f64> = lengths.take_while(|length| *length <= longest).collect();
+        let mut tried = self.grid(Decay::Exponential, &lengths);
+        let length = tried.iter().min_by(likelier)?.0.length;
+        let around = [length / STEP, length, STEP * length];
+        let around = around.map(|length| length.min(longest));
+        tried.extend(self.grid(Decay::Smooth, &around));
+        let best = *tried.iter().min_by(likelier)?;
+        tried.extend(self.refined(best, STEP.sqrt(), longest));
+        tried.sort_by(|a, b| likelier(&a, &b));
+        Some(tried)
+    }
+
+    /// All of some lengths and shares.
+    fn grid(&self, decay: Decay, lengths: &[f64]) -> Vec<(Correlation, Score)> {
         let of = |length: &f64| {
             SHARES.map(|share| Correlation {
                 decay,
@@ -185,8 +203,9 @@ impl CorrelatedRegression<'_> {
             })
         };
         let all: Vec<Correlation> = lengths.iter().flat_map(of).collect();
-        let tried = all.into_par_iter().filter_map(|one| self.tried(one));
-        tried.min_by(|a, b| a.1.surprise.total_cmp(&b.1.surprise))
+        all.into_par_iter()
+            .filter_map(|one| self.tried(one))
+            .collect()
     }
 
     fn tried(&self, correlation: Correlation) -> Option<(Correlation, Score)> {
@@ -200,11 +219,11 @@ impl CorrelatedRegression<'_> {
     fn refined(
         &self,
         mut best: (Correlation, Score),
-        step: f64,
+        mut step: f64,
         longest: f64,
-    ) -> (Correlation, Score) {
+    ) -> Vec<(Correlation, Score)> {
         const ROUNDS: usize = 2;
-        let mut step = step;
+        let mut tried = Vec::new();
         for _ in 0..ROUNDS {
             let at = best.0;
             let longer = |factor: f64| Correlation {
@@ -226,16 +245,22 @@ impl CorrelatedRegression<'_> {
                 more(1.0 / step),
             ];
             for near in around {
-                if let Some(found) = self.tried(near)
-                    && found.1.surprise < best.1.surprise
-                {
+                let Some(found) = self.tried(near) else {
+                    continue;
+                };
+                if found.1.surprise < best.1.surprise {
                     best = found;
                 }
+                tried.push(found);
             }
             step = step.sqrt();
         }
-        best
+        tried
     }
+}
+
+fn likelier(a: &&(Correlation, Score), b: &&(Correlation, Score)) -> Ordering {
+    a.1.surprise.total_cmp(&b.1.surprise)
 }
 
 #[cfg(test)]
@@ -289,7 +314,7 @@ mod tests {
             held: &DMatrix::zeros(6, 6),
             slope: &DVector::zeros(6),
         };
-        regression.likeliest(1.0, 12.0).unwrap()
+        regression.plausible(1.0, 12.0)[0]
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! Cov(β) = s² P S R S Pᵀ,   P = (JᵀJ)⁻¹Jᵀ,   s² = rᵀ(R⁻¹ − R⁻¹J (JᵀR⁻¹J)⁻¹ JᵀR⁻¹) r/ν,   ν = n − k
 //! w(R) ∝ w₀(R) (det R det JᵀR⁻¹J (s²)^ν)^(−½)                   restricted likelihood, Σ w = 1
 //! Σ w(R) P(|t_ν| > h/√(aᵀ Cov a)) = 5 %                         h: half the width of the 95 % interval of aᵀβ
+//! L = Σ w₀(R) (det S R S)^(−½) (s² ν/n)^(−n/2)                       likelihood, by which laws are compared
 //! ```
 //!
 //! S are the sizes of the noise of the rows, which differ from curve to curve; in s² and w, J and r stand for S⁻¹J and S⁻¹r.
@@ -71,6 +72,8 @@ struct Part {
 pub struct CurveNoise {
     parts: Vec<Part>,
     freedom: f64,
+    /// −2 ln L.
+    surprise: f64,
 }
 
 /// Columns of unit length and different directions, and the matrix that maps values along them back to estimates.
@@ -108,12 +111,14 @@ impl Basis {
 struct Triangle {
     triangle: DMatrix<f64>,
     log_determinant: f64,
+    rows: usize,
 }
 
 impl Triangle {
     fn new(noise: NoiseAlong, columns: &DMatrix<f64>) -> Self {
         let (white, log_determinant) = noise.whitened(columns);
         Self {
+            rows: white.nrows(),
             triangle: white.qr().r(),
             log_determinant,
         }
@@ -133,6 +138,12 @@ impl Triangle {
         let pivots = pivots.rows(0, columns);
         let design: f64 = pivots.iter().map(|pivot| pivot.abs().ln()).sum();
         -0.5 * self.log_determinant - design - 0.5 * freedom * self.left(columns).ln()
+    }
+
+    /// ln of the likelihood after so many columns.
+    fn log_unrestricted(&self, columns: usize) -> f64 {
+        let rows = self.rows as f64;
+        -0.5 * self.log_determinant - 0.5 * rows * (self.left(columns) / rows).ln()
     }
 }
 
@@ -156,16 +167,23 @@ impl CurveResiduals<'_> {
                 correlation: candidate.correlation,
                 independent: noise.independent(),
             };
-            (part, triangle.log_likelihood(freedom))
+            let likelihoods = [
+                triangle.log_likelihood(freedom),
+                triangle.log_unrestricted(estimates),
+            ];
+            (part, likelihoods)
         };
-        let parts: Vec<(Part, f64)> = self.candidates().par_iter().map(part).collect();
-        let weights = shares(parts.iter().map(|(part, log)| part.weight.ln() + log));
+        let parts: Vec<(Part, [f64; 2])> = self.candidates().par_iter().map(part).collect();
+        let weights = shares(parts.iter().map(|(part, [log, _])| part.weight.ln() + log));
+        let unrestricted = parts.iter().map(|(part, [_, log])| part.weight.ln() + log);
+        let surprise = -2.0 * log_of_sum(unrestricted.collect());
         let weighed = parts.into_iter().zip(weights);
         let parts = weighed.filter(|(_, weight)| *weight > LEAST);
         let parts = parts.map(|((part, _), weight)| Part { weight, ..part });
         Some(CurveNoise {
             parts: parts.collect(),
             freedom,
+            surprise: surprise + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>(),
         })
     }
 
@@ -290,6 +308,11 @@ impl CurveNoise {
         })
     }
 
+    /// −2 ln of the likelihood of the residuals, but for a constant.
+    pub fn surprise(&self) -> f64 {
+        self.surprise
+    }
+
     /// The number of independent values with the same information on the noise's variance as all of them.
     pub fn independent(&self) -> f64 {
         self.mean(|part| part.independent)
@@ -309,10 +332,16 @@ impl CurveNoise {
 /// Shares that have the ratios of these logarithms.
 fn shares(logarithms: impl Iterator<Item = f64>) -> Vec<f64> {
     let logarithms: Vec<f64> = logarithms.collect();
+    let whole = log_of_sum(logarithms.clone());
+    let shares = logarithms.iter().map(|one| (one - whole).exp());
+    shares.collect()
+}
+
+/// ln Σ eˣ.
+fn log_of_sum(logarithms: Vec<f64>) -> f64 {
     let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let sizes = logarithms.iter().map(|one| (one - largest).exp());
-    let sum: f64 = sizes.clone().sum();
-    sizes.map(|size| size / sum).collect()
+    largest + sizes.sum::<f64>().ln()
 }
 
 fn with_last(columns: &DMatrix<f64>, last: &DVector<f64>) -> DMatrix<f64> {

@@ -10,9 +10,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::corrector::estimation::{
-    FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate, name_parts, transfer,
+    FieldEstimate, Knowledge, RegressedLaw, Specimen, UncertainLaw, estimate, name_parts, transfer,
 };
-use crate::error::{Diagnostic, Error, Severity};
+use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw};
@@ -21,19 +21,21 @@ use crate::results::locking;
 
 mod alike;
 mod area;
-mod axes;
 mod computed;
 mod conditions;
 mod doubts;
 mod edge_place;
 mod figures;
 mod force_signs;
+mod force_words;
 mod frame_agreement;
 mod gross_errors;
 pub mod joint;
 mod json;
 mod machine;
+mod mistakes;
 mod noise;
+mod of_frames;
 mod quantities;
 mod reading;
 mod refined;
@@ -50,7 +52,7 @@ pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use machine::{ForceColumn, FrameForces};
-pub use report::SHOWN;
+use of_frames::{OfFrame, once};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
 use specimen_mesh::{SpecimenMesh, mesh};
@@ -212,31 +214,35 @@ impl MarkerStudy {
         Ok(estimates)
     }
 
-    /// Leaves out the frames that could not be corrected, with a doubt for each.
+    /// Leaves out the frames that could not be corrected, with a doubt for each kind of fault.
     ///
     /// # Errors
-    /// The first fault where no frame is left.
+    /// The first fault where no frame remains, or the mistake in the file that it follows from.
     pub fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
         if !failed.is_empty() && failed.len() == self.series.frames.len() {
-            return Err(failed.swap_remove(0).1);
+            let frames = self.series.frames.iter();
+            let most = frames.max_by(|a, b| a.motion().total_cmp(&b.motion()));
+            let mistake = most.and_then(|frame| self.mistake_without_solution(frame));
+            return Err(mistake.map_or_else(
+                || failed.swap_remove(0).1,
+                |mistake| Error::Input(vec![mistake]),
+            ));
         }
-        for (number, fault) in failed {
+        let all = self.frame_numbers();
+        let faults = failed.into_iter().flat_map(|(number, fault)| {
             self.series.frames.retain(|frame| frame.number != number);
-            let doubts = match fault {
-                Error::Input(faults) => faults,
-                other => {
-                    let hint = other.advice().map(str::to_owned);
-                    let told = Diagnostic::warning("", other.to_string());
-                    vec![Diagnostic { hint, ..told }]
+            faults(fault).map(move |(message, hint)| {
+                let named = format!("frame {number}: ");
+                let message = message.strip_prefix(&named).unwrap_or(&message);
+                OfFrame {
+                    frame: number,
+                    message: format!("{message}; the frame is left out"),
+                    hint,
                 }
-            };
-            self.doubts
-                .extend(doubts.into_iter().map(|doubt| Diagnostic {
-                    severity: Severity::Warning,
-                    message: format!("{}; the frame is left out", doubt.message),
-                    ..doubt
-                }));
-        }
+            })
+        });
+        let faults = faults.collect();
+        self.doubts.extend(once(&all, faults));
         Ok(())
     }
 
@@ -253,6 +259,7 @@ impl MarkerStudy {
         let law = self.regressed.as_ref();
         let knowledge = Knowledge {
             edge_gap: self.unknown_gap,
+            uncertain_law: UncertainLaw::of_card(&self.card),
             ..self.conditions.knowledge(frame.number, law)
         };
         let found = match &self.coarse {
@@ -268,6 +275,20 @@ impl MarkerStudy {
         let found = found.map(|found| self.with_unknown_edge(found));
         found.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
     }
+}
+
+/// What is wrong with a frame that could not be corrected, and what to do.
+fn faults(error: Error) -> impl Iterator<Item = (String, String)> {
+    let faults = match error {
+        Error::Input(faults) => faults,
+        Error::Solve { fault, .. } => {
+            vec![Diagnostic::warning("", fault.to_string()).hint(fault.advice())]
+        }
+        other => vec![Diagnostic::warning("", other.to_string())],
+    };
+    faults
+        .into_iter()
+        .map(|fault| (fault.message, fault.hint.unwrap_or_default()))
 }
 
 /// An error with the frame in its message.

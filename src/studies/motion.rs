@@ -19,6 +19,7 @@ mod corrected;
 mod deviations;
 mod files;
 mod functions;
+mod headline;
 mod outcome;
 mod plates;
 mod problem;

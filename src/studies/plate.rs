@@ -68,14 +68,14 @@ fn outcome(study: &Study, results: &Results) -> Outcome {
         std::mem::swap(&mut grids, &mut explored);
     }
     let times = results.times.iter();
-    let summary = summary::summary(results, &requirements);
     let mut outcome = Outcome {
         checks: requirements,
         problem: json::problem(study),
         material: Some(Material::from(&study.card)),
         along: "stretch",
         steps: json::steps(results),
-        summary,
+        headline: summary::headline(study, results),
+        summary: summary::agreement(results),
         warnings,
         ends: results.ends.iter().map(Into::into).collect(),
         balance: results.worst_balances().reduce(larger),

@@ -8,14 +8,13 @@ use crate::budget::{Budget, Need};
 use crate::corrector::climb::ClimbSettings;
 use crate::document::{self, Bound, Section, file};
 use crate::error::Error;
-use crate::markers::THICK;
 use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::material::{Card, HyperelasticLaw, NeoHooke, PlaneState};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
-use crate::units::{Dimension, extents};
+use crate::units::{Dimension, implausible_sheet};
 
 /// Cells of a plate in one direction at most; how many fit into the budget is asked besides.
 pub const MOST_CELLS: usize = 100_000;
@@ -23,11 +22,11 @@ pub const MOST_CELLS: usize = 100_000;
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
-/// Records that a card which softens is to climb.
-pub fn refuse_climb_with_memory(corrector: &Section) {
-    let message = "this card softens, and the climb has no memory of the largest load";
+/// Records that a method without a memory is to correct a card which softens.
+pub fn refuse_memory(corrector: &Section, method: &str) {
+    let message = format!("this card softens, and {method} has no memory of the largest load");
     let hint = "write method = \"direct\", or leave out the card's `[softening]`";
-    corrector.fault("method", message, hint);
+    corrector.fault("method", &message, hint);
 }
 
 /// How exactly a corrected field climbs.
@@ -75,15 +74,11 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
     (problem, cells.unwrap_or([2, 2]))
 }
 
-/// Plane stress is that of thin sheets.
+/// Warns of measures that no thin sheet has.
 pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], card: Option<&Card>) {
-    let thin = card.is_none_or(|card| card.law.plane_state() == PlaneState::Stress);
-    if thin && thickness > THICK * size[0].min(size[1]) {
-        let message = format!(
-            "{thickness} mm for a sheet of {}: plane stress assumes a thin sheet",
-            extents(size)
-        );
-        let hint = "check the units of the lengths; a body that cannot strain across its thickness is in plane strain";
+    let is_thin = card.is_none_or(|card| card.law.plane_state() == PlaneState::Stress);
+    if let Some(message) = implausible_sheet(size, thickness).filter(|_| is_thin) {
+        let hint = "check the units of all lengths (of a mesh `file_unit`); a body that cannot strain across its thickness is in plane strain";
         section.warning("thickness", &message, hint);
     }
 }
@@ -193,7 +188,7 @@ fn check_stretch(
 
 /// One stretch, as a ratio or in percent.
 pub fn read_stretch(section: &Section<'_>, key: &'static str) -> f64 {
-    section.quantity(key, Dimension::Ratio, STRETCHES)
+    section.stretch(key, STRETCHES)
 }
 
 /// How a model is solved.

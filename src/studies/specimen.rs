@@ -15,6 +15,7 @@ use crate::studies::{Computation, Kind, Loaded, Progress, SOUND};
 
 mod files;
 mod forces;
+mod headline;
 mod outcome;
 mod problem;
 mod read;

@@ -6,10 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::panicking;
 
-use serde_json::Value;
-
 use super::plan::Run;
-use super::variable::key_and_unit;
 use super::{Row, Sweep, blocks, figures, json, read, write};
 use crate::document::inputs::noted;
 use crate::error::{Diagnostic, Error};
@@ -109,16 +106,9 @@ impl<'a> SweepFolder<'a> {
     pub fn replaces(&self) -> Option<Diagnostic> {
         let other_study = self.results.replaces();
         other_study.or_else(|| {
-            let place = self.results.path().join(REPORT);
-            let before: Value = serde_json::from_slice(&fs::read(&place).ok()?).ok()?;
-            let heads = before["keys"].as_array()?.iter().filter_map(Value::as_str);
-            let keys: Vec<&str> = heads.map(|head| key_and_unit(head).0).collect();
-            (keys != self.sweep.keys()).then(|| {
-                let message = format!(
-                    "{} contains a sweep over {}: it is replaced",
-                    self.results.path().display(),
-                    keys.join(", ")
-                );
+            let place = self.results.path();
+            has_another(self.sweep, &self.runs, place).then(|| {
+                let message = format!("{} contains another sweep: it is replaced", place.display());
                 Diagnostic::warning("", message).hint(ANOTHER_FOLDER)
             })
         })
@@ -194,6 +184,31 @@ impl<'a> SweepFolder<'a> {
         let warnings = write_document(folder, "report", &blocks, &figures)?;
         Ok((self.results.finish()?, warnings))
     }
+}
+
+/// The folder of a name, or the first beside it, with a number behind its name, that has no other sweep.
+///
+/// # Errors
+/// [`Error::Input`] with the faults of the sweep.
+pub fn free_folder(sweep: &Sweep, usual: PathBuf) -> Result<PathBuf, Error> {
+    let runs = sweep.runs()?;
+    let (mut folder, mut number) = (usual.clone(), 1);
+    while has_another(sweep, &runs, &folder) {
+        number += 1;
+        let mut name = usual.as_os_str().to_owned();
+        name.push(format!("_{number}"));
+        folder = PathBuf::from(name);
+    }
+    Ok(folder)
+}
+
+/// Whether a folder has the table of a sweep over other keys or values.
+fn has_another(sweep: &Sweep, runs: &[Run], folder: &Path) -> bool {
+    let path = folder.join(TABLE);
+    fs::read(&path).is_ok_and(|bytes| {
+        let rows = read(&path, sweep.keys().len(), &bytes);
+        rows.and_then(|rows| join(runs, rows)).is_err()
+    })
 }
 
 /// The rows of all parts in the order of the runs.

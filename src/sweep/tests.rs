@@ -317,7 +317,7 @@ fn every_run_is_in_one_part_and_parts_of_others_are_refused() {
 }
 
 #[test]
-fn a_sweep_over_other_keys_is_told_before_it_is_replaced() {
+fn a_sweep_over_other_keys_or_values_goes_beside_the_one_that_is_there() {
     let place = tempfile::TempDir::new().unwrap();
     let output = place.path().join("out");
     let open = |sweep: &Sweep, then: &dyn Fn(SweepFolder)| {
@@ -335,11 +335,13 @@ fn a_sweep_over_other_keys_is_told_before_it_is_replaced() {
     open(&width, &|folder| assert!(folder.replaces().is_none()));
     open(&thickness, &|folder| {
         let told = folder.replaces().unwrap().message;
-        assert!(
-            told.contains("a sweep over plate.width: it is replaced"),
-            "{told}"
-        );
+        assert!(told.contains("another sweep: it is replaced"), "{told}");
     });
+    let beside = free_folder(&thickness, output.clone()).unwrap();
+    assert!(beside.ends_with("out_2"), "{beside:?}");
+    assert_eq!(free_folder(&width, output.clone()).unwrap(), output);
+    let wider = sweep(&["plate.width=40..62 mm:2"], None);
+    assert_eq!(free_folder(&wider, output.clone()).unwrap(), beside);
 }
 
 #[test]

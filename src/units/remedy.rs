@@ -153,9 +153,29 @@ pub fn bare_ratio(text: &str) -> Option<f64> {
         .flatten()
 }
 
+/// Whether ratios without a percent sign could as well be λ as λ − 1: none lies below rest, λ = 1, and none far beyond it.
+pub fn could_be_stretch_ratios(bare: &[f64]) -> bool {
+    const FROM_REST: std::ops::RangeInclusive<f64> = 1.0..=3.0;
+    bare.iter().all(|ratio| FROM_REST.contains(ratio)) && bare.iter().any(|ratio| *ratio > 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ratios_from_rest_on_could_be_either() {
+        for (bare, expected) in [
+            (&[1.05, 1.1][..], true),
+            (&[1.0, 2.5], true),
+            (&[1.0], false),
+            (&[0.5, 1.5], false),
+            (&[4.0], false),
+            (&[], false),
+        ] {
+            assert_eq!(could_be_stretch_ratios(bare), expected, "{bare:?}");
+        }
+    }
 
     fn remedy(text: &str, dimension: Dimension) -> String {
         parse(text, dimension)

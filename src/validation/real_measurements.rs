@@ -16,9 +16,10 @@ use crate::units::Dimension;
 /// Forces are in balance up to rounding.
 const BALANCE: f64 = 1e-9;
 
-const ANSWERS: [(&str, Answer); 3] = [
+const ANSWERS: [(&str, Answer); 4] = [
     ("explained", Answer::Explained),
     ("correlated", Answer::Correlated),
+    ("undecided", Answer::Undecided),
     ("not-explained", Answer::NotExplained),
 ];
 

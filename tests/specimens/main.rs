@@ -2,11 +2,11 @@
 
 use std::fs;
 
-mod climbs;
 #[path = "../common/mod.rs"]
 mod common;
 mod ends;
 mod faults;
+mod nested;
 mod nothing;
 mod paths;
 

@@ -153,6 +153,8 @@ fn input(fault: Diagnostic) -> Error {
 }
 
 #[cfg(test)]
+mod layouts_tests;
+#[cfg(test)]
 mod missing_tests;
 #[cfg(test)]
 mod rows_tests;

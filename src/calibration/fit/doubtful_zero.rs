@@ -4,7 +4,7 @@
 //! are wrong by many of their standard errors. So the zero of each test is tried as one more value.
 
 use crate::calibration::data::{FoundZero, TestData};
-use crate::calibration::least_squares::sum_of_squares;
+use crate::calibration::least_squares::{Residuals, sum_of_squares};
 use crate::calibration::regression::Misfit;
 use crate::calibration::regression::refined_zero::Found;
 use crate::calibration::settings::Weighting;
@@ -15,6 +15,9 @@ use crate::statistics::Estimate;
 
 /// A zero is doubtful where it is this many halves of its 95 % interval away: one in a thousand by chance.
 const DOUBTFUL: f64 = 1.7;
+
+/// More points than this are thinned before all of them are tried.
+const MANY: usize = 800;
 
 /// A law fitted to tests with the zeros that they have.
 pub struct WithGivenZeros<'a> {
@@ -106,15 +109,20 @@ impl WithGivenZeros<'_> {
     ) -> Option<MovedTest> {
         let mut tests = self.tests.to_vec();
         tests[test].found_zero = Some(kind);
-        let found = Found {
-            misfit: Misfit::new(self.law, &tests, self.weighting),
-            values: parameters.iter().map(|one| one.value).collect(),
-            bounds: self.bounds.to_vec(),
-        };
+        let misfit = Misfit::new(self.law, &tests, self.weighting);
         let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
             self.assess(misfit, &tests, values, bounds, |own| own.is_noise())
         };
-        let found = found.with_zeros(&is_noise);
+        // What some of many points show to be no noise, all of them do.
+        if misfit.count() > MANY {
+            let some = self
+                .begun(misfit.thinned(MANY / 2), parameters)
+                .with_zeros(&is_noise);
+            if some.misfit.zeros().is_empty() {
+                return None;
+            }
+        }
+        let found = self.begun(misfit, parameters).with_zeros(&is_noise);
         let moved = found.misfit.moved_tests(&found.values);
         let (misfit, values) = (&found.misfit, &found.values);
         let quality = self.assess(misfit, &moved, values, &found.bounds, |own| own.quality());
@@ -126,6 +134,15 @@ impl WithGivenZeros<'_> {
             first: found.values[0],
             sum: sum_of_squares(misfit, values),
         })
+    }
+
+    /// The parameters by some residuals.
+    fn begun<'m>(&self, misfit: Misfit<'m>, parameters: &[Parameter]) -> Found<'m> {
+        Found {
+            misfit,
+            values: parameters.iter().map(|one| one.value).collect(),
+            bounds: self.bounds.to_vec(),
+        }
     }
 
     /// An answer of the assessment of values.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::reweighed::Reweighed;
 use crate::calibration::data::{FoundZero, Observation, TestData};
-use crate::calibration::least_squares::{self, Residuals};
+use crate::calibration::least_squares::{self, Measured, Residuals};
 use crate::calibration::settings::{MEASURE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::CardEntries;
@@ -255,6 +255,15 @@ impl Reweighed for Misfit<'_> {
 
     fn is_relative(&self) -> bool {
         self.weighting == Weighting::Relative
+    }
+
+    fn measured(&self) -> Vec<Measured> {
+        let measured = |point: &Point| Measured {
+            stress: point.observation.stress,
+            weight: point.weight,
+            count: 1.0,
+        };
+        self.points.iter().map(measured).collect()
     }
 }
 

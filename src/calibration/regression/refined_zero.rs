@@ -8,7 +8,7 @@
 use super::misfit::{Misfit, Zero};
 use super::reweighed::settled;
 use crate::calibration::data::{FoundZero, TestData};
-use crate::calibration::least_squares::{Precision, minimise};
+use crate::calibration::least_squares::descend;
 use crate::statistics::Estimate;
 
 /// Zeros are moved by less than this share of the largest strain or stress.
@@ -108,7 +108,7 @@ impl<'a> Found<'a> {
         values.resize(values.len() + count, 1.0);
         let mut bounds = self.bounds.clone();
         bounds.resize(values.len(), [1.0 - FARTHEST, 1.0 + FARTHEST]);
-        let values = minimise(&misfit, &values, &bounds, Precision::Full)?;
+        let values = descend(&misfit, &values, &bounds)?;
         let noise = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &bounds);
         let (misfit, values) = settled(&misfit, values, &bounds, noise);
         is_noise(&misfit, &values, &bounds).then_some(Found {

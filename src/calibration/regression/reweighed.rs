@@ -13,7 +13,7 @@
 //! # References
 //! R. W. M. Wedderburn, Biometrika 61, 439 (1974), doi:10.1093/biomet/61.3.439
 
-use crate::calibration::least_squares::{Precision, Residuals, minimise, sum_of_squares};
+use crate::calibration::least_squares::{Measured, Precision, Residuals, minimise, sum_of_squares};
 
 /// Residuals whose weights may be those of fitted stresses.
 pub trait Reweighed: Residuals + Sized {
@@ -22,6 +22,9 @@ pub trait Reweighed: Residuals + Sized {
 
     /// Whether weights follow stresses at all.
     fn is_relative(&self) -> bool;
+
+    /// What each residual is made of.
+    fn measured(&self) -> Vec<Measured>;
 }
 
 /// The residuals by the weights of their own stresses, and the values, repeated within bounds where `is_noise`.

@@ -1,18 +1,20 @@
 //! The search for the parameters with the smallest sum of squares: starts that are drawn, completed by linear least squares,
 //! and improved.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::misfit::Misfit;
-use crate::calibration::least_squares::{Precision, minimise, sum_of_squares};
+use crate::calibration::least_squares::{
+    Precision, Residuals, descend, lower, minimise, sum_of_squares,
+};
+use crate::error::{Error, SolveFault};
 use crate::material::parameters::Parameter;
+use crate::material::registry::Law;
 
 /// Points above this number are thinned while starts are compared; the last improvement uses all of them.
 const THINNED: usize = 400;
-/// How many of the improved starts are improved to the end.
-const REFINED: usize = 2;
+/// How many minima apart from each other are improved to the end.
+const REFINED: usize = 3;
 /// Draws for each parameter that is no stress.
 const DRAWS: usize = 80;
 
@@ -56,49 +58,59 @@ impl Search<'_> {
         };
         let minima = best_starts.into_par_iter().filter_map(rough).collect();
         let minima = sorted(minima);
-        // A minimum that is far above the best one cannot become it.
-        let refined =
-            minima
-                .iter()
-                .take(REFINED)
-                .map(|(sum, rough)| match *sum > 1.2 * minima[0].0 {
-                    true => rough.clone(),
-                    false => self.refine(rough.clone()),
-                });
+        let refined: Vec<Vec<f64>> = self
+            .apart(&minima)
+            .into_iter()
+            .filter_map(|rough| self.refine(rough))
+            .collect();
         let sum = |values: &Vec<f64>| sum_of_squares(self.misfit, values);
-        let values = self.ordered(refined.min_by(|a, b| sum(a).total_cmp(&sum(b)))?);
+        let values = refined.into_iter();
+        let values = ordered(
+            self.parameters,
+            self.bounds,
+            values.min_by(|a, b| sum(a).total_cmp(&sum(b)))?,
+        );
         // Another minimum counts as one when it is still elsewhere after the same care.
         let least = sum_of_squares(&thinned, &values);
-        let elsewhere = |found: &Vec<f64>| differs(found, &values);
+        let elsewhere = |found: &Vec<f64>| self.differs(found, &values);
         let rival = minima
             .iter()
-            .find(|(sum, found)| *sum <= FAR * least && elsewhere(&self.ordered(found.clone())))
-            .and_then(|(_, found)| minimise(&thinned, found, self.bounds, Precision::Full))
-            .map(|found| self.ordered(found))
+            .find(|(sum, found)| {
+                *sum <= FAR * least
+                    && elsewhere(&ordered(self.parameters, self.bounds, found.clone()))
+            })
+            .and_then(|(_, found)| descend(&thinned, found, self.bounds))
+            .map(|found| ordered(self.parameters, self.bounds, found))
             .filter(elsewhere);
-        let rival = rival.map(|own| {
-            let [best, rival] = [sum(&values), sum(&own)];
-            Rival {
-                worse: if rival > best {
-                    rival / best - 1.0
-                } else {
-                    0.0
-                },
-                values: own,
-            }
+        let rival = rival.map(|other| Rival {
+            worse: (sum(&other) / sum(&values) - 1.0).max(0.0),
+            values: other,
         });
         Some(Minimum { values, rival })
+    }
+
+    /// The best of some minima that lie apart from each other; one that is far above the best cannot become it.
+    fn apart(&self, minima: &[Candidate]) -> Vec<Vec<f64>> {
+        const ABOVE: f64 = 1.2;
+        let mut chosen: Vec<Vec<f64>> = Vec::new();
+        for (sum, found) in minima {
+            let found = ordered(self.parameters, self.bounds, found.clone());
+            if *sum <= ABOVE * minima[0].0 && chosen.iter().all(|own| self.differs(&found, own)) {
+                chosen.push(found);
+            }
+        }
+        chosen.truncate(REFINED);
+        chosen
     }
 
     /// Starts within the bounds, the best first.
     fn starts(&self, misfit: &Misfit) -> Vec<Candidate> {
         let stresses = self.stresses();
         let free = self.parameters.len() - stresses.len();
-        let mut random = ChaCha8Rng::seed_from_u64(1);
         let scale = misfit.stiffness();
         let mut starts = Vec::new();
-        for _ in 0..(DRAWS * free).max(1) {
-            let mut values = self.draw(scale, &mut random);
+        for number in 0..(DRAWS * free).max(1) {
+            let mut values = self.draw(scale, number);
             let drawn = values.clone();
             if misfit.complete(&mut values, &stresses).is_none() {
                 values = drawn;
@@ -109,16 +121,17 @@ impl Search<'_> {
                 *value = value.max(low + 1e-3 * width).min(high - 1e-3 * width);
             }
             let sum = sum_of_squares(misfit, &values);
-            if sum.is_finite() && self.holds(&values) {
+            if sum.is_finite() && holds(self.bounds, &values) {
                 starts.push((sum, values));
             }
         }
         sorted(starts)
     }
 
-    fn draw(&self, scale: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
-        let draw = |(parameter, [low, high]): (&Parameter, &[f64; 2])| {
-            let share: f64 = random.random();
+    /// A point of Sobol's sequence within the usual ranges.
+    fn draw(&self, scale: f64, number: usize) -> Vec<f64> {
+        let draw = |(dimension, (parameter, [low, high])): (usize, (&Parameter, &[f64; 2]))| {
+            let share = f64::from(sobol_burley::sample(number as u32, dimension as u32, 1));
             let [from, to] = parameter.usual;
             let drawn = match from > 0.0 {
                 _ if parameter.is_stress() => scale * 0.01_f64.powf(share),
@@ -127,29 +140,19 @@ impl Search<'_> {
             };
             drawn.clamp(*low, *high)
         };
-        self.parameters.iter().zip(self.bounds).map(draw).collect()
+        let pairs = self.parameters.iter().zip(self.bounds);
+        pairs.enumerate().map(draw).collect()
     }
 
-    /// Improves parameters until neither the linear ones alone nor all together can be improved: narrow valleys
-    /// need several turns.
-    fn refine(&self, mut values: Vec<f64>) -> Vec<f64> {
-        let stresses = self.stresses();
+    /// Improves parameters until they are a minimum, from where those that are stresses are the best ones beside the others.
+    fn refine(&self, values: Vec<f64>) -> Option<Vec<f64>> {
+        let mut linear = values.clone();
+        let completed = self.misfit.complete(&mut linear, &self.stresses());
         let sum = |values: &[f64]| sum_of_squares(self.misfit, values);
-        for _ in 0..5 {
-            let before = sum(&values);
-            let mut linear = values.clone();
-            let completed = self.misfit.complete(&mut linear, &stresses).is_some();
-            if completed && self.holds(&linear) && sum(&linear) < before {
-                values = linear;
-            }
-            if let Some(better) = minimise(self.misfit, &values, self.bounds, Precision::Full) {
-                values = better;
-            }
-            if sum(&values) > (1.0 - 1e-9) * before {
-                break;
-            }
-        }
-        values
+        let is_better =
+            completed.is_some() && holds(self.bounds, &linear) && sum(&linear) < sum(&values);
+        let start = if is_better { linear } else { values };
+        descend(self.misfit, &start, self.bounds).or(Some(start))
     }
 
     /// The parameters that are stresses.
@@ -159,34 +162,63 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Whether values lie within the bounds.
-    fn holds(&self, values: &[f64]) -> bool {
-        let mut pairs = values.iter().zip(self.bounds);
-        pairs.all(|(value, [low, high])| (low..=high).contains(&value))
+    /// Whether a parameter of another minimum is a tenth away, or by what counts where it is about zero.
+    pub fn differs(&self, other: &[f64], values: &[f64]) -> bool {
+        const FAR: f64 = 0.1;
+        let stiffness = self.misfit.stiffness();
+        let pairs = other.iter().zip(values).zip(self.parameters);
+        let mut apart = pairs.map(|((other, value), parameter)| {
+            let size = value.abs().max(parameter.least_size(stiffness));
+            (other - value).abs() > FAR * size
+        });
+        apart.any(|apart| apart)
     }
+}
 
-    /// Terms of Ogden's law in the order of their exponents: the same fit always has the same face.
-    fn ordered(&self, values: Vec<f64>) -> Vec<f64> {
-        let is_term = |pair: &[Parameter]| {
-            pair[0].key.starts_with("mu_") && pair[1].key.starts_with("alpha_")
-        };
-        let (terms, rest) = self.parameters.as_chunks::<2>();
-        if !rest.is_empty() || !terms.iter().all(|pair| is_term(pair)) {
-            return values;
-        }
-        let mut terms = values.as_chunks::<2>().0.to_vec();
-        terms.sort_by(|a, b| b[1].total_cmp(&a[1]));
-        terms.concat()
+/// Refuses values at which the sum of squares still falls.
+pub fn check_minimum(
+    model: &dyn Residuals,
+    law: &Law,
+    parameters: &[Parameter],
+    values: &[f64],
+    bounds: &[[f64; 2]],
+) -> Result<(), Error> {
+    if lower(model, values, bounds).is_none() {
+        return Ok(());
     }
+    let keys: Vec<&str> = parameters.iter().map(|parameter| parameter.key).collect();
+    Err(Error::Solve {
+        model: format!("fit of {}", law.name),
+        step: format!("{} = {values:.4?}", keys.join(", ")),
+        fault: SolveFault::NoMinimum,
+    })
+}
+
+/// Terms of a sum of powers in the order of their exponents, where bounds allow it: the same fit always has the same face. Values behind
+/// those of the law stay.
+pub fn ordered(parameters: &[Parameter], bounds: &[[f64; 2]], values: Vec<f64>) -> Vec<f64> {
+    let keys = parameters.iter().map(|parameter| parameter.key);
+    let count = keys.filter(|key| key.starts_with("alpha_")).count();
+    if count < 2 {
+        return values;
+    }
+    let (of_law, others) = values.split_at(parameters.len());
+    let mut terms: Vec<&[f64]> = of_law.chunks(of_law.len() / count).collect();
+    terms.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    let ordered = [&terms.concat(), others].concat();
+    match holds(bounds, &ordered) {
+        true => ordered,
+        false => values,
+    }
+}
+
+/// Whether values lie within their bounds.
+fn holds(bounds: &[[f64; 2]], values: &[f64]) -> bool {
+    let mut pairs = values.iter().zip(bounds);
+    pairs.all(|(value, [low, high])| (low..=high).contains(&value))
 }
 
 fn sorted(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
     candidates
-}
-
-/// Whether a parameter of another minimum is a tenth away.
-pub fn differs(other: &[f64], values: &[f64]) -> bool {
-    let mut pairs = other.iter().zip(values);
-    pairs.any(|(other, value)| (other - value).abs() / value.abs().max(1e-300) > 0.1)
 }

@@ -12,8 +12,10 @@ use rayon::prelude::*;
 
 use super::history::History;
 use crate::calibration::data::TestData;
-use crate::calibration::least_squares::{Precision, Residuals, minimise, sum_of_squares};
-use crate::calibration::regression::{Reweighed, Rows};
+use crate::calibration::least_squares::{
+    Measured, Precision, Residuals, descend, minimise, sum_of_squares,
+};
+use crate::calibration::regression::{Reweighed, Rows, ordered};
 use crate::calibration::settings::{MEASURE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::Parameter;
@@ -136,8 +138,8 @@ impl<'a> ViscousMisfit<'a> {
         };
         let rough: Vec<Found> = starts.par_iter().filter_map(improved).collect();
         let best = rough.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let found = minimise(self, &best.1, bounds, Precision::Full).unwrap_or(best.1);
-        let found = self.ordered(found);
+        let found = descend(self, &best.1, bounds).unwrap_or(best.1);
+        let found = ordered(&parameters[..self.of_law], bounds, self.ordered(found));
         Some((sum_of_squares(self, &found), found))
     }
 
@@ -276,6 +278,17 @@ impl Reweighed for ViscousMisfit<'_> {
 
     fn is_relative(&self) -> bool {
         self.weighting == Weighting::Relative
+    }
+
+    fn measured(&self) -> Vec<Measured> {
+        let histories = self.histories.iter().zip(&self.weights);
+        let rows = histories.flat_map(|(history, weights)| history.states.iter().zip(weights));
+        rows.map(|(state, weight)| Measured {
+            stress: state.observation.stress,
+            weight: weight / state.count.sqrt(),
+            count: state.count,
+        })
+        .collect()
     }
 }
 

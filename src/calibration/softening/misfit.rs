@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::calibration::data::{Observation, TestData};
-use crate::calibration::least_squares::Residuals;
+use crate::calibration::least_squares::{Measured, Residuals};
 use crate::calibration::regression::{Reweighed, Rows};
 use crate::calibration::settings::{MEASURE, Weighting};
 use crate::document::Bound;
@@ -193,5 +193,16 @@ impl Reweighed for SofteningMisfit<'_> {
 
     fn is_relative(&self) -> bool {
         self.weighting == Weighting::Relative
+    }
+
+    fn measured(&self) -> Vec<Measured> {
+        let rows = self.tests.iter().flat_map(|data| &data.observations);
+        let rows = rows.zip(self.weights.iter().flatten());
+        rows.map(|(one, weight)| Measured {
+            stress: one.stress,
+            weight: *weight,
+            count: 1.0,
+        })
+        .collect()
     }
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::misfit::{SOFTENING, SofteningMisfit};
 use crate::calibration::data::TestData;
-use crate::calibration::least_squares::{Precision, minimise, sum_of_squares};
+use crate::calibration::least_squares::{Precision, descend, minimise, sum_of_squares};
 use crate::calibration::settings::Weighting;
 use crate::calibration::trust::{AT_BOUND, Judged, Values, at_bound, rounded};
 
@@ -16,7 +16,7 @@ pub fn minimum(
     largest: f64,
 ) -> Option<Vec<f64>> {
     let (_, best) = rough_minimum(misfit, start, bounds, largest)?;
-    Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
+    Some(descend(misfit, &best, bounds).unwrap_or(best))
 }
 
 /// The sum of squares and the values of the best of several rough searches.

@@ -1,7 +1,7 @@
 //! How far a law that was fitted can be trusted.
 
 use super::judged::{Judged, Values, at_bound};
-use super::quality::{Deviations, Quality, aicc, rounded};
+use super::quality::{Deviations, Quality, rounded};
 use crate::calibration::data::{Observation, TestData};
 use crate::calibration::least_squares::{LEAST_SIZE, Residuals};
 use crate::calibration::regression::Misfit;
@@ -24,18 +24,14 @@ pub struct Assessment<'a> {
 impl Assessment<'_> {
     /// The figures of the fit, without warnings.
     pub fn quality(&self) -> Quality {
-        let values = self.values;
         let points: usize = self.tests.iter().map(|test| test.observations.len()).sum();
-        let deviations = Deviations::of(self.tests, self.weighting, &|test, row| {
+        let deviations = Deviations::of(self.tests, &|test, row| {
             let data = &self.tests[test];
             data.stress_of(self.law, &data.observations[row])
         });
         let judged = self.judge(points);
-        let estimates = judged.estimates(values);
-        let n = points as f64;
-        let counted = [n, judged.effective(n)];
-        let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
-        let quality = judged.quality(self.law, self.tests, &deviations, estimates, aicc);
+        let estimates = judged.estimates(self.values);
+        let quality = judged.quality(self.law, self.tests, &deviations, estimates);
         quality.with_zeros(self.misfit.zeros())
     }
 
@@ -54,10 +50,20 @@ impl Assessment<'_> {
         let found = Values {
             values: self.values,
             at_bound,
-            fixed: self.bounds.iter().map(|[low, high]| low == high).collect(),
+            fixed: self.fixed(),
             least,
         };
         Judged::of(self.misfit, self.misfit.curves(), found, rounded)
+    }
+
+    /// Which values are known: bounds leave them no room, or nothing depends on them to first order.
+    fn fixed(&self) -> Vec<bool> {
+        let mut fixed: Vec<bool> = self.bounds.iter().map(|[low, high]| low == high).collect();
+        let parameters = self.misfit.build(self.values).1.parameters;
+        for (fixed, parameter) in fixed.iter_mut().zip(parameters) {
+            *fixed |= parameter.is_symmetric_at(parameter.value);
+        }
+        fixed
     }
 
     /// The same with all points counted, where they were gathered.

@@ -2,11 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::quality::{Deviations, Quality, stable_ranges, stretch_range, untested};
+use super::quality::{Deviations, Quality, aicc, stable_ranges, stretch_range, untested};
 use super::verdict::{LeftOver, Verdict};
 use crate::calibration::data::TestData;
-use crate::calibration::least_squares::{self, LEAST_SIZE, Residuals};
-use crate::calibration::regression::Rows;
+use crate::calibration::least_squares::{self, LEAST_SIZE, Measured};
+use crate::calibration::regression::{Reweighed, Rows};
+use crate::calibration::settings::SMALLEST_SHARE;
 use crate::material::HyperelasticLaw;
 use crate::statistics::{CurveNoise, Estimate};
 
@@ -45,6 +46,18 @@ impl<'a> Values<'a> {
     }
 }
 
+/// The size of the noise that the weights do not suit: one that is the same everywhere where they are relative, else one that is
+/// proportional to the stress.
+fn other_size(measured: &[Measured], residual: &DVector<f64>, is_relative: bool) -> DVector<f64> {
+    let rows = measured.iter().zip(residual.iter());
+    let stresses: Vec<f64> = rows.map(|(one, own)| one.modelled(*own).abs()).collect();
+    let least = SMALLEST_SHARE * stresses.iter().copied().fold(0.0, f64::max);
+    DVector::from_fn(measured.len(), |row, _| match is_relative {
+        true => measured[row].weight,
+        false => stresses[row].max(least),
+    })
+}
+
 /// What the residuals of a fit are.
 pub struct Judged {
     /// Which values a bound holds.
@@ -57,12 +70,20 @@ pub struct Judged {
     pub noise: Option<CurveNoise>,
     /// The sum of squares of the residuals.
     pub sum_of_squares: f64,
+    /// −2 ln of the likelihood of the measured stresses.
+    surprise: f64,
+    rows: usize,
 }
 
 impl Judged {
     /// Of the residuals at some values, in the order of their curves; `rounded` are the mean squares that
     /// rounding alone leaves, see [`LeftOver`].
-    pub fn of(misfit: &dyn Residuals, curves: Vec<Rows>, found: Values, rounded: [f64; 2]) -> Self {
+    pub fn of<M: Reweighed>(
+        misfit: &M,
+        curves: Vec<Rows>,
+        found: Values,
+        rounded: [f64; 2],
+    ) -> Self {
         let Values {
             values,
             at_bound,
@@ -73,23 +94,37 @@ impl Judged {
         let free: Vec<usize> = (0..values.len()).filter(|index| !fixed[*index]).collect();
         let mut residual = DVector::zeros(misfit.count());
         misfit.evaluate(values, residual.as_mut_slice());
+        let measured = misfit.measured();
         let judged = jacobian.and_then(|jacobian| {
             let left_over = LeftOver {
                 curves,
                 design: &jacobian.select_columns(&free),
                 residual: &residual,
+                other_size: &other_size(&measured, &residual, misfit.is_relative()),
                 rounded: rounded.map(|mean| mean * residual.len() as f64),
             };
             left_over.judge()
         });
-        let (verdict, noise) = judged.unzip();
+        let (verdict, noise): (_, Option<CurveNoise>) = judged.unzip();
+        let (rows, sum_of_squares) = (residual.len(), residual.norm_squared());
+        let white = || rows as f64 * (sum_of_squares / rows as f64).ln();
+        let of_residuals = noise.as_ref().map_or_else(white, CurveNoise::surprise);
+        // The residuals of a relative fit are those of the stresses times their weights.
+        let weights = measured.iter().map(|one| one.weight.ln());
         Self {
             at_bound,
             fixed,
             verdict,
             noise,
-            sum_of_squares: residual.norm_squared(),
+            sum_of_squares,
+            surprise: of_residuals - 2.0 * weights.sum::<f64>(),
+            rows,
         }
+    }
+
+    /// AICc of so many estimates and the variance.
+    pub fn aicc(&self, estimates: usize) -> f64 {
+        aicc(self.surprise, self.rows as f64, (estimates + 1) as f64)
     }
 
     /// Whether they are noise.
@@ -137,7 +172,6 @@ impl Judged {
         tests: &[TestData],
         deviations: &Deviations,
         (estimates, correlation): (Vec<Estimate>, DMatrix<f64>),
-        aicc: f64,
     ) -> Quality {
         let points: usize = tests.iter().map(|test| test.observations.len()).sum();
         Quality {
@@ -146,8 +180,7 @@ impl Judged {
             rmse: (deviations.squares / points as f64).sqrt(),
             nmad_percent: deviations.nmad_percent(),
             r_squared: 1.0 - deviations.squares / deviations.spread,
-            aicc,
-            weighted_sum: deviations.weighted,
+            aicc: self.aicc(estimates.len()),
             largest_relative_error_percent: 100.0 * deviations.largest_relative,
             verdict: self.verdict,
             estimates,

@@ -59,11 +59,10 @@ pub struct Quality {
     pub nmad_percent: f64,
     /// 1 − Σ (σᵢ − σ)² / Σ (σᵢ − mean)².
     pub r_squared: f64,
-    /// nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1), S the weighted sum of squares, n and nₑ the points and the effective ones,
-    /// and k the parameters and the variance; infinite where there are too few points.
+    /// −2 ln L + 2k + 2k(k + 1)/(n − k − 1), L the likelihood of the stresses by noise that may correlate
+    /// ([`CurveResiduals`](crate::statistics::CurveResiduals)), n the rows that are fitted, and k the parameters and the variance; infinite
+    /// where there are too few rows.
     pub aicc: f64,
-    /// S.
-    pub weighted_sum: f64,
     /// Largest |σᵢ − σ|/|σᵢ| in %, of the stresses above a hundredth of their test's largest.
     pub largest_relative_error_percent: f64,
     /// What the residuals are; nothing is said where no parameter is estimated from them.
@@ -108,17 +107,6 @@ impl Quality {
         self.at_bound.truncate(parameters);
         self.correlation = self.correlation.resize(parameters, parameters, f64::NAN);
         self
-    }
-
-    /// AICc with another number of effective points, which laws must share to be compared.
-    #[must_use]
-    pub fn aicc_with(&self, effective: f64) -> f64 {
-        let parameters = (self.estimates.len() + self.zeros.len() + 1) as f64;
-        aicc(
-            self.weighted_sum,
-            [self.points as f64, effective],
-            parameters,
-        )
     }
 
     /// The number of independent points that tell as much of the noise.
@@ -185,11 +173,11 @@ pub fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<Stabl
     Mode::ALL.into_iter().map(range).collect()
 }
 
-/// nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1); infinite where there are too few points.
-pub fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
-    let left = effective - k - 1.0;
+/// AICc of −2 ln L, n and k; infinite where there are too few rows.
+pub fn aicc(surprise: f64, n: f64, k: f64) -> f64 {
+    let left = n - k - 1.0;
     match left > 0.0 {
-        true => effective * (sum / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / left,
+        true => surprise + 2.0 * k + 2.0 * k * (k + 1.0) / left,
         false => f64::INFINITY,
     }
 }
@@ -207,7 +195,6 @@ pub fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] 
 #[derive(Default)]
 pub struct Deviations {
     pub squares: f64,
-    pub weighted: f64,
     absolute: f64,
     /// Σ |σᵢ|.
     measured: f64,
@@ -219,11 +206,7 @@ pub struct Deviations {
 
 impl Deviations {
     /// Of the stresses that are predicted for an observation of a test.
-    pub fn of(
-        tests: &[TestData],
-        weighting: Weighting,
-        predicted: &dyn Fn(usize, usize) -> f64,
-    ) -> Self {
+    pub fn of(tests: &[TestData], predicted: &dyn Fn(usize, usize) -> f64) -> Self {
         let mut sums = Self::default();
         let all = || tests.iter().flat_map(|test| &test.observations);
         let mean = all().map(|one| one.stress).sum::<f64>() / all().count() as f64;
@@ -233,7 +216,6 @@ impl Deviations {
                 let predicted = predicted(number, row);
                 let difference = (one.stress - predicted).abs();
                 sums.squares += difference * difference;
-                sums.weighted += (weighting.weight(test, one) * difference).powi(2);
                 sums.absolute += difference;
                 sums.measured += one.stress.abs();
                 sums.predicted += predicted.abs();

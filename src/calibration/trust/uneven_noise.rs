@@ -6,7 +6,7 @@ use super::quality::Quality;
 use crate::calibration::data::{Observation, Test, TestData};
 use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
-use crate::statistics::{cochran, rank_correlation};
+use crate::statistics::cochran;
 
 /// Standard normal deviates beyond which something is no chance: one in a thousand, on both sides.
 const CLEARLY: f64 = 3.29;
@@ -25,13 +25,8 @@ pub fn noise_warnings(
         return Vec::new();
     }
     let has_intervals = quality.has_intervals();
-    let independent = quality.effective_points() / quality.points as f64;
-    let residuals = WeightedResiduals {
-        law,
-        weighting,
-        independent: independent.min(1.0),
-    };
-    let uneven = has_intervals.then(|| residuals.uneven(tests)).flatten();
+    let residuals = WeightedResiduals { law, weighting };
+    let uneven = has_intervals.then(|| uneven(quality, weighting)).flatten();
     let specimens = residuals.specimens(tests, has_intervals);
     uneven.into_iter().chain(specimens).collect()
 }
@@ -39,8 +34,19 @@ pub fn noise_warnings(
 struct WeightedResiduals<'a> {
     law: &'a dyn HyperelasticLaw,
     weighting: Weighting,
-    /// Independent points for each point.
-    independent: f64,
+}
+
+/// The warning about weights that do not suit the noise.
+fn uneven(quality: &Quality, weighting: Weighting) -> Option<String> {
+    let does_not_suit = quality.verdict?.suits_other_weights;
+    does_not_suit.then(|| match weighting {
+        Weighting::Absolute => {
+            "residuals grow with the stress, which the intervals take into account; `--weighting relative` uses such data better".into()
+        }
+        Weighting::Relative => {
+            "relative residuals are largest where the stress is small, which the intervals take into account; see `--weighting absolute`".into()
+        }
+    })
 }
 
 impl WeightedResiduals<'_> {
@@ -49,37 +55,6 @@ impl WeightedResiduals<'_> {
         let fitted = test.stress_of(self.law, one);
         let weight = self.weighting.weight_of(test, fitted);
         [weight * fitted, weight * (one.stress - fitted)]
-    }
-
-    /// Whether what is left grows, or falls, with the stress.
-    fn uneven(&self, tests: &[TestData]) -> Option<String> {
-        let deviate = |test: &TestData| {
-            let rows = test.observations.iter();
-            let (stresses, left): (Vec<f64>, Vec<f64>) = rows
-                .map(|one| {
-                    let fitted = test.stress_of(self.law, one);
-                    (fitted.abs(), self.fitted_and_residual(test, one)[1].abs())
-                })
-                .unzip();
-            let count = self.independent * stresses.len() as f64;
-            (stresses.len() >= FEWEST && count > 1.0)
-                .then(|| rank_correlation(&stresses, &left) * (count - 1.0).sqrt())
-        };
-        let all: Vec<f64> = tests
-            .iter()
-            .filter_map(deviate)
-            .filter(|z| z.is_finite())
-            .collect();
-        let whole = all.iter().sum::<f64>() / (all.len() as f64).sqrt();
-        match self.weighting {
-            Weighting::Absolute if whole > CLEARLY => Some(
-                "residuals grow with the stress: the intervals assume uniform noise and are too narrow; see `--weighting relative`".into(),
-            ),
-            Weighting::Relative if whole < -CLEARLY => Some(
-                "relative residuals are largest where the stress is small: see `--weighting absolute`".into(),
-            ),
-            _ => None,
-        }
     }
 
     /// How many times the law's stress was measured in some protocols, and its variance by the noise of their own, neighbours of which

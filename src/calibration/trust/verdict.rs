@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::calibration::regression::Rows;
-use crate::statistics::{Curve, CurveNoise, CurveResiduals, DurbinWatson, extremes, f_tail};
+use crate::statistics::{
+    Curve, CurveNoise, CurveResiduals, DurbinWatson, extremes, f_tail, growing_sizes,
+};
 
 /// What the residuals are.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -52,6 +54,8 @@ pub struct Verdict {
     pub effective_points: f64,
     /// How many times the noise of one curve is larger than that of another; 1 where they are alike.
     pub noise_ratio: f64,
+    /// Whether the noise is of another kind than the weights suit, even or proportional to the stress; the intervals hold that.
+    pub suits_other_weights: bool,
 }
 
 impl Verdict {
@@ -110,6 +114,8 @@ pub struct LeftOver<'a> {
     /// Derivatives of the residuals by the parameters that no bound holds.
     pub design: &'a DMatrix<f64>,
     pub residual: &'a DVector<f64>,
+    /// The size that the noise may have instead of being of one size.
+    pub other_size: &'a DVector<f64>,
     /// What rounding of the stresses leaves of the sum of squares, and that of strains and stresses.
     pub rounded: [f64; 2],
 }
@@ -121,10 +127,14 @@ impl LeftOver<'_> {
         if estimates == 0 || self.design.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let steady = Steady::of(&self.curves, self.design);
+        let steady = Steady::of(&self.curves, self.design, self.other_size);
         let (curves, design) = (&steady.curves, &steady.design);
         let orders = orders(curves);
-        let (sizes, noise_ratio) = self.sizes();
+        let grown = self.grown(&orders, &steady.other_size);
+        let suits_other_weights = grown.is_some();
+        let grown = grown.unwrap_or_else(|| DVector::from_element(self.residual.len(), 1.0));
+        let (of_curves, noise_ratio) = self.sizes(&grown);
+        let sizes = grown.component_mul(&of_curves);
         let residuals = CurveResiduals {
             design,
             residual: self.residual,
@@ -157,18 +167,33 @@ impl LeftOver<'_> {
             pattern_probability: pattern,
             effective_points,
             noise_ratio,
+            suits_other_weights,
         };
         Some((verdict, noise))
     }
 
-    /// The size of the noise of every row over that of all: of a curve by itself where curves differ by more than chance, else 1; and how
-    /// many times the largest is larger than the smallest.
-    fn sizes(&self) -> (DVector<f64>, f64) {
+    /// The sizes of noise along the curves that is not even, in the order in which neighbours are the nearest.
+    fn grown(&self, orders: &[Vec<Curve>], other: &DVector<f64>) -> Option<DVector<f64>> {
+        let rough = |curves: &&Vec<Curve>| {
+            let pairs = curves.iter().flat_map(|curve| curve.rows.windows(2));
+            pairs.fold(0.0, |sum, pair| {
+                sum + (self.residual[pair[1]] - self.residual[pair[0]]).powi(2)
+            })
+        };
+        let curves = orders.iter().min_by(|a, b| rough(a).total_cmp(&rough(b)))?;
+        let rows: Vec<Vec<usize>> = curves.iter().map(|curve| curve.rows.clone()).collect();
+        growing_sizes(&rows, self.residual, other)
+    }
+
+    /// The size of the noise of every row over that of all, beside what it grows by along the curves: of a curve by itself where curves differ
+    /// by more than chance, else 1; and how many times the largest is larger than the smallest.
+    fn sizes(&self, grown: &DVector<f64>) -> (DVector<f64>, f64) {
         let rows = self.residual.len();
+        let even = self.residual.component_div(grown);
         let share = 1.0 - self.design.ncols() as f64 / rows as f64;
-        let mean = self.residual.norm_squared() / rows as f64;
+        let mean = even.norm_squared() / rows as f64;
         let of_curve = |curve: &Rows| {
-            let own = curve.iter().map(|(row, _)| self.residual[*row].powi(2));
+            let own = curve.iter().map(|(row, _)| even[*row].powi(2));
             (own.sum::<f64>() / curve.len() as f64, curve.len() as f64)
         };
         let squares: Vec<(f64, f64)> = self.curves.iter().map(of_curve).collect();
@@ -205,18 +230,20 @@ impl LeftOver<'_> {
 }
 
 /// The curves with the noise of their strains left out: where the strain of a test only jitters about one that grows or falls, the rows have
-/// its values in their order, and with them the derivatives. Else the noise of the strain, which is also in the residuals, would look like a
+/// its values in their order, and with them the derivatives and the sizes of the noise. Else the noise of the strain, which is also in the residuals, would look like a
 /// function of it beside a slow drift.
 struct Steady {
     curves: Vec<Rows>,
     design: DMatrix<f64>,
+    other_size: DVector<f64>,
 }
 
 impl Steady {
-    fn of(curves: &[Rows], design: &DMatrix<f64>) -> Self {
+    fn of(curves: &[Rows], design: &DMatrix<f64>, other_size: &DVector<f64>) -> Self {
         let mut steady = Self {
             curves: curves.to_vec(),
             design: design.clone(),
+            other_size: other_size.clone(),
         };
         for curve in &mut steady.curves {
             let Some(sorted) = in_order(curve) else {
@@ -225,6 +252,7 @@ impl Steady {
             for ((row, strain), (source, value)) in curve.iter_mut().zip(sorted) {
                 *strain = value;
                 steady.design.set_row(*row, &design.row(source));
+                steady.other_size[*row] = other_size[source];
             }
         }
         steady

@@ -12,13 +12,14 @@ use crate::markers::Frame;
 use crate::output::{self, ResultFolder};
 use crate::results::Results;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{ComparedFrames, MarkerStudy, SHOWN};
+use crate::studies::markers::{ComparedFrames, MarkerStudy};
 use crate::studies::pictures::Pictures;
 
 /// The exit code of an answer, and of whether all that is required is met.
 pub fn exit_code(answer: Answer, passed: bool) -> u8 {
     match answer {
         Answer::NotExplained => NOT_EXPLAINED,
+        Answer::Undecided => 1,
         _ => u8::from(!passed),
     }
 }
@@ -65,8 +66,6 @@ pub fn correct(
     drop(progress);
     warn(&warnings);
     finish(results_folder, &results)?;
-    let doubts = field.all_doubts(&estimates);
-    warn(&doubts[..doubts.len().min(SHOWN)]);
     Ok((estimates, results))
 }
 

@@ -149,10 +149,11 @@ pub struct Options {
 /// What stands below the help.
 const AFTER_HELP: &str = "\
 Verdict: \"explained\", the residuals of the markers are white noise; \"explained with correlated noise\", the correlation length is
-reported and intervals include it; \"not explained by this law, thickness and conditions\", no interval is given, and the report
-ranks what would improve the fit.
+reported and intervals include it; \"the data cannot judge\", too few values are independent to tell noise from a misfit, or gross
+errors make up the noise; \"not explained by this law, thickness and conditions\", no interval is given, and the report ranks what
+would improve the fit. Without a measured force, forces are given the card: as good as its stiffness.
 
-Exit codes: 0 explained, also with correlated noise; 1 explained, but something else is doubtful; 5 not explained; 2 wrong input,
+Exit codes: 0 explained, also with correlated noise; 1 the data cannot judge, or something else is doubtful; 5 not explained; 2 wrong input,
 3 no solution, 4 cannot write.";
 
 impl Options {

@@ -49,7 +49,7 @@ pub fn run(options: Options) -> Outcome {
             identity: format!("{identity}_{name}"),
             pictures: pictures.clone(),
         };
-        let (estimates, _) = correct(
+        let (estimates, results) = correct(
             &mut own,
             told,
             &inputs,
@@ -59,6 +59,7 @@ pub fn run(options: Options) -> Outcome {
             name: name.clone(),
             study: own,
             estimates,
+            doubts: results.outcome.doubts.len(),
         });
     }
     warn(&[given_the_law()]);

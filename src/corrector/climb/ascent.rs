@@ -93,7 +93,7 @@ impl Ascent {
                 fine.size_of(&change)
             }
         };
-        [size, self.ratios.told([self.size, size], self.ratio)]
+        [size, self.ratios.measured([self.size, size], self.ratio)]
     }
 
     /// Sets the field of a finer grid; `interpolated` is the one before on it.

@@ -33,11 +33,12 @@ impl Ratios {
     }
 
     /// The ratio of the size of a change to that of the one before, which is NaN where there was none; the ratio is then unchanged.
-    pub fn told(&self, [before, size]: [f64; 2], ratio: f64) -> f64 {
+    pub fn measured(&self, [before, size]: [f64; 2], ratio: f64) -> f64 {
         let [least, most] = self.believed;
-        match before.is_nan() {
-            true => ratio,
-            false => (size / before).clamp(least, most),
+        if before.is_nan() {
+            ratio
+        } else {
+            (size / before).clamp(least, most)
         }
     }
 }

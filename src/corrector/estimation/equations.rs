@@ -5,7 +5,9 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::edges::{Body, EdgeMotion, bodies};
-use super::given::{DEGREE, Edge, Physics, Polynomial, Specimen, Task, singular_corners};
+use super::given::{
+    DEGREE, Edge, Neighbours, Physics, Polynomial, Specimen, Task, singular_corners,
+};
 use super::regression::{Robust, Roughness};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
@@ -30,9 +32,6 @@ pub const AT_THE_END: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
     max_iterations: 20,
 };
-
-/// A law with one parameter a little smaller and larger, and the width between.
-pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
 
 /// The equations on one mesh with one set of conditions.
 ///
@@ -240,27 +239,24 @@ impl<'a> Equations<'a> {
 
     /// The laws with each of the law's parameters a little smaller and larger, and twice the difference.
     pub fn neighbours(&self, parameters: &[f64]) -> Vec<Neighbours> {
-        const STEP: f64 = 1e-5;
-        let Some(regressed) = &self.task.knowledge.law else {
-            return Vec::new();
-        };
+        let regressed = self.task.knowledge.law.as_ref();
         let values = self.law_values(parameters);
-        let pair = |index: usize| {
-            let step = STEP * values[index].abs();
-            let moved = [-step, step].map(|step| {
-                let mut moved = values.to_vec();
-                moved[index] += step;
-                regressed.at(&moved)
-            });
-            (moved, 2.0 * step)
-        };
-        (0..values.len()).map(pair).collect()
+        regressed.map_or(Vec::new(), |law| law.neighbours(values))
     }
 
     /// ∂F/∂θ for each parameter θ of the law, including held unknowns.
     pub fn law_slopes(&self, parameters: &[f64], field: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
+        self.slopes_between(self.neighbours(parameters), field)
+    }
+
+    /// The derivatives of F between neighbouring laws, including held unknowns.
+    pub fn slopes_between(
+        &self,
+        neighbours: Vec<Neighbours>,
+        field: &[f64],
+    ) -> Result<Vec<Vec<f64>>, Error> {
         let mut slopes = Vec::new();
-        for (laws, width) in self.neighbours(parameters) {
+        for (laws, width) in neighbours {
             let mut sides = laws.map(|law| (self.energy.with_law(law), vec![0.0; field.len()]));
             for (energy, residual) in &mut sides {
                 Assembly::residual(energy, field, residual)

@@ -27,8 +27,14 @@ impl NearestField<'_> {
         Ok((grip, row))
     }
 
-    /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known.
-    pub fn forces(&self, reach: f64, own: Option<&MeshError>) -> Result<Vec<EdgeForce>, Error> {
+    /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known, and the standard errors due to the law's
+    /// parameters if there are any.
+    pub fn forces(
+        &self,
+        reach: f64,
+        own: Option<&MeshError>,
+        law: &[[f64; 2]],
+    ) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
@@ -38,7 +44,8 @@ impl NearestField<'_> {
                 own.forces[index][axis] + dot(&row, own.parameters.as_slice())
             });
             let division = self.equations.bodies[index].division_error(&reactions, axis);
-            let error = self.error(&row).hypot(mesh).hypot(division);
+            let by_law = law.get(index).map_or(0.0, |deviations| deviations[axis]);
+            let error = self.error(&row).hypot(mesh).hypot(division).hypot(by_law);
             Ok(Estimate::new(force, error, reach))
         };
         let force = |(index, body): (usize, &Body)| {
@@ -74,16 +81,17 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces beside those of the field, which also depend on the picture's scale; called before the covariance includes the scale.
+    /// The measured forces beside those of the field, which also depend on the picture's scale and on the law's parameters; called before the covariance includes the scale.
     /// Forces that a parameter of the law follows are no check.
     pub(super) fn force_checks(
         &self,
         own: Option<&MeshError>,
         scale: &ScaleChange,
+        law: &[[f64; 2]],
     ) -> Result<Vec<ForceCheck>, Error> {
         const REDUNDANT: f64 = 1e-3;
-        let with_mesh = self.forces(1.0, own)?;
-        let plain = self.forces(1.0, None)?;
+        let with_all = self.forces(1.0, own, law)?;
+        let plain = self.forces(1.0, None, &[])?;
         let mut checks = Vec::new();
         let knowledge = self.equations.task.knowledge;
         for measured in &knowledge.forces {
@@ -95,7 +103,7 @@ impl NearestField<'_> {
                     [value + force.value, square + force.standard_error.powi(2)]
                 })
             };
-            let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_mesh));
+            let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_all));
             let variance = measured.standard_deviation.powi(2);
             let left = match knowledge.forces_are_checks {
                 true => variance + noise,

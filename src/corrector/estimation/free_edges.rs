@@ -131,7 +131,7 @@ impl NearestField<'_> {
     fn is_pulled(&self, index: usize) -> Result<bool, Error> {
         const LARGE: f64 = 1.0 / 3.0;
         const SURE: f64 = 10.0;
-        let forces = self.forces(1.0, None)?;
+        let forces = self.forces(1.0, None, &[])?;
         let bodies = self.equations.bodies.iter();
         let own = bodies
             .zip(&forces)

@@ -6,15 +6,17 @@ mod outline;
 mod regressed_law;
 mod start;
 mod task;
+mod uncertain_law;
 
 pub use knowledge::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
 };
 pub use observations::Observations;
 pub use outline::{Segment, name_parts, parts};
-pub use regressed_law::RegressedLaw;
+pub use regressed_law::{Neighbours, RegressedLaw};
 pub use start::{DEGREE, Polynomial};
 pub use task::{Edge, Task, singular_corners};
+pub use uncertain_law::UncertainLaw;
 
 #[cfg(test)]
 pub use outline::segments;

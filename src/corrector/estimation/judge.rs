@@ -4,6 +4,8 @@
 //! alternative of [`alternatives`] and all edges released, where the residuals are noise more surely. The data, made white by the
 //! latter, determine which alternative reduces the misfit more than noise would (F test, in one linearised step).
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::given::{Edge, EdgeCondition, Task};
 use super::outcome::{
@@ -29,7 +31,7 @@ const LEVEL: f64 = 1e-5;
 const EXPLAINS: f64 = 0.98;
 
 /// With fewer independent values than this beside the parameters, correlated noise cannot be distinguished from a misfit, and its
-/// length is too uncertain for valid intervals: by their coverage, `gelbench validate interval-coverage`.
+/// likeliest length is too uncertain for valid intervals: by their coverage, `gelbench validate interval-coverage`.
 const INDEPENDENT: f64 = 100.0;
 
 /// The noise that was found, and the verdict.
@@ -37,8 +39,9 @@ const INDEPENDENT: f64 = 100.0;
 pub struct Judgement {
     /// The trust of the markers on the mesh, zero for gross errors.
     pub sound: Vec<f64>,
-    /// The correlation of the noise with the equations as they are; `None` for white noise.
-    pub noise: Option<CorrelatedNoise>,
+    /// The correlation of the noise with the equations as they are, the likeliest first; nothing for white noise. Where the data
+    /// cannot judge, those that are hardly less likely follow.
+    pub noises: Vec<CorrelatedNoise>,
     /// The verdict without measured forces.
     pub verdict: Verdict,
     /// The statements on edges that the data contradict.
@@ -69,12 +72,12 @@ pub fn judge(
     };
     let granted = found.granted();
     let base = Model::of_search(&rows, found).with(&rows, &granted);
-    let noise = base.noise(&rows);
+    let mut noises = base.noises(&rows);
+    let noise = noises.first();
     let columns = found.alternatives(own)?;
-    let of_score = |scored: &Scored| Model::of_score(&rows, found, scored).with(&rows, &granted);
-    let all = all.map(|scored| of_score(&scored));
+    let all = all.map(|scored| Model::of_score(&rows, found, &scored).with(&rows, &granted));
     let basis = Basis {
-        reference: Reference::new(&rows, noise.as_ref(), &base, all.as_ref(), &columns, own),
+        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, own),
         rows: &rows,
         base: &base,
     };
@@ -87,16 +90,12 @@ pub fn judge(
     let together = all
         .as_ref()
         .map(|model| basis.try_out(found, Alternative::Edges, model));
-    let correlation = noise.as_ref().map(|noise| rows.correlation(noise));
-    let reasons = reasons(trials.iter().chain(&together), correlation, found);
+    let correlation = noise.map(|noise| rows.correlation(noise));
+    let against = improvement(trials.iter().chain(&together));
+    let few = few(correlation, found);
     let mut contradiction = None;
-    if !reasons.is_empty() {
-        let alone = |name: &str| {
-            let scored = let_go(task, found, edges, &|other| other == name)?;
-            let model = Model::of_score(&rows, found, &scored).with(&rows, &granted);
-            Some(basis.try_out(found, Alternative::Edge(name.to_owned()), &model))
-        };
-        let each: Vec<Trial> = said(edges).into_iter().filter_map(alone).collect();
+    if against.is_some() {
+        let each = basis.edge_by_edge(task, found, edges, &granted);
         contradiction = contradicted(together.as_ref(), &each);
         trials.extend(together.filter(|_| each.len() > 1));
         trials.extend(each);
@@ -107,24 +106,37 @@ pub fn judge(
     let left = base.plain_left(&rows, found);
     trials.retain(|trial| trial.left < EXPLAINS * left);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let answer = match (reasons.is_empty(), noise) {
-        (false, _) => Answer::NotExplained,
-        (true, Some(_)) => Answer::Correlated,
-        (true, None) => Answer::Explained,
-    };
+    let answer = answer(against, few, correlation);
+    if answer != Answer::Undecided {
+        noises.truncate(1);
+    }
     let verdict = Verdict {
         answer,
         correlation,
-        worst: (!reasons.is_empty()).then(|| rows.worst(found)),
-        reasons,
+        worst: against.map(|_| rows.worst(found)),
+        reasons: against.into_iter().chain(few).collect(),
         trials,
     };
     Ok(Judgement {
         sound,
-        noise,
+        noises,
         verdict,
         contradiction,
     })
+}
+
+/// Evidence against the equations counts most, then that there can be none.
+fn answer(
+    against: Option<Reason>,
+    few: Option<Reason>,
+    correlation: Option<NoiseCorrelation>,
+) -> Answer {
+    match (against, few, correlation) {
+        (Some(_), ..) => Answer::NotExplained,
+        (None, Some(_), _) => Answer::Undecided,
+        (None, None, Some(_)) => Answer::Correlated,
+        (None, None, None) => Answer::Explained,
+    }
 }
 
 /// The basis on which alternatives are tried.
@@ -142,6 +154,23 @@ impl Basis<'_> {
         }
     }
 
+    /// What each of the edges with a stated condition explains by itself where it is released.
+    fn edge_by_edge(
+        &self,
+        task: &Task,
+        found: &NearestField,
+        edges: &[Edge],
+        granted: &[DMatrix<f64>],
+    ) -> Vec<Trial> {
+        let names = said(edges).into_iter();
+        let released = names.filter_map(|name| {
+            let scored = let_go(task, found, edges, &|other| other == name)?;
+            let model = Model::of_score(self.rows, found, &scored).with(self.rows, granted);
+            Some(self.try_out(found, Alternative::Edge(name.to_owned()), &model))
+        });
+        released.collect()
+    }
+
     /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
     fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
@@ -150,17 +179,19 @@ impl Basis<'_> {
     }
 }
 
-/// Why the data are not explained, if they are not.
-fn reasons<'a>(
-    trials: impl Iterator<Item = &'a Trial>,
-    correlation: Option<NoiseCorrelation>,
-    found: &NearestField,
-) -> Vec<Reason> {
+/// The alternative that contradicts the equations, if one does.
+fn improvement<'a>(trials: impl Iterator<Item = &'a Trial>) -> Option<Reason> {
     let probability = trials.map(|trial| trial.probability).fold(1.0, f64::min);
-    let alternative = (probability < LEVEL).then_some(Reason::Alternative(probability));
-    let long = correlation.filter(|one| 2.0 * one.independent - found.fit.effective < INDEPENDENT);
-    let long = long.map(|one| Reason::Long(one.length));
-    alternative.into_iter().chain(long).collect()
+    (probability < LEVEL).then_some(Reason::Alternative(probability))
+}
+
+/// Noise with too few independent values, which is no evidence against the equations.
+fn few(correlation: Option<NoiseCorrelation>, found: &NearestField) -> Option<Reason> {
+    let few = |one: &NoiseCorrelation| 2.0 * one.independent - found.fit.effective < INDEPENDENT;
+    correlation.filter(few).map(|one| Reason::Few {
+        length: one.length,
+        independent: one.independent,
+    })
 }
 
 /// The names of the edges with a stated condition, except those that moved in an unknown way.

@@ -192,10 +192,10 @@ impl NearestField<'_> {
         freedom
     }
 
-    /// Sets the covariance under the noise that was found; returns the degrees of freedom of its size where it is correlated.
+    /// Sets the covariance under the noise that was found, of several the one that moves the markers most; returns the degrees of
+    /// freedom of its size where it is correlated.
     fn take_noise(&mut self, judged: &Judgement) -> Option<f64> {
         const LEAST: f64 = 3.0;
-        let noise = judged.noise?;
         let observations = self.observations();
         let sites = Sites::new(observations.places.clone());
         let rows = MarkerRows {
@@ -203,9 +203,15 @@ impl NearestField<'_> {
             weights: &observations.weights,
             variances: &self.variances,
         };
-        let middle = rows.spread(&noise, &sites) + &self.fit.held;
+        let (own, information) = (&self.fit.covariance, rows.information());
+        let widened = judged.noises.iter().map(|noise| {
+            let middle = rows.spread(noise, &sites) + &self.fit.held;
+            let covariance = own * middle * own;
+            (covariance.dot(&information), covariance, noise)
+        });
+        let (_, covariance, noise) = widened.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let independent = noise.correlation.independent(sites.places());
-        self.fit.covariance = &self.fit.covariance * middle * &self.fit.covariance;
+        self.fit.covariance = covariance;
         Some((2.0 * independent - self.fit.effective).max(LEAST))
     }
 }

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
-use super::equations::{Equations, Neighbours, solve};
-use super::given::Edge;
+use super::equations::{Equations, solve};
+use super::given::{Edge, Neighbours};
 use super::judge::Judgement;
 use super::outcome::{
     Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing,
@@ -35,7 +35,7 @@ impl NearestField<'_> {
         let robust = self.equations.task.knowledge.robust;
         let begun = self.take_uncertainty(edges, own, &judged)?;
         let idle = self.idle(edges, &begun.forces);
-        let larger = judged.noise.map_or(1.0, |noise| noise.variance);
+        let larger = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         // A misfit is not noise.
@@ -80,12 +80,14 @@ impl NearestField<'_> {
     ) -> Result<FieldEstimate, Error> {
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
-        let places = self.unknown_places(edges)?;
+        let considered = self.considered(edges)?;
+        let by_law = self.law_deviations(&considered)?;
         let scale = self.scale_answer();
         let scale_change = self.scale_change(&scale)?;
-        let before = self.force_checks(own, &scale_change)?;
+        let before = self.force_checks(own, &scale_change, &by_law)?;
         let freedom = self.widen(judged).unwrap_or(white);
-        let is_plain = self.equations.task.knowledge.robust == Robust::No && judged.noise.is_none();
+        let is_plain =
+            self.equations.task.knowledge.robust == Robust::No && judged.noises.is_empty();
         let reach = match self.observations().known_noise && is_plain {
             true => normal_reach(),
             false => student_reach(freedom),
@@ -93,15 +95,13 @@ impl NearestField<'_> {
         // Where the data are not explained, residuals taken for noise would hide a wrong force.
         let force_checks = match judged.verdict.answer {
             Answer::NotExplained => before,
-            _ => self.force_checks(own, &scale_change)?,
+            _ => self.force_checks(own, &scale_change, &by_law)?,
         };
         self.take_scale(&scale);
-        let forces = self.forces(reach, own)?;
+        let forces = self.forces(reach, own, &by_law)?;
         let parameters = self.law_parameters(reach, own);
         // Forces keep unknown places on the side that is possible.
-        if let Some(places) = places {
-            self.consider(places);
-        }
+        self.consider(considered);
         Ok(FieldEstimate {
             degrees_of_freedom: freedom,
             reach,
@@ -109,6 +109,8 @@ impl NearestField<'_> {
             forces,
             parameters,
             scale_change,
+            is_given_the_law: self.equations.task.knowledge.is_given_the_law(),
+            law_deviations: by_law,
             ..FieldEstimate::default()
         })
     }
@@ -144,7 +146,7 @@ impl NearestField<'_> {
     fn cells(&self, own: Option<&MeshError>) -> Result<Vec<StressEstimate>, Error> {
         let mesh = self.equations.task.specimen.mesh;
         let cells = (0..mesh.cell_count()).into_par_iter();
-        let neighbours = self.equations.neighbours(&self.parameters);
+        let neighbours = self.neighbours();
         match own {
             Some(own) => cells
                 .map(|cell| self.cell(cell, &neighbours, own.gradients[cell]))
@@ -159,10 +161,23 @@ impl NearestField<'_> {
         }
     }
 
+    /// The laws about that of the field, each with the column of its parameter: of those that are found, or else are considered.
+    fn neighbours(&self) -> Vec<(usize, Neighbours)> {
+        let equations = &self.equations;
+        let found = equations.neighbours(&self.parameters);
+        let considered = equations.task.knowledge.uncertain_law();
+        let considered = considered.map_or(Vec::new(), |law| law.neighbours());
+        let first = match found.is_empty() {
+            true => self.parameters.len(),
+            false => equations.motion.parameters(),
+        };
+        (first..).zip(found.into_iter().chain(considered)).collect()
+    }
+
     fn cell(
         &self,
         cell: usize,
-        neighbours: &[Neighbours],
+        neighbours: &[(usize, Neighbours)],
         better: [f64; 4],
     ) -> Result<StressEstimate, Error> {
         let Equations { task, law, .. } = &self.equations;
@@ -193,11 +208,10 @@ impl NearestField<'_> {
             (0..4).for_each(|component| rows[component].push(stress[component]));
             rows[4].push(specimen.thickness * thinning.dot(&change));
         }
-        for (index, (laws, width)) in neighbours.iter().enumerate() {
+        for (column, (laws, width)) in neighbours {
             let [low, high] = laws.each_ref().map(|law| law.stress(&kinematics).1);
             let slope = (high - low) / *width;
-            let place = self.equations.motion.parameters() + index;
-            (0..4).for_each(|component| rows[component][place] += slope[component]);
+            (0..4).for_each(|component| rows[component][*column] += slope[component]);
         }
         let stress = response.first_piola_kirchhoff_stress;
         // Where the better gradient turns the cell inside out, the whole stress is in doubt.

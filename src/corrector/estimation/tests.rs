@@ -10,6 +10,7 @@ mod pads;
 mod places;
 mod truth;
 mod uneven;
+mod verdicts;
 
 use truth::{C10, THICKNESS, estimate_mesh, noisy};
 pub(super) use truth::{SIZE, STRETCH, Truth, law, specimen, with_grips};

@@ -1,5 +1,7 @@
-//! Uncertainties of an estimated field besides noise: its mesh, the scale of the picture, edges that were not seen, smoothness.
+//! Uncertainties of an estimated field besides noise: its mesh, the scale of the picture, the law's parameters, edges that were
+//! not seen, smoothness.
 
+mod considered;
 mod mesh_error;
 mod moved_edges;
 mod picture_scale;

@@ -36,17 +36,6 @@ pub(super) fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64,
     }
 }
 
-/// Whether a value is a list of numbers without units.
-pub(super) fn is_list_of_numbers(value: &DeValue<'_>) -> bool {
-    let is_number = |item: &toml::Spanned<DeValue>| {
-        matches!(item.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
-    };
-    match value {
-        DeValue::Array(items) => items.iter().all(is_number),
-        _ => false,
-    }
-}
-
 /// A bare number, in quotes or not.
 pub(super) fn bare(value: &DeValue<'_>) -> Option<f64> {
     match value {

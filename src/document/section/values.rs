@@ -223,6 +223,36 @@ impl<'a> Section<'a> {
         self.list(key, (dimension, &dimension.blank()), bound, MOST_BARE)
     }
 
+    /// A list of stretches λ − 1. Numbers without a percent sign, in quotes or not, that could as well be λ are refused.
+    pub fn stretches(&self, key: &'static str, bound: Bound) -> Vec<f64> {
+        self.refuse_stretch_ratios(key);
+        self.quantities(key, Dimension::Ratio, bound)
+    }
+
+    /// One stretch λ − 1, likewise.
+    pub fn stretch(&self, key: &'static str, bound: Bound) -> f64 {
+        self.refuse_stretch_ratios(key);
+        self.quantity(key, Dimension::Ratio, bound)
+    }
+
+    fn refuse_stretch_ratios(&self, key: &'static str) {
+        let Some(value) = self.written(key) else {
+            return;
+        };
+        let ratios: Option<Vec<f64>> = match value.get_ref() {
+            DeValue::Array(items) => items.iter().map(|item| bare(item.get_ref())).collect(),
+            one => bare(one).map(|ratio| vec![ratio]),
+        };
+        if let Some(ratios) = ratios.filter(|ratios| units::could_be_stretch_ratios(ratios)) {
+            let largest = ratios.into_iter().fold(1.0, f64::max);
+            let [stretch, other] = [largest, largest - 1.0].map(|ratio| rounded(100.0 * ratio));
+            let message = format!("{largest} could be a stretch of {stretch} % or λ, {other} %");
+            let hint =
+                format!("write \"{other} %\" where it is λ, and \"{stretch} %\" where it is not");
+            self.fault_at(key, value, &message, &hint);
+        }
+    }
+
     /// A list of ratios that are no parts of a whole: bare numbers up to `most` are what they say.
     pub fn multiples(&self, key: &'static str, bound: Bound, most: f64) -> Vec<f64> {
         self.list(key, (Dimension::Ratio, "1.0"), bound, most)

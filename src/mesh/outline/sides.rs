@@ -3,13 +3,16 @@
 //! Sides are found on the outline's convex hull: they go from corner to corner and are named by where they face. A notch or a
 //! waist, no deeper than it is wide, belongs to the side that it lies in, however the specimen is turned. Deeper ones, such as a cut or
 //! the inside of a U, belong to none: they are no part of what is gripped or pulled beside them. Where the hull bridges the angle
-//! between two sides, as that of an L, its edges are named by where they face themselves.
+//! between two sides, as that of an L, its edges are named by where they face themselves. Among scattered markers corners are rounded: where
+//! four sides are not seen from corner to corner, they go between the places where the hull turns over some length.
 
+use super::corners::{CORNER, corners};
 use super::polygon::{distance, turn_between};
 use crate::mesh::geometry::{distance as length, polygon_area};
+use crate::statistics::extremes;
 
-/// A turn of more than this is a corner: 40°.
-const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
+/// Sides reach along the specimen by this share of its extent at least; a corner that is cut off is no side.
+const LEAST: f64 = 0.2;
 
 /// Share of a hull's edge within which points of the line lie on it.
 const NEAR: f64 = 0.02;
@@ -26,10 +29,16 @@ struct Span {
 pub fn sides(line: &[[f64; 2]]) -> Vec<(Option<&'static str>, Edge)> {
     let spans = spans(line);
     let edges: Vec<Edge> = spans.iter().map(|span| span.edge).collect();
-    let chains = chains(&edges, true);
+    let corners_of_hull: Vec<[f64; 2]> = edges.iter().map(|[from, _]| *from).collect();
+    let ways = [
+        chains(&sharp_turns(&edges), true),
+        chains(&corners(&corners_of_hull), true),
+        (0..edges.len()).map(|edge| vec![edge]).collect(),
+    ];
+    let has_all = |chains: &&Vec<Vec<usize>>| has_four_sides(&edges, chains);
     let mut named = Vec::new();
-    for chain in chains {
-        let side = facing(&edges, &chain);
+    for chain in ways.iter().find(has_all).unwrap_or(&ways[0]) {
+        let side = facing(&edges, chain);
         for (place, number) in chain.iter().enumerate() {
             let amid = place > 0 && place + 1 < chain.len();
             named.extend(spans[*number].named(side, amid));
@@ -51,7 +60,7 @@ impl Span {
         let pieces = self.points.windows(2).map(|pair| [pair[0], pair[1]]);
         let pieces: Vec<Edge> = pieces.collect();
         if !lies_on_the_hull && !amid {
-            let chains = chains(&pieces, false);
+            let chains = chains(&sharp_turns(&pieces), false);
             let each = chains.iter().flat_map(|chain| {
                 let own = facing(&pieces, chain);
                 let edges = chain.iter().map(|number| pieces[*number]);
@@ -112,19 +121,23 @@ fn hull(line: &[[f64; 2]]) -> Vec<usize> {
     corners
 }
 
+/// Whether edges begin at a corner.
+fn sharp_turns(edges: &[Edge]) -> Vec<bool> {
+    let count = edges.len();
+    let turn = |i: usize| turn_between(edges[(i + count - 1) % count], edges[i]).abs();
+    (0..count).map(|i| turn(i) > CORNER).collect()
+}
+
 /// Numbers of edges that follow each other from corner to corner; of a closed line the first one may begin before a corner. A
 /// round line faces all sides: each of its edges is for itself.
-fn chains(edges: &[Edge], closed: bool) -> Vec<Vec<usize>> {
-    let count = edges.len();
-    let turns = |i: usize| turn_between(edges[(i + count - 1) % count], edges[i]).abs() > CORNER;
-    let first = match closed {
-        true => (0..count).find(|i| turns(*i)).unwrap_or_default(),
-        false => 0,
-    };
+fn chains(begins_at_corner: &[bool], closed: bool) -> Vec<Vec<usize>> {
+    let count = begins_at_corner.len();
+    let corner = begins_at_corner.iter().position(|begins| *begins);
+    let first = corner.filter(|_| closed).unwrap_or_default();
     let mut chains: Vec<Vec<usize>> = Vec::new();
     for i in (0..count).map(|i| (first + i) % count) {
         match chains.last_mut() {
-            Some(chain) if !turns(i) => chain.push(i),
+            Some(chain) if !begins_at_corner[i] => chain.push(i),
             _ => chains.push(vec![i]),
         }
     }
@@ -132,6 +145,21 @@ fn chains(edges: &[Edge], closed: bool) -> Vec<Vec<usize>> {
         true => (0..count).map(|i| vec![i]).collect(),
         false => chains,
     }
+}
+
+/// Whether chains of a hull's edges are its left, right, lower and upper side.
+fn has_four_sides(edges: &[Edge], chains: &[Vec<usize>]) -> bool {
+    let extent = |axis: usize, edges: &mut dyn Iterator<Item = Edge>| {
+        let [low, high] = extremes(edges.flatten().map(|point| point[axis]));
+        high - low
+    };
+    let reaches = |side: &str, axis: usize| {
+        let own = chains.iter().filter(|chain| facing(edges, chain) == side);
+        let mut own = own.flatten().map(|edge| edges[*edge]);
+        extent(axis, &mut own) > LEAST * extent(axis, &mut edges.iter().copied())
+    };
+    let sides = [("left", 1), ("right", 1), ("bottom", 0), ("top", 0)];
+    sides.into_iter().all(|(side, axis)| reaches(side, axis))
 }
 
 /// Where edges that follow each other face together.

@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::polygon::{
     Polygon, distance, needed, needed_behind_the_first, shifted, straightened, turn_between,
 };
+use super::side_lines::{SideLine, corner};
 use crate::mesh::geometry::distance as length;
 
 /// Parabolas are fitted to so many spacings on either side, but to no more than this share of a closed line.
@@ -83,19 +84,37 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         return outermost(&curve, near, spacing);
     };
     let following = breaks.iter().skip(1).chain([first]);
-    let parts = breaks.iter().zip(following).map(|(from, to)| {
-        let own = part(line, kept[*from], kept[*to]);
-        let is_one_edge = (from + 1) % count == *to;
-        match is_one_edge && (is_straight[*from] || bulge(&own) < BULGE * spacing) {
-            true => vec![own[0]],
-            false => open_curve(&own, near, spacing),
-        }
-    });
-    let found: Vec<[f64; 2]> = parts.flatten().collect();
+    let parts: Vec<Smoothed> = breaks
+        .iter()
+        .zip(following)
+        .map(|(from, to)| {
+            let own = part(line, kept[*from], kept[*to]);
+            let is_one_edge = (from + 1) % count == *to;
+            match is_one_edge && (is_straight[*from] || bulge(&own) < BULGE * spacing) {
+                true => (vec![own[0]], SideLine::of(&own, spacing)),
+                false => (open_curve(&own, near, spacing), None),
+            }
+        })
+        .collect();
+    let found = joined(parts, near);
     match found.len() < 3 {
         true => plain(),
         false => found,
     }
+}
+
+/// The points of a part but for its last one, and its line where it is straight and points lie about it.
+type Smoothed = (Vec<[f64; 2]>, Option<SideLine>);
+
+/// Parts one behind the other, each from the corner with the one before it.
+fn joined(mut parts: Vec<Smoothed>, near: f64) -> Vec<[f64; 2]> {
+    let count = parts.len();
+    for index in 0..count {
+        let before = parts[(index + count - 1) % count].1;
+        let (points, own) = &mut parts[index];
+        points[0] = corner(points[0], [before, *own], near);
+    }
+    parts.into_iter().flat_map(|(points, _)| points).collect()
 }
 
 /// Whether two edges are straight and meet by an angle.

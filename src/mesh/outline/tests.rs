@@ -259,3 +259,56 @@ fn small_grids_have_four_corners() {
     let found = Outline::of_points(&disc).unwrap().outline;
     assert!(found.outer.len() > 8, "{:?}", found.outer);
 }
+
+/// Markers a little off their grid leave the edge as sure as all of a row make it, and say how rough their rows are.
+#[test]
+fn edges_are_nearest_to_all_markers_of_their_rows() {
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+    let off = Normal::new(0.0, 0.2).unwrap();
+    for seed in 0..8 {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let moved = |point: [f64; 2]| point.map(|x| x + off.sample(&mut random));
+        let points: Vec<[f64; 2]> = grid(|_| true).into_iter().map(moved).collect();
+        let found = Outline::of_points(&points).unwrap();
+        let outer = &found.outline.outer;
+        assert_eq!(outer.len(), 4, "{seed}: {outer:?}");
+        for [x, y] in outer {
+            let [across, along] = [x.min(150.0 - x).abs(), y.min(50.0 - y).abs()];
+            // Deviations of 0.2/√11 and 0.2/√31 mm, and of the slope.
+            assert!(across < 0.4 && along < 0.25, "{seed}: {outer:?}");
+        }
+        assert!((0.1..0.3).contains(&found.roughness), "{}", found.roughness);
+    }
+    let exact = Outline::of_points(&grid(|_| true)).unwrap();
+    assert!(exact.roughness < 1e-12, "{}", exact.roughness);
+}
+
+#[test]
+fn scattered_markers_have_four_sides() {
+    use rand::{RngExt, SeedableRng};
+    for seed in 0..12 {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let mut point = || {
+            [
+                150.0 * random.random::<f64>(),
+                50.0 * random.random::<f64>(),
+            ]
+        };
+        let points: Vec<[f64; 2]> = (0..400).map(|_| point()).collect();
+        let found = Outline::of_points(&points).unwrap();
+        let mesh = found.outline.mesh(4.0, CellShape::Triangle3);
+        for (side, axis, extent) in [
+            ("left", 1, 50.0),
+            ("right", 1, 50.0),
+            ("bottom", 0, 150.0),
+            ("top", 0, 150.0),
+        ] {
+            let group = mesh.groups().get(side);
+            let nodes = group.map_or(&[][..], |group| &group.nodes);
+            let [low, high] =
+                crate::statistics::extremes(nodes.iter().map(|node| mesh.nodes[*node][axis]));
+            assert!(high - low > 0.6 * extent, "{seed} {side}: {low} {high}");
+        }
+    }
+}

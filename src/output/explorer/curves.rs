@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::labels::{label, model_label};
-use crate::results::Results;
+use crate::results::{Results, from_rest};
 
 /// The numbers of a model at one step, by name: those that stand there, and the forces on edges.
 type Numbers = BTreeMap<String, f64>;
 
-/// Numbers of the models along the path, forces first.
+/// Numbers of the models along the path, forces first: for each model its steps with their numbers, and the rest that the path
+/// begins with where nothing acts in it.
 pub fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
     let steps = &results.outcome.steps;
     let at_steps: Vec<(f64, BTreeMap<&String, Numbers>)> = steps
@@ -43,16 +44,24 @@ pub fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
         let of_model = |model: &&String| {
             let at = |time: &f64| {
                 let (_, models) = at_steps.iter().find(|(at, _)| at == time)?;
-                models.get(model)?.get(*name).copied()
+                Some([*time, *models.get(model)?.get(*name)?])
             };
-            let points: Vec<Option<f64>> = shown.iter().map(at).collect();
-            let known = points.iter().flatten().count();
-            (known > 1).then(|| (model_label(model), json!(points)))
+            let mut points: Vec<[f64; 2]> = shown.iter().filter_map(at).collect();
+            if !points.is_empty() && is_none_at_rest(results.outcome.along, name) {
+                points = from_rest(points);
+            }
+            (points.len() > 1).then(|| (model_label(model), json!(points)))
         };
         let of_models: Map<String, Value> = models.iter().filter_map(of_model).collect();
         (!of_models.is_empty()).then(|| json!({ "label": label(name), "models": of_models }))
     };
     names.iter().filter_map(curve).collect()
+}
+
+/// Whether a number is zero before anything acts: forces, energies and the measured displacement of a path of loads.
+fn is_none_at_rest(along: &str, name: &str) -> bool {
+    let is_of_loads = ["stretch", "load factor"].contains(&along);
+    is_of_loads && (name.ends_with("_N") || name.ends_with("_mJ") || name == "measured_mm")
 }
 
 /// Begin of the names of forces on edges.
@@ -82,6 +91,44 @@ fn of_model(model: &Value) -> Numbers {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::{Outcome, Step};
+
+    #[test]
+    fn a_path_of_loads_begins_at_rest_and_a_motion_at_its_first_instant() {
+        let step = |at: f64| {
+            let model = json!({ "force_N": 8.0 * at, "mid_width_mm": 50.0 - at });
+            let models = [("finite_element".to_owned(), model)].into_iter();
+            Step {
+                at,
+                models: models.collect(),
+            }
+        };
+        let of = |along: &'static str| {
+            let steps = vec![step(0.5), step(1.0)];
+            let outcome = Outcome {
+                along,
+                steps,
+                ..Outcome::default()
+            };
+            let results = Results {
+                outcome,
+                name: String::new(),
+                title: String::new(),
+                kind: "plate",
+                text: String::new(),
+                defaults: Vec::new(),
+                read_warnings: Vec::new(),
+                seconds: 0.0,
+            };
+            let found = curves(&results, &[0.5, 1.0]);
+            [0, 1].map(|curve| found[curve]["models"]["finite elements"].clone())
+        };
+        let width = json!([[0.5, 49.5], [1.0, 49.0]]);
+        let force = json!([[0.0, 0.0], [0.5, 4.0], [1.0, 8.0]]);
+        assert_eq!(of("stretch"), [force, width.clone()]);
+        let moving = json!([[0.5, 4.0], [1.0, 8.0]]);
+        assert_eq!(of("time"), [moving, width]);
+    }
 
     #[test]
     fn forces_on_edges_are_numbers_of_their_own() {

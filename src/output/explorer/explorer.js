@@ -204,7 +204,7 @@
   const colour = (name) => data.lines[name] || "#009e73";
   const frame = (canvas) => {
     const curve = data.curves[state.curve];
-    const all = Object.values(curve.models).flat().filter(Number.isFinite);
+    const all = Object.values(curve.models).flat().map((point) => point[1]).filter(Number.isFinite);
     const at = data.steps.map((step) => step.at);
     const [left, right] = [Math.min(0, ...at), Math.max(...at)];
     const [low, high] = [Math.min(0, ...all), Math.max(0, ...all)];
@@ -251,18 +251,24 @@
     context.fillRect(now - 4 * scale, 0, 8 * scale, canvas.height);
     Object.entries(curve.models).forEach(([name, points]) => {
       context.strokeStyle = context.fillStyle = colour(name);
-      context.lineWidth = 2 * scale;
+      // Nothing was computed between the points: thin dashes, unless there are so many points that they are a line.
+      const few = points.length <= 60;
+      context.lineWidth = (few ? 1 : 2) * scale;
+      context.setLineDash(few ? [3 * scale, 4 * scale] : []);
       context.beginPath();
-      points.forEach((value, step) => Number.isFinite(value) && context.lineTo(x(data.steps[step].at), y(value)));
+      points.forEach(([at, value]) => context.lineTo(x(at), y(value)));
       context.stroke();
-      points.forEach((value, step) => {
-        if (!Number.isFinite(value) || points.length > 60) return;
-        context.beginPath();
-        context.arc(x(data.steps[step].at), y(value), 3 * scale, 0, 7);
-        context.fill();
-      });
+      context.setLineDash([]);
+      if (few)
+        points.forEach(([at, value]) => {
+          context.beginPath();
+          context.arc(x(at), y(value), 3 * scale, 0, 7);
+          context.fill();
+        });
     });
-    const rows = Object.entries(curve.models).map(([name, points]) => [name, written(points[state.step])]);
+    const current = data.steps[state.step].at;
+    const here = (points) => points.find((point) => point[0] === current) || [];
+    const rows = Object.entries(curve.models).map(([name, points]) => [name, written(here(points)[1])]);
     fill(element("forces"), [described(data.steps[state.step].at), curve.label], rows);
     [...element("forces").rows].slice(1).forEach((row) => (row.cells[0].style.color = colour(row.cells[0].textContent)));
   };

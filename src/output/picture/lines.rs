@@ -70,7 +70,9 @@ impl Frame {
             };
         }
         let named = chart.lines.iter().filter(|line| !line.label.is_empty());
-        let rows = named.count() + usize::from(chart.band.is_some());
+        let rows = named.count()
+            + usize::from(chart.dashes().is_some())
+            + usize::from(chart.band.is_some());
         let more = LINE_HEIGHT as u32 * (title.len() as u32 - 1);
         let own = 7 * height / 10 + more;
         Self {
@@ -200,16 +202,15 @@ impl LineChart {
             |[x, y]: &[f64; 2]| Some((self.x.scale.position(*x)?, self.y.scale.position(*y)?));
         let points: Vec<_> = line.points.iter().filter_map(position).collect();
         let points = match line.stroke {
-            Stroke::Points | Stroke::Marked => thin::scattered(points),
+            Stroke::Points | Stroke::Marked | Stroke::Ringed => thin::scattered(points),
             Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => {
                 thin::connected(points)
             }
         };
-        let colour = look.line(line.colour);
         let pen = line.pen(look);
-        if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
-            let radius = units(if points.len() > 60 { 2 } else { 4 });
-            let marker = |point: &(f64, f64)| Circle::new(*point, radius, colour.filled());
+        let size = if points.len() > 60 { 2 } else { 4 };
+        if let Some((radius, style)) = line.marker(size, look) {
+            let marker = |point: &(f64, f64)| Circle::new(*point, radius, style);
             chart.draw_series(points.iter().map(marker))?;
         }
         match line.stroke {
@@ -221,7 +222,11 @@ impl LineChart {
             Stroke::Filled => {
                 chart.draw_series([Polygon::new(points, look.area(line.colour).filled())])?;
             }
-            Stroke::Solid | Stroke::Thin | Stroke::Marked => {
+            Stroke::Marked | Stroke::Ringed => {
+                let dashes = DashedLineSeries::new(points, 3 * FINE, 4 * FINE, pen);
+                chart.draw_series(dashes)?;
+            }
+            Stroke::Solid | Stroke::Thin => {
                 chart.draw_series(LineSeries::new(points, pen))?;
             }
         }
@@ -235,7 +240,6 @@ impl LineChart {
         let (left, mut y) = (units(left), units(top));
         let right = left + units(30);
         for line in self.lines.iter().filter(|line| !line.label.is_empty()) {
-            let colour = look.line(line.colour);
             let pen = line.pen(look);
             let sample = [(left, y), (right, y)];
             match line.stroke {
@@ -244,27 +248,29 @@ impl LineChart {
                         area.draw(&PathElement::new(vec![(x, y), (x + units(6), y)], pen))?;
                     }
                 }
-                Stroke::Points => {}
+                Stroke::Points | Stroke::Marked | Stroke::Ringed => {}
                 Stroke::Filled => {
                     let corners = [(left, y - units(7)), (right, y + units(7))];
                     area.draw(&Rectangle::new(corners, look.area(line.colour).filled()))?;
                 }
-                Stroke::Solid | Stroke::Thin | Stroke::Marked => {
-                    area.draw(&PathElement::new(sample, pen))?
-                }
+                Stroke::Solid | Stroke::Thin => area.draw(&PathElement::new(sample, pen))?,
             }
-            if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
-                area.draw(&Circle::new(
-                    (left + units(15), y),
-                    units(4),
-                    colour.filled(),
-                ))?;
+            if let Some((radius, style)) = line.marker(4, look) {
+                area.draw(&Circle::new((left + units(15), y), radius, style))?;
             }
             area.draw(&Text::new(
                 line.label.clone(),
                 (left + units(38), y),
                 style.clone(),
             ))?;
+            y += units(ROW_HEIGHT);
+        }
+        if let Some(words) = self.dashes() {
+            for x in [0, 7, 14, 21].map(|x| left + units(x)) {
+                let dash = vec![(x, y), (x + units(3), y)];
+                area.draw(&PathElement::new(dash, look.axis()))?;
+            }
+            area.draw(&Text::new(words, (left + units(38), y), style.clone()))?;
             y += units(ROW_HEIGHT);
         }
         if let Some((_, name)) = &self.band {
@@ -278,7 +284,17 @@ impl LineChart {
 
 impl Line {
     fn pen(&self, look: Look) -> ShapeStyle {
-        let width = if self.stroke == Stroke::Thin { 1 } else { 2 };
-        stroke(look.line(self.colour), width)
+        let is_thin = self.stroke == Stroke::Thin || self.is_dashed_between_points();
+        stroke(look.line(self.colour), if is_thin { 1 } else { 2 })
+    }
+
+    /// Radius and style of its markers of a size; `None` where it has none.
+    fn marker(&self, size: i32, look: Look) -> Option<(i32, ShapeStyle)> {
+        let colour = look.line(self.colour);
+        match self.stroke {
+            Stroke::Marked | Stroke::Points => Some((units(size), colour.filled())),
+            Stroke::Ringed => Some((units(size + 2), stroke(colour, 2))),
+            Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => None,
+        }
     }
 }

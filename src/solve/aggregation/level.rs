@@ -10,9 +10,10 @@ use super::blocks::{Blocks, add_product};
 use super::prolongation::{Motions, smoothed, tentative};
 
 /// A level above the coarsest one, with N unknowns a node, and M on the next coarser one.
-pub struct Level<const N: usize, const M: usize, P = Blocks<N, M, f32>> {
+pub struct Level<const N: usize, const M: usize> {
     operator: Operator<N>,
-    prolongation: P,
+    /// What carries fields to the level from the next coarser one, P.
+    prolongation: Blocks<N, M, f32>,
     /// The right-hand side, to be written.
     pub b: Vec<[f32; N]>,
     /// The approximate solution.
@@ -26,16 +27,8 @@ pub struct Operator<const N: usize> {
     inverses: Vec<[[f32; N]; N]>,
 }
 
-/// What carries fields to a level from the next coarser one, P.
-pub trait Prolongation<const N: usize, const M: usize> {
+impl<const N: usize, const M: usize> Blocks<N, M, f32> {
     /// x ← x + P y.
-    fn prolong(&self, y: &[[f32; M]], x: &mut [[f32; N]]);
-
-    /// y = Pᵀ x.
-    fn restrict(&self, x: &[[f32; N]], y: &mut [[f32; M]]);
-}
-
-impl<const N: usize, const M: usize> Prolongation<N, M> for Blocks<N, M, f32> {
     fn prolong(&self, y: &[[f32; M]], x: &mut [[f32; N]]) {
         for (row, x) in x.iter_mut().enumerate() {
             for (column, block) in self.row(row) {
@@ -44,6 +37,7 @@ impl<const N: usize, const M: usize> Prolongation<N, M> for Blocks<N, M, f32> {
         }
     }
 
+    /// y = Pᵀ x.
     fn restrict(&self, x: &[[f32; N]], y: &mut [[f32; M]]) {
         y.fill([0.0; M]);
         for (row, x) in x.iter().enumerate() {
@@ -68,55 +62,33 @@ pub struct Coarser {
 }
 
 impl<const N: usize> Operator<N> {
-    /// One that is to be taken later.
-    pub fn none(nodes: usize) -> Self {
-        Self {
-            below: Blocks::default(),
-            inverses: vec![[[0.0; N]; N]; nodes],
-        }
-    }
-
-    /// Takes the values of another matrix, and passes on the inverse of each block on its diagonal in double precision; `None` where one
-    /// has no inverse.
-    pub fn take(
-        &mut self,
-        matrix: &Blocks<N, N>,
-        mut pass_on: impl FnMut([[f64; N]; N]),
-    ) -> Option<()> {
-        let Self { below, inverses } = self;
+    /// The operator of a matrix, with the inverse of each block on its diagonal in double precision; `None` where one has none.
+    fn new(matrix: &Blocks<N, N>) -> Option<(Self, Vec<[[f64; N]; N]>)> {
         let rows = matrix.rows();
-        if below.columns.is_empty() {
-            let count = (0..rows)
-                .map(|row| {
-                    matrix
-                        .row(row)
-                        .take_while(|(column, _)| *column < row)
-                        .count()
-                })
-                .sum();
-            below.columns.reserve_exact(count);
-            below.values.reserve_exact(count);
-            below.starts.reserve_exact(rows + 1);
-        }
-        below.starts.clear();
+        let mut below = Blocks::default();
+        let mut inverses = Vec::with_capacity(rows);
         below.starts.push(0);
-        below.columns.clear();
-        below.values.clear();
-        inverses.clear();
         for row in 0..rows {
             for (column, block) in matrix.row(row).take_while(|(column, _)| *column <= row) {
                 if column < row {
                     below.columns.push(column as u32);
                     below.values.push(rounded(block));
                 } else {
-                    let inverse = inverse(block)?;
-                    inverses.push(rounded(&inverse));
-                    pass_on(inverse);
+                    inverses.push(inverse(block)?);
                 }
             }
             below.starts.push(below.columns.len());
         }
-        (inverses.len() == rows).then_some(())
+        if inverses.len() < rows {
+            return None;
+        }
+        below.columns.shrink_to_fit();
+        below.values.shrink_to_fit();
+        let operator = Self {
+            below,
+            inverses: inverses.iter().map(rounded).collect(),
+        };
+        Some((operator, inverses))
     }
 
     /// x of one row of a sweep, (b − L x) D⁻¹, of what L x of the columns before is not in `sum` yet; what this x is for the rows before,
@@ -150,9 +122,7 @@ impl<const N: usize> Operator<N> {
 impl<const N: usize> Level<N, 3> {
     /// A level with the operator `matrix` and what comes below it; `None` where a block on the diagonal has no inverse.
     pub fn aggregated(matrix: &Blocks<N, N>, motions: &[Motions<N>]) -> Option<(Self, Coarser)> {
-        let mut operator = Operator::none(matrix.rows());
-        let mut inverses = Vec::with_capacity(matrix.rows());
-        operator.take(matrix, |inverse| inverses.push(inverse))?;
+        let (operator, inverses) = Operator::new(matrix)?;
         let aggregates = Aggregates::of(matrix, STRONG[usize::from(N > 2)]);
         let (rigid, coarse_motions) = tentative(&aggregates, motions);
         let prolongation = smoothed(matrix, &inverses, &aggregates, &rigid);
@@ -168,9 +138,9 @@ impl<const N: usize> Level<N, 3> {
     }
 }
 
-impl<const N: usize, const M: usize, P: Prolongation<N, M>> Level<N, M, P> {
+impl<const N: usize, const M: usize> Level<N, M> {
     /// A level of an operator.
-    pub fn new(operator: Operator<N>, prolongation: P) -> Self {
+    fn new(operator: Operator<N>, prolongation: Blocks<N, M, f32>) -> Self {
         let zeros = vec![[0.0; N]; operator.inverses.len()];
         Self {
             operator,
@@ -179,11 +149,6 @@ impl<const N: usize, const M: usize, P: Prolongation<N, M>> Level<N, M, P> {
             x: zeros.clone(),
             residual: zeros,
         }
-    }
-
-    /// Takes another matrix of the same nodes; `None` where a block on its diagonal has no inverse.
-    pub fn take(&mut self, matrix: &Blocks<N, N>) -> Option<()> {
-        self.operator.take(matrix, |_| ())
     }
 
     /// Number of nodes.

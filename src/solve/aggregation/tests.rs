@@ -1,5 +1,5 @@
 use super::*;
-use crate::solve::nodal::{NodalMatrix, Nodes, Wanted, conjugate_gradients};
+use crate::solve::nodal::{NodalMatrix, Nodes, conjugate_gradients};
 use crate::solve::{Assembly, Connectivity, Inadmissible, Local, Potential};
 
 /// Plane stress of a soft sheet at rest, E = 1, ν = ½, on a grid of bilinear rectangles, its left side held: ½ uᵀ K u.
@@ -109,7 +109,7 @@ impl Sheet {
             &matrix,
             |r, z| cycle.apply(r, z),
             &nodes.uneven(),
-            |_| Wanted::Reduction(1e-8),
+            1e-8,
             200,
         );
         let found = found.unwrap();
@@ -202,14 +202,10 @@ fn an_indefinite_matrix_is_seen() {
     }
     let seen = match Hierarchy::new(&matrix.whole(), &nodes.motions()) {
         Err(_) => true,
-        Ok(mut cycle) => conjugate_gradients(
-            &matrix,
-            |r, z| cycle.apply(r, z),
-            &nodes.uneven(),
-            |_| Wanted::Reduction(0.0),
-            12,
-        )
-        .is_err(),
+        Ok(mut cycle) => {
+            conjugate_gradients(&matrix, |r, z| cycle.apply(r, z), &nodes.uneven(), 0.0, 12)
+                .is_err()
+        }
     };
     assert!(seen);
 }

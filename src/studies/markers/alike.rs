@@ -64,8 +64,8 @@ fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
     // Both components of as many markers as are independent.
     let values = 2.0 * of_a.independent.min(of_b.independent);
     let correlation = correlation((frames[0], before), (frames[1], after));
-    let explained = before.is_explained() && after.is_explained();
-    let common = COMMON[usize::from(!explained)];
+    let refuted = [before, after].map(|own| own.verdict.answer == Answer::NotExplained);
+    let common = COMMON[usize::from(refuted.contains(&true))];
     if probability(correlation, common, values) >= LEVEL {
         return;
     }

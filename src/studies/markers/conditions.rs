@@ -242,7 +242,6 @@ impl Conditions {
         let forces: Vec<_> = own.map(|(_, force)| force.clone()).collect();
         Knowledge {
             edges: self.edges.clone(),
-            edge_gap: None,
             scale_deviation: self.scale_deviation,
             unnamed: self.unnamed,
             noise: self.noise,
@@ -253,6 +252,7 @@ impl Conditions {
                 .cloned(),
             forces,
             forces_are_checks: self.forces_are_checks,
+            ..Knowledge::default()
         }
     }
 }

@@ -3,101 +3,75 @@
 //! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
-use super::axes::mistaken;
 use super::frame_agreement;
-use super::gross_errors::{has_hidden, has_many};
+use super::gross_errors::has_many;
+use super::of_frames::{OfFrame, once};
 use super::report::{outliers, used};
-use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw, Robust};
+use crate::corrector::estimation::{Answer, FieldEstimate, ForceCheck, RegressedLaw, Robust};
 use crate::error::Diagnostic;
-use crate::markers::Frame;
 use crate::results::{BESIDE_CORNERS, Stretches, small_strain};
 use crate::statistics::{Estimate, median, small_probability};
 use crate::units::{decimals, number};
 
+/// A frame that is looked at.
+struct Looked<'a> {
+    study: &'a MarkerStudy,
+    estimate: &'a FieldEstimate,
+    /// The noise of most frames, where there are several.
+    usual_noise: Option<f64>,
+}
+
+/// What is doubtful and what to do about it, which is the same for all frames.
+type Doubt = (String, &'static str);
+
+/// What may be doubtful of a frame, the likeliest cause of what follows first.
+const DOUBTS: [fn(&Looked) -> Option<Doubt>; 10] = [
+    |frame| frame.unknown_edge(),
+    |frame| idle_edges(frame.estimate),
+    |frame| edges(frame.estimate),
+    |frame| forces(frame.estimate),
+    |frame| not_explained(frame.estimate),
+    |frame| frame.no_measurement(),
+    |frame| many_outliers(frame.estimate),
+    |frame| noise(frame.estimate),
+    |frame| frame.strains(),
+    |frame| frame.beyond_card(),
+];
+
 impl MarkerStudy {
-    /// What makes the figures of the frames doubtful, of all of them first.
+    /// What makes the figures doubtful, the likeliest cause first: a mistake in the file, or else what concerns all frames, and each doubt
+    /// of single ones once.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
-        let mut all = self.doubts.clone();
-        all.extend(frame_agreement::doubts(estimates));
-        let usual = median(estimates.iter().map(|own| own.noise));
-        let usual = Some(usual).filter(|usual| estimates.len() > 2 && *usual > 0.0);
-        let frames = self.series.frames.iter().zip(estimates);
-        for (frame, estimate) in frames {
-            let axes = (!estimate.is_explained()).then(|| mistaken(frame, &*self.law(estimate)));
-            let strained = [
-                axes.flatten(),
-                self.strains(estimate),
-                self.beyond_card(estimate),
-                self.no_measurement(estimate, usual),
-            ];
-            all.extend(of_frame(frame, estimate, strained));
-            all.extend(self.unknown_edge(estimate).map(|(message, hint)| {
-                let message = format!("frame {}: {message}", frame.number);
-                Diagnostic::warning("", message).hint(hint)
-            }));
+        if let Some(mistake) = self.mistake(estimates) {
+            // All else follows from a field that nobody measured.
+            return [&[mistake][..], &self.doubts].concat();
         }
-        all
+        let usual = median(estimates.iter().map(|estimate| estimate.noise));
+        let usual_noise = Some(usual).filter(|usual| estimates.len() > 2 && *usual > 0.0);
+        let of_frames = DOUBTS.iter().flat_map(|doubt| {
+            let frames = self.series.frames.iter().zip(estimates);
+            frames.filter_map(move |(frame, estimate)| {
+                let looked = Looked {
+                    study: self,
+                    estimate,
+                    usual_noise,
+                };
+                doubt(&looked).map(|(message, hint)| OfFrame {
+                    frame: frame.number,
+                    message,
+                    hint: hint.to_owned(),
+                })
+            })
+        });
+        let of_frames = once(&self.frame_numbers(), of_frames.collect());
+        let of_all = frame_agreement::doubts(estimates);
+        [&self.doubts[..], &of_frames, &of_all].concat()
     }
 
-    /// An edge that nothing but the markers tells of may be what does not explain the data.
-    fn unknown_edge(&self, estimate: &FieldEstimate) -> Option<Doubt> {
-        let gap = self.unknown_gap.filter(|_| !estimate.is_explained())?;
-        let message = format!(
-            "the free edges are known only to within {} mm, because only the markers define them; with precise data even a smaller \
-             offset leads to rejection",
-            decimals(gap, 4)
-        );
-        Some((
-            message,
-            "give the edges and holes with --outline or --mesh, or set --edge-gap if the report estimates how far the free edges lie from those of the mesh",
-        ))
-    }
-
-    /// Strains that are too large for the law.
-    fn strains(&self, estimate: &FieldEstimate) -> Option<Doubt> {
-        let law = self.law(estimate);
-        let reason = small_strain::reason(&*law, &self.mesh, &estimate.displacement)?;
-        Some((reason, small_strain::LARGE_STRAINS))
-    }
-
-    /// Stretches beyond the range of the card, on more than a hundredth of the area: its law is an extrapolation there. A law whose
-    /// parameters are all found with the field is calibrated by it.
-    fn beyond_card(&self, estimate: &FieldEstimate) -> Option<Doubt> {
-        let found = estimate.parameters.len();
-        let whole = self.regressed.as_ref().map(RegressedLaw::acting);
-        if whole.is_some_and(|keys| found == keys.len()) {
-            return None;
-        }
-        let stretches = Stretches::new(&self.card, &self.mesh, &estimate.displacement);
-        let reason = stretches.reason(&self.card, "");
-        let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
-        Some((reason, EXTRAPOLATED))
-    }
-
-    /// Noise that is no measurement's: a share of the specimen, or many times that of most frames, where there are several.
-    fn no_measurement(&self, estimate: &FieldEstimate, usual: Option<f64>) -> Option<Doubt> {
-        if !estimate.is_explained() {
-            return None;
-        }
-        let (noise, [low, high]) = (estimate.noise, self.mesh.bounding_box());
-        let across = (high[0] - low[0]).min(high[1] - low[1]);
-        let reason = if noise > NO_MEASUREMENT * across {
-            format!(
-                "{:.1} % of the specimen's smaller extent",
-                100.0 * noise / across
-            )
-        } else {
-            let usual = usual.filter(|usual| noise > NOISIER * usual)?;
-            format!("{:.0} times as much as in most frames", noise / usual)
-        };
-        let message = format!(
-            "the markers scatter by {} mm, {reason}: markers were lost or matched wrongly",
-            decimals(noise, 4)
-        );
-        Some((
-            message,
-            "leave the frame out, or check its picture; its results rest on almost no valid data",
-        ))
+    /// The numbers of the frames in their order.
+    pub(super) fn frame_numbers(&self) -> Vec<usize> {
+        let frames = self.series.frames.iter();
+        frames.map(|frame| frame.number).collect()
     }
 
     /// An estimate whose intervals of forces hold that the edge may lie a marker's spacing farther out: one more row of
@@ -122,6 +96,72 @@ impl MarkerStudy {
     }
 }
 
+impl Looked<'_> {
+    /// An edge that nothing but the markers tells of may be what does not explain the data.
+    fn unknown_edge(&self) -> Option<Doubt> {
+        let gap = self.study.unknown_gap?;
+        (self.estimate.verdict.answer == Answer::NotExplained).then(|| {
+            let message = format!(
+                "the free edges are known only to within {} mm, because only the markers define them; with precise data even a smaller \
+                 offset leads to rejection",
+                decimals(gap, 4)
+            );
+            (
+                message,
+                "give the edges and holes with --outline or --mesh, or set --edge-gap if the report estimates how far the free edges lie from those of the mesh",
+            )
+        })
+    }
+
+    /// Strains that are too large for the law.
+    fn strains(&self) -> Option<Doubt> {
+        let law = self.study.law(self.estimate);
+        let displacement = &self.estimate.displacement;
+        let reason = small_strain::reason(&*law, &self.study.mesh, displacement)?;
+        Some((reason, small_strain::LARGE_STRAINS))
+    }
+
+    /// Stretches beyond the range of the card, on more than a hundredth of the area: its law is an extrapolation there. A law whose
+    /// parameters are all found with the field is calibrated by it.
+    fn beyond_card(&self) -> Option<Doubt> {
+        let study = self.study;
+        let acting = study.regressed.as_ref().map(RegressedLaw::acting);
+        if acting.is_some_and(|keys| self.estimate.parameters.len() == keys.len()) {
+            return None;
+        }
+        let stretches = Stretches::new(&study.card, &study.mesh, &self.estimate.displacement);
+        let reason = stretches.reason(&study.card, "");
+        let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
+        Some((reason, EXTRAPOLATED))
+    }
+
+    /// Noise that is no measurement's: a share of the specimen, or many times that of most frames, where there are several.
+    fn no_measurement(&self) -> Option<Doubt> {
+        if self.estimate.verdict.answer == Answer::NotExplained {
+            return None;
+        }
+        let (noise, [low, high]) = (self.estimate.noise, self.study.mesh.bounding_box());
+        let across = (high[0] - low[0]).min(high[1] - low[1]);
+        let reason = if noise > NO_MEASUREMENT * across {
+            format!(
+                "{:.1} % of the specimen's smaller extent",
+                100.0 * noise / across
+            )
+        } else {
+            let usual = self.usual_noise.filter(|usual| noise > NOISIER * usual)?;
+            format!("{:.0} times as much as in most frames", noise / usual)
+        };
+        let message = format!(
+            "the markers scatter by {} mm, {reason}: markers were lost or matched wrongly",
+            decimals(noise, 4)
+        );
+        Some((
+            message,
+            "leave the frame out, or check its picture; its results rest on almost no valid data",
+        ))
+    }
+}
+
 /// Noise over the specimen's smaller extent, and over the median of all frames, beyond which a frame is no measurement.
 const NO_MEASUREMENT: f64 = 0.03;
 const NOISIER: f64 = 20.0;
@@ -138,32 +178,6 @@ fn widen(estimate: &mut Estimate, by: f64) {
         false => *high += by,
     }
 }
-
-fn of_frame(
-    frame: &Frame,
-    estimate: &FieldEstimate,
-    strained: [Option<Doubt>; 4],
-) -> Vec<Diagnostic> {
-    let doubts = [
-        noise(estimate),
-        hidden_outliers(estimate),
-        many_outliers(estimate),
-        edges(estimate),
-        idle_edges(estimate),
-        not_explained(estimate),
-    ];
-    let doubts = doubts
-        .into_iter()
-        .chain(strained)
-        .flatten()
-        .chain(forces(estimate));
-    let named = |(message, hint): (String, &str)| {
-        Diagnostic::warning("", format!("frame {}: {message}", frame.number)).hint(hint)
-    };
-    doubts.map(named).collect()
-}
-
-type Doubt = (String, &'static str);
 
 /// The noise that was stated, where the data contradict it.
 fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
@@ -182,18 +196,6 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
         message,
         "correct the stated noise, or leave it out to have it estimated",
     ))
-}
-
-/// Gross errors that are so many that their size was taken for that of the noise.
-fn hidden_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
-    has_hidden(estimate).then(|| {
-        let message = format!(
-            "half of the markers lie much closer to the field than a noise of {} mm suggests: many are gross errors, and intervals are meaningless",
-            decimals(estimate.noise, 4)
-        );
-        let hint = "leave out markers that were lost or matched wrongly, or try --robust tukey, which down-weights outlying markers";
-        (message, hint)
-    })
 }
 
 fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
@@ -255,11 +257,7 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
     let verdict = &estimate.verdict;
     (verdict.answer == Answer::NotExplained).then(|| {
         let reasons: Vec<String> = verdict.reasons.iter().map(|reason| reason.words()).collect();
-        let trial = verdict.trials.first();
-        let trial = trial.map_or(String::new(), |trial| {
-            format!("; best alternative: {}", trial.alternative.words())
-        });
-        let message = format!("{}: {}{trial}", verdict.answer.words(), reasons.join("; "));
+        let message = format!("{}: {}", verdict.answer.words(), reasons.join("; "));
         (
             message,
             "intervals are not valid here; see the report for what would improve the fit, and residuals.png and misfit.png for where it is worst",
@@ -267,24 +265,26 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
     })
 }
 
-fn forces(estimate: &FieldEstimate) -> Vec<Doubt> {
-    let checks = estimate.force_checks.iter();
-    let wrong = checks.filter(|check| check.contradicts());
-    let doubt = |check: &crate::corrector::estimation::ForceCheck| {
-        let measured = &check.measured;
-        let message = format!(
-            "the force measured on {} along {}, {} ± {} N, contradicts the field's {} N by {:.1} standard errors",
-            measured.edge,
-            ["x", "y"][measured.axis],
-            number(measured.force),
-            number(measured.standard_deviation),
-            decimals(check.found, 4),
-            check.standardised.abs()
-        );
-        (
-            message,
-            "check thickness, material, units, the position of the edges, and the sign of the force, which is that of the grip on the specimen",
-        )
-    };
-    wrong.map(doubt).collect()
+/// The measured force that is farthest from that of the field.
+fn forces(estimate: &FieldEstimate) -> Option<Doubt> {
+    let wrong = estimate
+        .force_checks
+        .iter()
+        .filter(|check| check.contradicts());
+    let size = |check: &&ForceCheck| check.standardised.abs();
+    let worst = wrong.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+    let measured = &worst.measured;
+    let message = format!(
+        "the force measured on {} along {}, {} ± {} N, contradicts the field's {} N by {:.1} standard errors",
+        measured.edge,
+        ["x", "y"][measured.axis],
+        number(measured.force),
+        number(measured.standard_deviation),
+        decimals(worst.found, 4),
+        size(&worst)
+    );
+    Some((
+        message,
+        "check thickness, material, units, the position of the edges, and the sign of the force, which is that of the grip on the specimen",
+    ))
 }

@@ -3,13 +3,21 @@
 use super::request::Request;
 use crate::error::{Diagnostic, Error};
 use crate::markers::Understood;
-use crate::mesh::{Outline, OutlineFault};
+use crate::mesh::{Outline, OutlineFault, OutlineOfPoints};
 use crate::units::{decimals, extents};
+
+/// Outermost markers farther than this from their outline, in spacings, leave it open where the edge lies.
+const ROUGH: f64 = 0.01;
 
 /// What is known of the edge.
 pub(super) enum EdgePlace {
-    /// So far outside, as the user says, in mm; beside a grid, edges that are not along it may lie up to a step farther out.
-    Given { gap: f64, step: Option<f64> },
+    /// So far outside, as the user says, in mm; beside a grid, edges that are not along it may lie up to a step farther out, and where the
+    /// outermost markers do not lie on smooth lines, edges may be off by as much as these.
+    Given {
+        gap: f64,
+        step: Option<f64>,
+        roughness: Option<f64>,
+    },
     /// At least half a subset outside, as subsets lie inside of the specimen, and less than a step farther.
     Subset {
         half: f64,
@@ -22,13 +30,19 @@ pub(super) enum EdgePlace {
 }
 
 impl EdgePlace {
-    /// What the user says, else what files say of subsets; `spacing` is that of the markers in mm, and they are beside edges that are not
-    /// along their grid or not.
-    pub fn of(request: &Request, understood: &Understood, spacing: f64, beside_grid: bool) -> Self {
+    /// What the user says, else what files say of subsets; the markers are beside edges that are not along their grid or not.
+    pub fn of(
+        request: &Request,
+        understood: &Understood,
+        markers: &OutlineOfPoints,
+        beside_grid: bool,
+    ) -> Self {
+        let spacing = markers.spacing;
         match (request.conditions.edge_gap, &understood.subset) {
             (Some(gap), _) => Self::Given {
                 gap,
                 step: beside_grid.then_some(spacing),
+                roughness: Some(markers.roughness).filter(|off| *off > ROUGH * spacing),
             },
             (None, Some(subset)) => {
                 let pixel = understood.pixel.unwrap_or(spacing / subset.step);
@@ -81,7 +95,9 @@ impl EdgePlace {
     /// How far outside of the outline the edge may lie all the same, in mm.
     pub fn unknown(&self) -> Option<f64> {
         match self {
-            Self::Given { step, .. } => *step,
+            Self::Given {
+                step, roughness, ..
+            } => step.or(*roughness),
             Self::Subset { step, .. } => Some(*step),
             Self::Unknown(spacing) => Some(*spacing),
         }
@@ -108,6 +124,7 @@ impl EdgePlace {
             Self::Given {
                 gap,
                 step: Some(step),
+                ..
             } => (
                 format!(
                     "the edge is assumed to lie {gap} mm outside the outermost markers, but the markers form a grid and the specimen is not a \

@@ -1,7 +1,5 @@
 //! Whether measured forces point the way in which the markers say that the specimen is strained.
 
-use nalgebra::{Matrix3, Vector3};
-
 use crate::corrector::estimation::MeasuredForce;
 use crate::error::{Diagnostic, Error};
 use crate::markers::Frame;
@@ -43,7 +41,7 @@ fn told(force: &MeasuredForce, expected: f64) -> Diagnostic {
         if expected < 0.0 { "-" } else { "+" },
     );
     let hint = format!(
-        "a force is positive along the axis: write {sign}{size} N; if the sign is intended, check the markers' axes and the name of the edge"
+        "a force is positive along the axis: write {sign}{size} N; if the sign is intended, the displacements have the reversed sign, or their axes or the name of the edge are wrong"
     );
     Diagnostic::error("", message).hint(hint)
 }
@@ -64,25 +62,10 @@ fn expected_sign(
         / nodes.len() as f64;
     let [low, high] = mesh.bounding_box();
     let side = (2.0 * mean - low[axis] - high[axis]) / (high[axis] - low[axis]);
-    let kinematics = Kinematics::new(&mean_gradient(frame)?).ok()?;
+    let h = frame.mean_gradient()?;
+    let kinematics = Kinematics::new(&PlaneTensor::new(h.m11, h.m12, h.m21, h.m22)).ok()?;
     let (_, stress) = law.stress(&kinematics);
     let along = stress[3 * axis];
     let clear = side.abs() > 0.9 && along.abs() > CLEAR * stress.amax() && along != 0.0;
     clear.then(|| along.signum() * side.signum())
-}
-
-/// The displacement gradient of the linear field that is nearest to the markers.
-fn mean_gradient(frame: &Frame) -> Option<PlaneTensor> {
-    let mut normal = Matrix3::zeros();
-    let mut sides = [Vector3::zeros(); 2];
-    for marker in &frame.markers {
-        let place = Vector3::new(1.0, marker.place[0], marker.place[1]);
-        normal += place * place.transpose();
-        for (side, u) in sides.iter_mut().zip(marker.displacement) {
-            *side += u * place;
-        }
-    }
-    let inverse = normal.try_inverse()?;
-    let [u, v] = sides.map(|side| inverse * side);
-    Some(PlaneTensor::new(u[1], u[2], v[1], v[2]))
 }

@@ -6,11 +6,12 @@
 //!
 //! is a marker that noise makes in less than one of a thousand frames. Many gross errors hide each other: then the median of all d is far
 //! below that of noise. A marker like that is a gross error as long as there are few, or as they lie scattered among the others: many
-//! that lie together are a misfit of the equations, which must not be weighted away.
+//! that lie together are a misfit of the equations, which must not be weighted away. Nor may they make up the noise by which this
+//! misfit is judged: with a noise that is large enough any law fits.
 
 use super::MarkerStudy;
 use super::report::{outliers, used};
-use crate::corrector::estimation::{FieldEstimate, Knowledge, Robust};
+use crate::corrector::estimation::{Answer, FieldEstimate, Knowledge, Reason, Robust};
 use crate::error::Error;
 use crate::markers::Marker;
 use crate::statistics::{nearest, robust_deviation};
@@ -44,16 +45,16 @@ impl MarkerStudy {
             Err(fault) => matches!(fault, Error::Solve { .. }),
         };
         if self.conditions.robust.is_some() || !in_doubt {
-            return found;
+            return found.map(|found| judged_beside(found, None));
         }
         let robust = Knowledge {
             robust: Robust::Tukey,
             ..knowledge
         };
-        let without = solve(&robust).ok();
-        let are_errors = |found: &FieldEstimate| !has_many(found) || are_scattered(markers, found);
-        let without = without.filter(|found| has_gross_errors(found) && are_errors(found));
-        without.map_or(found, Ok)
+        match solve(&robust).ok().filter(has_gross_errors) {
+            Some(without) if !has_many(&without) || are_scattered(markers, &without) => Ok(without),
+            without => found.map(|found| judged_beside(found, without)),
+        }
     }
 
     /// What is said of gross errors that were found without being asked for.
@@ -67,6 +68,25 @@ impl MarkerStudy {
             )
         })
     }
+}
+
+/// An estimate with full weights for all markers, beside that without gross errors where there are many that lie together: what the
+/// sound markers contradict is not explained, and gross errors that make up the noise leave nothing to judge.
+fn judged_beside(mut found: FieldEstimate, without: Option<FieldEstimate>) -> FieldEstimate {
+    let noise = found.noise;
+    let in_doubt = without.is_some() || has_hidden(&found);
+    let verdict = &mut found.verdict;
+    if verdict.answer == Answer::NotExplained || !in_doubt {
+        return found;
+    }
+    match without.map(|own| own.verdict) {
+        Some(own) if own.answer == Answer::NotExplained => *verdict = own,
+        _ => {
+            verdict.answer = Answer::Undecided;
+            verdict.reasons.push(Reason::GrossErrors(noise));
+        }
+    }
+    found
 }
 
 fn has_gross_errors(estimate: &FieldEstimate) -> bool {
@@ -88,12 +108,11 @@ const FEWEST: f64 = 20.0;
 /// Noise below this share of the largest displacement is that of the numbers: of a computed field.
 const ROUNDING: f64 = 1e-6;
 
-/// Whether gross errors are so many that they make the noise of an estimate that is explained, though no weights were asked for.
-pub(super) fn has_hidden(estimate: &FieldEstimate) -> bool {
+/// Whether gross errors are so many that they make up the noise of an estimate that gives all markers their weight.
+fn has_hidden(estimate: &FieldEstimate) -> bool {
     let displacement = estimate.displacement.iter();
     let largest = displacement.fold(0.0, |most: f64, u| most.max(u.abs()));
     estimate.robust == Robust::No
-        && estimate.is_explained()
         && estimate.degrees_of_freedom >= FEWEST
         && estimate.noise > ROUNDING * largest
         && scatter_by_median(estimate) < HIDDEN
@@ -124,4 +143,54 @@ fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
 /// Whether there are more outliers than gross errors can be.
 pub(super) fn has_many(estimate: &FieldEstimate) -> bool {
     outliers(estimate) as f64 > MOST * used(estimate) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::corrector::estimation::{MarkerEstimate, Verdict};
+
+    /// An estimate with an answer and markers of which a tenth is so many times as far off as the others.
+    fn estimated(answer: Answer, far: f64) -> FieldEstimate {
+        let marker = |index: usize| {
+            let near = 1.0 / (0.9 + 0.1 * far * far).sqrt();
+            let standardised_residual = if index % 10 == 0 { far * near } else { near };
+            Some(MarkerEstimate {
+                residual: [standardised_residual, 0.0],
+                standardised_residual,
+                trust: 1.0,
+                outlier: false,
+            })
+        };
+        FieldEstimate {
+            markers: (0..100).map(marker).collect(),
+            displacement: vec![10.0, 0.0],
+            noise: 1.0,
+            degrees_of_freedom: 190.0,
+            verdict: Verdict {
+                answer,
+                ..Verdict::default()
+            },
+            ..FieldEstimate::default()
+        }
+    }
+
+    #[test]
+    fn noise_that_is_made_up_by_gross_errors_explains_nothing() {
+        let judged = |far: f64, without: Option<Answer>| {
+            let without = without.map(|answer| estimated(answer, 1.0));
+            judged_beside(estimated(Answer::Correlated, far), without)
+        };
+        // Noise alone, and noise of which a tenth of the markers makes up nearly all.
+        assert_eq!(judged(1.2, None).verdict.answer, Answer::Correlated);
+        let hidden = judged(20.0, None);
+        assert_eq!(hidden.verdict.answer, Answer::Undecided);
+        assert!(!hidden.is_explained() && !hidden.has_intervals());
+        assert!(hidden.verdict.reasons[0].words().contains("gross errors"));
+        // What the sound markers contradict is not explained, what they cannot is undecided.
+        let refuted = judged(1.2, Some(Answer::NotExplained));
+        assert_eq!(refuted.verdict.answer, Answer::NotExplained);
+        let undecided = judged(1.2, Some(Answer::Explained));
+        assert_eq!(undecided.verdict.answer, Answer::Undecided);
+    }
 }

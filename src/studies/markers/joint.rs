@@ -65,6 +65,8 @@ pub struct CorrectedSpecimen {
     pub study: MarkerStudy,
     /// Its frames.
     pub estimates: Vec<FieldEstimate>,
+    /// The number of doubts about their figures.
+    pub doubts: usize,
 }
 
 impl JointStudy {

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::report::{largest_correction, largest_error, left, outliers, used};
+use super::report::{largest_correction, largest_error, outliers, residual_rms, used};
 use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, EdgeForce, FieldEstimate, Robust};
 use crate::markers::{Frame, Understood};
@@ -55,7 +55,7 @@ pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Ste
 }
 
 fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Value {
-    let of = |found: &Estimate| of_estimate(found, estimate.is_explained());
+    let of = |found: &Estimate| of_estimate(found, estimate.has_intervals());
     let parameters = estimate.parameters.iter();
     let parameters = parameters
         .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of(found) }));
@@ -80,10 +80,10 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
         "noise_mm": estimate.noise,
         "noise_range_mm": estimate.noise_range,
         "noise_is_given": estimate.known_noise,
-        "left_mm": left(estimate),
+        "left_mm": residual_rms(estimate),
         "largest_left_mm": largest_correction(estimate),
         "effective_parameters": estimate.effective_parameters,
-        "largest_standard_error_mm": estimate.is_explained().then(|| largest_error(estimate)),
+        "largest_standard_error_mm": estimate.has_intervals().then(|| largest_error(estimate)),
         "verdict": verdict::json(estimate),
         "steps": estimate.steps,
         "errors_hold_the_mesh": estimate.holds_mesh_error,
@@ -100,6 +100,7 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
                 "of_components": bin.of_components,
             })).collect::<Vec<_>>(),
         })),
+        "forces_are_given_the_card": estimate.is_given_the_law,
         "measured_forces": checks.collect::<Vec<_>>(),
         "forces": forces(estimate),
         "parameters": parameters.collect::<Vec<_>>(),
@@ -108,7 +109,7 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
 }
 
 fn forces(estimate: &FieldEstimate) -> Vec<Value> {
-    let of = |found: &Estimate| of_estimate(found, estimate.is_explained());
+    let of = |found: &Estimate| of_estimate(found, estimate.has_intervals());
     let change = |index: usize| {
         let own = estimate.scale_change.forces.get(index);
         own.map(|change| change.map(|change| 0.01 * change))
@@ -118,6 +119,7 @@ fn forces(estimate: &FieldEstimate) -> Vec<Value> {
             "edge": force.edge,
             "x_N": of(&force.force[0]),
             "y_N": of(&force.force[1]),
+            "standard_error_by_the_card_N": estimate.law_deviations.get(index),
             "change_by_one_percent_of_the_scale_N": change(index),
         })
     };

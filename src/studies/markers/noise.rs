@@ -1,17 +1,30 @@
 //! What is said of the noise of markers, in words.
 
 use super::MarkerStudy;
+use super::of_frames::{OfFrame, once};
 use crate::corrector::estimation::FieldEstimate;
+use crate::markers::Frame;
 
-/// What is said of the noise and of gross errors, frame by frame.
-pub fn remarks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> impl Iterator<Item = String> {
-    let frames = field.series.frames.iter().zip(estimates);
-    frames.flat_map(|(frame, estimate)| {
-        let told = [field.of_gross_errors(estimate), unevenness(estimate)];
-        let told = told.into_iter().flatten();
-        told.map(|told| format!("frame {}: {told}", frame.number))
-            .collect::<Vec<_>>()
-    })
+/// What is said of gross errors and of the noise, once for all frames.
+pub fn remarks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
+    let frames = || field.series.frames.iter().zip(estimates);
+    let errors = frames().map(|(frame, estimate)| (frame, field.of_gross_errors(estimate)));
+    let noise = frames().map(|(frame, estimate)| (frame, unevenness(estimate)));
+    let of_kind = |remarks: &mut dyn Iterator<Item = (&Frame, Option<String>)>| {
+        let messages = remarks.filter_map(|(frame, remark)| {
+            Some(OfFrame {
+                frame: frame.number,
+                message: remark?,
+                hint: String::new(),
+            })
+        });
+        once(&field.frame_numbers(), messages.collect())
+    };
+    let all = [of_kind(&mut { errors }), of_kind(&mut { noise })];
+    all.into_iter()
+        .flatten()
+        .map(|remark| remark.message)
+        .collect()
 }
 
 fn unevenness(estimate: &FieldEstimate) -> Option<String> {

@@ -65,12 +65,8 @@ impl MarkerStudy {
 
     /// The frame whose markers move most.
     fn most_moved(&self) -> Result<&Frame, Error> {
-        let moved = |frame: &Frame| -> f64 {
-            let markers = frame.markers.iter().map(|marker| marker.displacement);
-            markers.map(|[x, y]| x * x + y * y).sum()
-        };
         let frames = self.series.frames.iter();
-        let most = frames.max_by(|a, b| moved(a).total_cmp(&moved(b)));
+        let most = frames.max_by(|a, b| a.motion().total_cmp(&b.motion()));
         most.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
     }
 }

@@ -1,17 +1,19 @@
 //! The report of a correction.
 
+use super::force_words::{basis, newtons};
 use super::{noise, reading, refined, scale, verdict};
-use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::corrector::estimation::{Answer, EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::error::Diagnostic;
 use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 use crate::units::decimals;
 
-/// How many frames are shown in the terminal at the begin and at the end, and how many doubts.
-pub const SHOWN: usize = 12;
+/// How many frames are shown in the terminal at the begin and at the end.
+const SHOWN: usize = 12;
 
-/// The figures of the frames, for the terminal.
-pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
+/// The figures of the frames with what makes them doubtful, for the terminal.
+pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagnostic]) -> String {
     let mut text = format!(
         "{}; {}; mesh {}: {}\n",
         reading::short(&field.understood),
@@ -26,10 +28,12 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
     };
     text += &rows(field, estimates);
-    noise::remarks(field, estimates).for_each(|told| text += &format!("{told}\n"));
+    for remark in noise::remarks(field, estimates) {
+        text += &format!("{remark}\n");
+    }
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
-            let interval = interval(found, estimate.is_explained(), 6);
+            let interval = interval(found, estimate.has_intervals(), 6);
             text += &format!(
                 "{key} in frame {}: {} {unit}{interval}\n",
                 frame.number,
@@ -44,22 +48,22 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 "force on {} in frame {}: x {}, y {}\n",
                 force.edge,
                 frame.number,
-                newtons(x, last.is_explained()),
-                newtons(y, last.is_explained())
+                newtons(field, last, x),
+                newtons(field, last, y)
             );
         }
+        text += &basis(field, last).map_or(String::new(), |words| format!("{words}\n"));
         let deviation = field.conditions.scale_deviation;
         text += &scale::line(frame.number, last, deviation).unwrap_or_default();
     }
-    text += &verdict::summary(field, estimates);
-    let doubts = field.all_doubts(estimates);
-    for doubt in doubts.iter().take(SHOWN) {
-        text += &format!("doubtful: {}\n", doubt.message);
+    // The verdict has lines of its own.
+    let verdict = Answer::NotExplained.words();
+    let others = doubts.iter();
+    for doubt in others.filter(|doubt| !doubt.message.contains(verdict)) {
+        let hint = doubt.hint.as_deref().map(|hint| format!("  {hint}\n"));
+        text += &format!("doubtful: {}\n{}", doubt.message, hint.unwrap_or_default());
     }
-    if doubts.len() > SHOWN {
-        text += &format!("doubtful: {} more, see the report\n", doubts.len() - SHOWN);
-    }
-    text
+    text + &verdict::summary(field, estimates)
 }
 
 /// A row for each of the first and last frames.
@@ -80,7 +84,7 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 used(estimate),
                 outliers(estimate),
                 estimate.noise,
-                left(estimate),
+                residual_rms(estimate),
                 estimate.effective_parameters,
                 largest_error(estimate)
             ),
@@ -88,17 +92,12 @@ fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 "{:>5}  {:>7}  {:>33.4}  {:>12.4}\n",
                 frame.number,
                 used(estimate),
-                left(estimate),
+                residual_rms(estimate),
                 largest_correction(estimate)
             ),
         };
     }
     text
-}
-
-fn newtons(force: &Estimate, explained: bool) -> String {
-    let value = decimals(force.value, 4);
-    format!("{value} N{}", interval(force, explained, 4))
 }
 
 /// The interval behind a value, which only an explained field has.
@@ -123,7 +122,7 @@ pub(super) fn outliers(estimate: &FieldEstimate) -> usize {
 }
 
 /// Root mean square of the components of what is left of the markers.
-pub(super) fn left(estimate: &FieldEstimate) -> f64 {
+pub(super) fn residual_rms(estimate: &FieldEstimate) -> f64 {
     let residuals = estimate
         .markers
         .iter()
@@ -184,7 +183,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let understood = reading::blocks(&field.understood);
     blocks.splice(1..1, understood);
     blocks.extend(refined::told(field, estimates).map(Block::paragraph));
-    blocks.extend(noise::remarks(field, estimates).map(Block::paragraph));
+    let remarks = noise::remarks(field, estimates);
+    blocks.extend(remarks.into_iter().map(Block::paragraph));
     if field.coarse.is_none() {
         blocks.extend(verdict::blocks(field, estimates));
     }
@@ -192,6 +192,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         Block::heading("Forces on the edges"),
         forces(field, estimates),
     ]);
+    let basis = estimates.last().and_then(|last| basis(field, last));
+    blocks.extend(basis.map(Block::paragraph));
     let deviation = field.conditions.scale_deviation;
     let scale = estimates
         .last()
@@ -241,7 +243,7 @@ fn transferred_frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block
         vec![
             frame.number.to_string(),
             used(estimate).to_string(),
-            decimals(left(estimate), 5),
+            decimals(residual_rms(estimate), 5),
             decimals(largest_correction(estimate), 5),
         ]
     });
@@ -276,11 +278,11 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
                 "estimated"
             }
             .to_owned(),
-            decimals(left(estimate), 5),
+            decimals(residual_rms(estimate), 5),
             format!("{:.1}", estimate.effective_parameters),
-            match estimate.is_explained() {
+            match estimate.has_intervals() {
                 true => decimals(largest_error(estimate), 5),
-                false => "not explained".to_owned(),
+                false => "no interval".to_owned(),
             },
             estimate.whiteness.as_ref().map_or(String::new(), |found| {
                 format!(
@@ -302,8 +304,8 @@ fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             vec![
                 frame.number.to_string(),
                 force.edge.clone(),
-                newtons(x, estimate.is_explained()),
-                newtons(y, estimate.is_explained()),
+                newtons(field, estimate, x),
+                newtons(field, estimate, y),
             ]
         })
     });
@@ -315,7 +317,7 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.parameters.iter().map(move |(key, unit, found)| {
-            let error = match estimate.is_explained() {
+            let error = match estimate.has_intervals() {
                 true => decimals(found.standard_error, 6),
                 false => String::new(),
             };
@@ -325,7 +327,7 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
                 unit.to_string(),
                 decimals(found.value, 6),
                 error,
-                interval(found, estimate.is_explained(), 6),
+                interval(found, estimate.has_intervals(), 6),
             ]
         })
     });

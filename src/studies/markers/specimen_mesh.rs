@@ -129,15 +129,14 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     let refuse =
         |reason: OutlineFault| Error::input(format!("a mesh cannot be made: {reason}"), HINT);
     let (places, in_gaps) = places(&field.series, request.holes);
-    let found = Outline::of_points(&places).map_err(refuse)?;
-    let mut outline = found.outline;
+    let mut found = Outline::of_points(&places).map_err(refuse)?;
     let mut warnings = Vec::new();
     let mut warn = |message: String, hint: &str| {
         warnings.push(Diagnostic::warning("", message).hint(hint));
     };
-    match (outline.holes.len(), request.holes) {
+    match (found.outline.holes.len(), request.holes) {
         (0, _) => {}
-        (_, false) => outline.holes.clear(),
+        (_, false) => found.outline.holes.clear(),
         (count, true) => {
             let filled = match in_gaps {
                 0 => String::new(),
@@ -152,10 +151,10 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
         }
     }
     let spacing = found.spacing;
-    let beside_grid = is_beside_grid(&places, &outline, spacing);
-    let edge = EdgePlace::of(request, &field.understood, spacing, beside_grid);
-    edge.check(outline.extents())?;
-    let (outline, edge) = edge.outline(outline, spacing).map_err(refuse)?;
+    let beside_grid = is_beside_grid(&places, &found.outline, spacing);
+    let edge = EdgePlace::of(request, &field.understood, &found, beside_grid);
+    edge.check(found.outline.extents())?;
+    let (outline, edge) = edge.outline(found.outline, spacing).map_err(refuse)?;
     let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!(
         "made inside the outline of the markers, which are about {} mm apart{}",

@@ -22,7 +22,7 @@ fn row(text: &mut String, first: &[usize], values: &[f64]) {
 
 /// The name of a standard error; where the data are not explained it is none, and the name says so.
 fn error(estimate: &FieldEstimate) -> &'static str {
-    match estimate.is_explained() {
+    match estimate.has_intervals() {
         true => "standard_error",
         false => "spread_not_explained",
     }
@@ -112,7 +112,7 @@ pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     head.push("verdict".to_owned());
     let mut records = vec![head];
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
-        let explained = |value: f64| match estimate.is_explained() {
+        let explained = |value: f64| match estimate.has_intervals() {
             true => format!("{value:.9e}"),
             false => String::new(),
         };

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::MarkerStudy;
 use crate::corrector::estimation::{Answer, FieldEstimate, Trial, Verdict};
+use crate::markers::Frame;
 use crate::results::Block;
 use crate::statistics::extremes;
 use crate::units::decimals;
@@ -12,7 +13,12 @@ use crate::units::decimals;
 const TOLD: usize = 5;
 
 /// The answers that frames have, the worst first.
-const ANSWERS: [Answer; 3] = [Answer::NotExplained, Answer::Correlated, Answer::Explained];
+const ANSWERS: [Answer; 4] = [
+    Answer::NotExplained,
+    Answer::Undecided,
+    Answer::Correlated,
+    Answer::Explained,
+];
 
 /// The worst answer of all frames.
 pub fn worst(estimates: &[FieldEstimate]) -> Answer {
@@ -49,8 +55,13 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
             );
         }
     }
-    if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
-        text += &format!("frame {}: {}\n", frame.number, reasons(&found.verdict));
+    for answer in [Answer::Undecided, Answer::NotExplained] {
+        let last = frames().rfind(|(_, found)| found.verdict.answer == answer);
+        text += &last.map_or(String::new(), |(frame, found)| {
+            format!("frame {}: {}\n", frame.number, reasons(&found.verdict))
+        });
+    }
+    if let Some((_, found)) = not_explained(field, estimates) {
         text += &found.verdict.worst.map_or(String::new(), |worst| {
             let [x, y] = worst.place.map(|place| decimals(place, 4));
             let [ux, uy] = worst.misfit.map(|misfit| decimals(misfit, 5));
@@ -130,9 +141,20 @@ fn words(trial: &Trial) -> String {
 
 const EXPLANATION: &str = "Explained: the residuals of the markers are white noise. Explained with correlated noise: they correlate \
     between neighbours as noise of image correlation does, with the length at which the correlation has fallen to 1/e; the \
-    intervals include that. Not explained: an alternative model reduces the misfit by more than noise could, the residuals \
-    correlate too far to be distinguished from a misfit, they correlate between neighbours and are similar from frame to frame, or a \
-    measured force is contradicted. Standard errors and intervals are then meaningless and are not given.";
+    intervals include that. The data cannot judge: the residuals correlate so far that they are worth fewer than a hundred independent \
+    values, too few to tell noise from a misfit; intervals take them for noise of the widest correlation that they allow. Or gross errors \
+    make up the noise; then there are no intervals. Not explained: an alternative model reduces the misfit by more than noise could, \
+    the residuals correlate between neighbours and are similar from frame to frame, or a measured force is contradicted. Standard \
+    errors and intervals are then meaningless and are not given.";
+
+/// The last frame that is not explained.
+fn not_explained<'a>(
+    field: &'a MarkerStudy,
+    estimates: &'a [FieldEstimate],
+) -> Option<(&'a Frame, &'a FieldEstimate)> {
+    let mut frames = field.series.frames.iter().zip(estimates);
+    frames.rfind(|(_, found)| found.verdict.answer == Answer::NotExplained)
+}
 
 /// The verdict on every frame, and what would explain the last one that is not.
 pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
@@ -167,7 +189,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     if let Some((_, last)) = frames().next_back() {
         blocks.extend(variogram(last));
     }
-    if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
+    if let Some((frame, found)) = not_explained(field, estimates) {
         blocks.push(Block::paragraph(format!(
             "What would improve the fit of frame {}, best first, each computed in one linearised step; the probability is that of \
              noise alone reducing the misfit by as much.",

@@ -68,7 +68,7 @@ pub fn results_with(
         )],
         doubts: doubts.iter().map(ToString::to_string).collect(),
         balance: estimates.iter().map(|found| found.imbalance).reduce(larger),
-        summary: report::summary(field, estimates),
+        summary: report::summary(field, estimates, &doubts),
         ..Outcome::default()
     };
     Results {

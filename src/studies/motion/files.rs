@@ -223,7 +223,8 @@ fn energy(model: &ModelMotion) -> LineChart {
     chart(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
-fn right_side(model: &ModelMotion, now: &Instant) -> f64 {
+/// The displacement of the middle of the right side along the plate in mm.
+pub fn right_side(model: &ModelMotion, now: &Instant) -> f64 {
     let [length, width] = model.mesh.grid().size;
     let middle = [length, 0.5 * width];
     model.mesh.displacement_at(&now.displacement, middle)[0]

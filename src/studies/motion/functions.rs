@@ -39,7 +39,6 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
         ("sine", Grip::Sine),
         ("table", Grip::Table),
     ];
-    let stretch = |key| section.quantity(key, Dimension::Ratio, STRETCHES);
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let mut release = None;
     let stretch = match section.choice("motion", &kinds)? {
@@ -49,7 +48,11 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
             TimeFunction::Constant(start)
         }
         Grip::Ramp => {
-            let (begin, end, to) = (instant("begin"), instant("end"), stretch("to"));
+            let (begin, end, to) = (
+                instant("begin"),
+                instant("end"),
+                section.stretch("to", STRETCHES),
+            );
             if end <= begin {
                 section.fault("end", "must be after the begin", "give a later time");
                 return None;
@@ -57,7 +60,7 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
             TimeFunction::Table(vec![[begin, start], [end, to]])
         }
         Grip::Sine => {
-            let amplitude = stretch("amplitude");
+            let amplitude = section.quantity("amplitude", Dimension::Ratio, STRETCHES);
             if start - amplitude.abs() < LEAST {
                 let message = "compresses the plate to less than half of its length";
                 section.fault(
@@ -74,7 +77,7 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
         }
         Grip::Table => {
             let times = section.quantities("times", Dimension::Time, Bound::NonNegative);
-            let stretches = section.quantities("stretches", Dimension::Ratio, STRETCHES);
+            let stretches = section.stretches("stretches", STRETCHES);
             if stretches.first().is_some_and(|first| *first != start) {
                 let hint = "the grips have held the plate at `start.stretch` before time 0";
                 section.fault(

@@ -5,6 +5,7 @@ use serde_json::json;
 use super::corrected::CorrectedInstants;
 use super::deviations::{Deviations, OwnError, displacements_on};
 use super::files::{animation, figures, grids, tables};
+use super::headline::headline;
 use super::plates::{shown, times};
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
@@ -49,6 +50,7 @@ pub fn outcome(
     let animation = Drawing::Animation(animation(&instants, &plates));
     files.push(("motion.png".into(), Content::Picture(animation)));
     let mut outcome = Outcome {
+        headline: headline(plate, elements, &plates),
         checks: checks(plate, models, &deviations, own_error),
         blocks,
         problem: statement::json(plate, own_error),

@@ -49,8 +49,7 @@ pub struct Tolerances {
     pub energy_percent: f64,
     /// Largest deviation of the corrected motion, or of the springs where there is none, from the finite elements.
     pub deviation_percent: f64,
-    /// Largest deviation of its force of the right grip; `None` where nothing is required of it. As that of the
-    /// displacement where a driven grip imposes most of the displacement and the study states none.
+    /// Largest deviation of its force of the right grip; `None` where nothing is required of it.
     pub force_percent: Option<f64>,
 }
 

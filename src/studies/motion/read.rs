@@ -51,6 +51,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let (start, grip) = read_stretches(root, material.card.as_ref());
     let gravity = read_gravity(&root.section("gravity"));
     let forces = tables(root, "force", |one| read_force(one, &problem));
+    warn_of_rest(root, start, grip.as_ref(), gravity, &forces);
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(grip.as_ref());
@@ -174,7 +175,7 @@ fn read_material(section: &Section, folder: &Path) -> Material {
 /// The stretch at the start, and the motion of the right grip from there.
 fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotion>) {
     let section = root.section("start").requiring(&["stretch"]);
-    let start = section.quantity("stretch", Dimension::Ratio, STRETCHES);
+    let start = section.stretch("stretch", STRETCHES);
     if let Some(card) = card.filter(|_| start != 0.0) {
         sections::check_range(&section, "stretch", &[start], card);
     }
@@ -189,6 +190,23 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     }
     section.unknown_keys();
     (start, grip)
+}
+
+/// Warns of a plate that rests between its grips.
+fn warn_of_rest(
+    root: &Section,
+    start: f64,
+    grip: Option<&GripMotion>,
+    gravity: [f64; 2],
+    forces: &[PointForce],
+) {
+    let rests = |grip: &GripMotion| reached_stretches(&grip.stretch) == [0.0; 2];
+    let is_loaded = gravity != [0.0; 2] || forces.iter().any(|own| own.force != [0.0; 2]);
+    if start == 0.0 && !is_loaded && grip.is_some_and(rests) {
+        let message = "no grip moves and no force or gravity acts: the plate stays at rest";
+        let hint = "give the [start] a stretch, the [grip] a motion, or the plate a [[force]] or [gravity]";
+        root.warning("grip", message, hint);
+    }
 }
 
 fn read_gravity(section: &Section) -> [f64; 2] {
@@ -216,18 +234,23 @@ fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
     lattice
 }
 
-/// The tolerances of a study. A grip that is driven imposes most of the displacement, so that the force is judged too.
+/// What a driven motion has to reach where the study does not state it, in %: a grip that is driven imposes most of the displacement and of the
+/// force, so that what would be good for a free vibration says nothing.
+const DRIVEN_PERCENT: f64 = 5.0;
+
+/// The tolerances of a study; where the grip is driven, the force is judged too.
 fn read_tolerances(section: &Section, grip: Option<&GripMotion>) -> Tolerances {
-    let is_driven = |grip: &&GripMotion| grip.release.is_none() && rates(&grip.stretch).is_some();
+    let is_driven =
+        grip.is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
-    let [energy_percent, deviation_percent] = ["energy", "deviation"].map(percent);
+    let of_driven = |key| match is_driven && !section.has(key) {
+        true => DRIVEN_PERCENT,
+        false => percent(key),
+    };
     let tolerances = Tolerances {
-        energy_percent,
-        deviation_percent,
-        force_percent: match section.has("force") {
-            true => Some(percent("force")),
-            false => grip.filter(is_driven).map(|_| deviation_percent),
-        },
+        energy_percent: percent("energy"),
+        deviation_percent: of_driven("deviation"),
+        force_percent: (is_driven || section.has("force")).then(|| of_driven("force")),
     };
     section.unknown_keys();
     tolerances

@@ -5,8 +5,8 @@ use super::problem::MovingPlate;
 use crate::finite_element::Element;
 use crate::mass_spring::{self, SpringLaw};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS};
-use crate::results::wrinkling::{Wrinkling, of_parts};
-use crate::results::{FAR_BESIDE_CORNERS, Stretches, cell_states, locking, small_strain, strained};
+use crate::results::wrinkling::{self, Wrinkling};
+use crate::results::{Sheet, locking, small_strain, strained};
 use crate::units::number;
 
 /// The warnings about plates that move, at the given instants in s: a lattice of another ν, compression, a law of small strains, locking, and a
@@ -27,15 +27,7 @@ pub fn warnings(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> V
     let states = states.map(|([u, _], time)| (format!("{} s", number(*time)), *u));
     all.extend(small_strain::warning(law, own.mesh, states.clone()));
     all.extend(locking(plate, plates));
-    // The stretches of the grip are compared with the range where the study is read.
-    let is_worth = |stretches: &Stretches| stretches.far_share > FAR_BESIDE_CORNERS;
-    all.extend(strained::warnings(
-        &plate.card,
-        own.name,
-        own.mesh,
-        is_worth,
-        states,
-    ));
+    all.extend(strained::warnings(&plate.card, own.name, own.mesh, states));
     all
 }
 
@@ -52,17 +44,18 @@ fn locking(plate: &MovingPlate, plates: &[PlateMotion]) -> Option<String> {
     locking::warning(&*plate.problem.law, &found)
 }
 
-/// The warning of a thin sheet under compression: the instant at which the largest part of it is.
+/// The warning of a sheet that would wrinkle: at the instant at which the critical compression is exceeded most.
 fn compression(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> Option<String> {
-    let law = &*plate.problem.law;
     let own = plates.iter().find(|own| own.is_reference)?;
-    let shares = own.motion.iter().zip(&own.viscous).zip(times);
-    let shares = shares.map(|(([u, _], viscous), time)| {
-        let states = cell_states(law, own.mesh, &[u], &viscous.in_cells);
-        let share = Wrinkling::of_cells(law, own.mesh, &states).area_percent;
-        (share, *time)
-    });
-    let (share, time) = shares.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    let most = || format!("up to {share:.1} % of the area, at {} s", number(time));
-    (share > 0.0).then(|| of_parts(&most()))
+    let states = own.motion.iter().zip(&own.viscous).zip(times);
+    wrinkling::warning(states.map(|(([u, _], viscous), time)| {
+        let sheet = Sheet {
+            law: &*plate.problem.law,
+            thickness: plate.problem.thickness,
+            past: &[],
+            viscous: Some(viscous),
+        };
+        let load = format!("{} s", number(*time));
+        (load, Wrinkling::new(sheet, own.mesh, u))
+    }))
 }

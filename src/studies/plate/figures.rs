@@ -7,8 +7,8 @@ use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{
-    Axis, Deformed, Drawing, FieldFigure, Figure, Line, LineChart, Panel, Stroke, material_chart,
-    sheet_figures,
+    Axis, Deformed, Drawing, FieldFigure, Figure, Line, LineChart, Panel, Stroke, from_rest,
+    material_chart, sheet_figures,
 };
 
 /// All pictures of a run, in the order of the report.
@@ -23,13 +23,7 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
     all.extend(stress_figures(study, results));
     let caption = "Deviation from the finite elements over stretch.";
     all.push(Figure::new("errors.png", caption, errors(results)));
-    let caption = match results.remembers {
-        true => "Grip force over stretch, and its deviation from the finite elements.",
-        false => {
-            "Grip force over stretch, and its deviation from the finite elements; between the stretches of the study the curves are shape-preserving \
-             cubics."
-        }
-    };
+    let caption = "Grip force over stretch, and its deviation from the finite elements; computed at the markers only.";
     all.push(Figure::new("force.png", caption, force(results)));
     let caption = "Residual of springs and finite elements, and correction of the corrected field, over iteration at the last \
                    stretch with a solution.";
@@ -150,7 +144,7 @@ fn errors(results: &Results) -> LineChart {
     let displacement: Measure = |deviation| deviation.displacement_percent;
     let measures = [
         ("departure from affine", departure, Stroke::Marked),
-        ("displacement", displacement, Stroke::Dashed),
+        ("displacement", displacement, Stroke::Ringed),
     ];
     type OfStep = fn(&StepComparison) -> Option<Deviation>;
     let before: OfStep = |step| step.mass_spring;
@@ -163,13 +157,7 @@ fn errors(results: &Results) -> LineChart {
         measures.map(|(name, value, stroke)| {
             let point =
                 |step: &StepComparison| Some([100.0 * step.stretch, value(&deviation(step)?)]);
-            let points: Vec<[f64; 2]> = results.comparison.iter().filter_map(point).collect();
-            // A single point has no line to be seen by.
-            let stroke = if points.len() == 1 {
-                Stroke::Points
-            } else {
-                stroke
-            };
+            let points = results.comparison.iter().filter_map(point);
             Line::new(format!("{model}: {name}"), points, colour, stroke)
         })
     });
@@ -193,17 +181,12 @@ fn force(results: &Results) -> Drawing {
         let solutions =
             steps.filter_map(|step| results.models(step)[model].zip(results.measures(step)[model]));
         let points = solutions.map(|(state, measures)| [100.0 * state.factor, measures.force]);
-        let points: Vec<_> = [[0.0, 0.0]].into_iter().chain(points).collect();
-        match results.remembers {
-            // Loading and unloading are no function of the stretch.
-            true => Line::new(MODELS[model], points, colour, stroke),
-            false => Line::curve(MODELS[model], points, colour, stroke),
-        }
+        Line::new(MODELS[model], from_rest(points), colour, stroke)
     };
     let lines = [
-        (2, FINITE_ELEMENTS.colour, Stroke::Solid),
-        (0, MASS_SPRING.colour, Stroke::Dashed),
-        (1, CORRECTED.colour, Stroke::Points),
+        (2, FINITE_ELEMENTS.colour, Stroke::Marked),
+        (0, MASS_SPRING.colour, Stroke::Marked),
+        (1, CORRECTED.colour, Stroke::Ringed),
     ];
     let forces = LineChart::new(
         "Grip force",

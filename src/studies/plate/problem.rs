@@ -11,6 +11,7 @@ use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
+use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings};
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
@@ -105,6 +106,16 @@ impl Study {
         self.problem.law = Arc::clone(&card.law);
         self.card = card;
         self
+    }
+
+    /// What stresses follow from.
+    pub fn sheet(&self) -> Sheet<'_> {
+        Sheet {
+            law: &*self.problem.law,
+            thickness: self.problem.thickness,
+            past: &[],
+            viscous: None,
+        }
     }
 
     /// What the study computes, in words.

@@ -19,7 +19,7 @@ use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
     MOST_CELLS, Tolerances, check_range, multiples_of_cells, need_of_cells, read_climb,
-    read_newton, read_plate, refuse_climb_with_memory,
+    read_newton, read_plate, refuse_memory,
 };
 use crate::units::Dimension;
 
@@ -165,7 +165,7 @@ fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Corr
             .fault("area_term", message, hint);
     }
     if corrector.is_some_and(|corrector| corrector.climb.is_some()) {
-        refuse_climb_with_memory(&root.section("corrector"));
+        refuse_memory(&root.section("corrector"), "the climb");
     }
 }
 
@@ -274,7 +274,7 @@ fn reference_cells(size: [f64; 2], lattice: [usize; 2], is_graded: bool) -> [usi
 /// The stretches of a plate: at least one, all of one sign, from small to large, as a path from rest takes them.
 fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2]) -> Vec<f64> {
     const KEY: &str = "stretches";
-    let stretches = section.quantities(KEY, Dimension::Ratio, WITH_COMPRESSIONS);
+    let stretches = section.stretches(KEY, WITH_COMPRESSIONS);
     section.unknown_keys();
     let unknowns = 2.0 * cells[0] as f64 * cells[1] as f64;
     let need = Need::of_states(unknowns, stretches.len() as f64);
@@ -292,19 +292,6 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
         let hint = "at rest there is nothing to solve; leave it out";
         section.fault(KEY, "must not contain zero, or less than 1e-9", hint);
         return stretches;
-    }
-    let are_like_lambda = stretches
-        .iter()
-        .all(|stretch| (1.0..=3.0).contains(stretch));
-    if are_like_lambda && !stretches.is_empty() && section.is_of_numbers(KEY) {
-        let percent = 100.0 * stretches[0];
-        let message = format!(
-            "{} is a stretch of {percent:.0} %: the plate is {:.2} times as long",
-            stretches[0],
-            1.0 + stretches[0]
-        );
-        let lambda = 100.0 * (stretches[0] - 1.0);
-        section.warning(KEY, &message, &format!("if these are λ, write λ − 1, such as \"{lambda:.0} %\"; if not, write \"{percent:.0} %\""));
     }
     let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
     let remembers = card.is_some_and(|card| card.law.softening().is_some());

@@ -5,17 +5,12 @@ use super::results::Results;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::results::{Array, Grid, GridSeries, Sheet};
+use crate::results::{Array, Grid, GridSeries};
 use crate::solve::State;
 
 /// The fields of every model, as far as it has solutions.
 pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
-    let sheet = Sheet {
-        law: &*study.problem.law,
-        thickness: study.problem.thickness,
-        past: &[],
-        viscous: None,
-    };
+    let sheet = study.sheet();
     let finest = results.finest();
     let meshes = results.meshes();
     let compared = |model: usize, step: usize, solution: &State| {

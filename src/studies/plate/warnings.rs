@@ -7,10 +7,8 @@ use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 use crate::results::models::CORRECTED;
-use crate::results::{
-    FAR_BESIDE_CORNERS, Stretches, is_one_of_several, locking, one_of_several, small_strain,
-    strained, wrinkling,
-};
+use crate::results::wrinkling::{self, Wrinkling};
+use crate::results::{is_one_of_several, locking, one_of_several, small_strain, strained};
 
 /// Reactions further from balance than this, relative to the largest, deserve a word: those of a residual that is solved for, and those of
 /// the climb, which ends at a share of the discretisation error.
@@ -60,17 +58,11 @@ fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
     });
     let states: Vec<_> = states.collect();
     let law = &*study.problem.law;
-    let compression = wrinkling::warning(law, mesh, states.iter().cloned());
+    let compression = states.iter().cloned();
+    let compression = compression.map(|(load, u)| (load, Wrinkling::new(study.sheet(), mesh, u)));
+    let compression = wrinkling::warning(compression);
     let strains = small_strain::warning(law, mesh, states.iter().cloned());
-    // The nominal stretches are compared with the range where the study is read.
-    let is_worth = |own: &Stretches| own.far_share > FAR_BESIDE_CORNERS;
-    let beyond = strained::warnings(
-        &study.card,
-        MODELS[model],
-        mesh,
-        is_worth,
-        states.into_iter(),
-    );
+    let beyond = strained::warnings(&study.card, MODELS[model], mesh, states.into_iter());
     let all = compression.into_iter().chain(strains).chain(beyond);
     all.collect()
 }

@@ -8,7 +8,7 @@ use crate::problem::{GroupState, Solution};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, MODELS};
 use crate::results::{
     Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
-    Stroke, mesh_outlines, sheet_figures,
+    Stroke, from_rest, mesh_outlines, sheet_figures,
 };
 use crate::studies::pictures::Shown;
 
@@ -59,11 +59,11 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
     }
     figures.extend(displacement_over_factors(specimen, models).map(|drawing| {
         let what = models.reference.measured.describe();
-        let caption = format!("Over the load factor: {what}.");
+        let caption = format!("Over the load factor: {what}; computed at the markers only.");
         figure("displacement_over_load", caption, drawing)
     }));
     figures.extend(forces(specimen, models).map(|drawing| {
-        let caption = "Forces of the supports over the load factor: of each group along the axis of its larger force.";
+        let caption = "Forces of the supports over the load factor: of each group along the axis of its larger force; computed at the markers only.";
         figure("forces", caption.into(), drawing)
     }));
     figures.push(mesh);
@@ -122,27 +122,20 @@ fn over_factors(
         let groups = named[model].solution.groups(step)?;
         Some([*factor, value(groups)])
     });
-    // Without a load, every sheet is at rest.
-    [[0.0; 2]].into_iter().chain(values).collect()
+    from_rest(values)
 }
 
 /// A chart of the three models over the load factor.
 fn chart_over_factors(
-    specimen: &Specimen,
     title: String,
     y: &str,
     points: impl Fn(usize) -> Vec<[f64; 2]>,
 ) -> LineChart {
-    const STROKES: [Stroke; 3] = [Stroke::Dashed, Stroke::Points, Stroke::Solid];
+    const STROKES: [Stroke; 3] = [Stroke::Marked, Stroke::Ringed, Stroke::Marked];
     let line = |model: usize| {
         let points = points(model);
         let (style, stroke) = (MODELS[model], STROKES[model]);
-        let (name, colour) = (style.name, style.colour);
-        (points.len() > 1).then(|| match specimen.problem.law.softening() {
-            // Loading and unloading are no function of the load factor.
-            Some(_) => Line::new(name, points, colour, stroke),
-            None => Line::curve(name, points, colour, stroke),
-        })
+        (points.len() > 1).then(|| Line::new(style.name, points, style.colour, stroke))
     };
     let lines = [2, 0, 1].into_iter().filter_map(line).collect();
     let x = Axis::linear("load factor [–]");
@@ -155,7 +148,7 @@ fn displacement_over_factors(specimen: &Specimen, models: &Models) -> Option<Dra
     (measured.quantity == Quantity::Displacement).then(|| {
         let title = format!("Displacement of {}", measured.group);
         let y = format!("displacement along {} [mm]", measured.axis_name());
-        let chart = chart_over_factors(specimen, title, &y, |model| {
+        let chart = chart_over_factors(title, &y, |model| {
             over_factors(specimen, models, model, |groups| measured.of(groups))
         });
         Drawing::Charts(vec![(chart, 340)])
@@ -185,7 +178,7 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let title = format!("Force of {}", groups[group]);
         let lines = |model: usize| points(model, group, axis);
-        (chart_over_factors(specimen, title, &y, lines), 340)
+        (chart_over_factors(title, &y, lines), 340)
     };
     let charts: Vec<_> = carrying.map(chart).collect();
     (!charts.is_empty()).then_some(Drawing::Charts(charts))

@@ -170,18 +170,14 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
 
 fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> Vec<String> {
     const ROUNDING: f64 = 1e-12;
-    let [x, y] = state.force;
+    let [x, y, turning] = state.carried();
     let [u, v] = state.displacement;
-    let is_rounding = state.size <= 10.0 * state.rounding;
     let shown = |value: f64, scale: f64| match value.abs() < ROUNDING * scale {
         true => number(0.0),
         false => number(value),
     };
-    let forces = [(x, force), (y, force), (state.moment, moment)];
-    let forces = forces.map(|(value, scale)| match is_rounding {
-        true => number(0.0),
-        false => shown(value, scale),
-    });
+    let forces = [(x, force), (y, force), (turning, moment)];
+    let forces = forces.map(|(value, scale)| shown(value, scale));
     let displacements = [u, v].map(|value| shown(value, side));
     forces.into_iter().chain(displacements).collect()
 }

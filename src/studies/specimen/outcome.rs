@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::files::{figures, grids};
+use super::headline::headline;
 use super::problem::Specimen;
 use super::results::lattice::Start;
 use super::results::models::{Models, NamedSolution};
@@ -38,6 +39,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let steps = (0..specimen.factors.len()).map(quantities).collect();
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     Outcome {
+        headline: headline(specimen, models),
         style: specimen.pictures.style.clone(),
         checks: checks(specimen, models, &judged),
         problem: statement::json(specimen),
@@ -77,8 +79,7 @@ fn quantities(
     let mut corrected = deviations(deviation.map(|own| own.corrected));
     corrected["displacement_correction_percent"] =
         json!(deviation.and_then(Deviation::correction_percent));
-    let climb = models.on_lattice.climbs.get(step);
-    corrected["discretisation_mm"] = json!(climb.map(|own| own.discretisation_error));
+    corrected["discretisation_mm"] = json!(models.on_lattice.discretisation_errors.get(step));
     let own = |which: usize| deviation.map(|own| own.own[which]);
     let mut elements = json!({
         "displacement_discretisation_percent": own(0),
@@ -244,33 +245,24 @@ fn introduction(models: &Models) -> String {
     )
 }
 
-/// The meshes of the climbs, and what these tell of their error.
-fn climbs(specimen: &Specimen, models: &Models) -> Option<String> {
-    let climbs = models.on_lattice.climbs.iter();
-    let longest = climbs.clone().max_by_key(|own| own.work.len())?;
-    let nodes: Vec<_> = longest
-        .work
-        .iter()
-        .map(|own| own.nodes.to_string())
-        .collect();
-    let (last, others) = nodes.split_last()?;
-    let errors = climbs.map(|own| own.discretisation_error);
-    let errors = errors.zip(&specimen.factors);
-    let (most, factor) = errors.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let over = match others.is_empty() {
-        true => String::new(),
-        false => format!("{} and ", others.join(", ")),
-    };
-    let error = match most.is_nan() {
-        true => String::new(),
-        false => format!(
-            ". They give an estimate of its discretisation error: {} mm (root mean square over the nodes) at load factor {factor}, where it is largest",
-            number(most)
-        ),
+/// Nested meshes, and the error of the corrected field that they show.
+fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
+    let errors = models.on_lattice.discretisation_errors.iter();
+    let (most, factor) = errors
+        .zip(&specimen.factors)
+        .max_by(|a, b| a.0.total_cmp(b.0))?;
+    let error = if most.is_nan() {
+        String::new()
+    } else {
+        format!(
+            "; the meshes give an estimate of its discretisation error: {} mm (root mean square over the nodes) at load factor {factor}, where it \
+             is largest",
+            number(*most)
+        )
     };
     Some(format!(
-        "The corrected field climbs from springs on the coarsest of the meshes of {over}{last} nodes; the lattice's own springs serve only the \
-         comparison{error}. "
+        "The corrected field comes from springs on a coarser mesh, corrected there and carried from mesh to mesh; the lattice's own springs serve only \
+         the comparison{error}. "
     ))
 }
 
@@ -283,7 +275,7 @@ fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
         found.join(", ")
     };
     let (alone, steps) = (at(Start::Alone), at(Start::LoadSteps));
-    let mut text = climbs(specimen, models).unwrap_or_default();
+    let mut text = nested(specimen, models).unwrap_or_default();
     if !steps.is_empty() {
         text += &format!(
             "At the load factors {steps} the corrector did not converge from the springs' field; it started from an equilibrium that Newton's method \

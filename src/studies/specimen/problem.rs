@@ -1,6 +1,5 @@
 //! What a specimen's study asks for: the problem, its outline and meshes, what is measured.
 
-use crate::corrector::climb::ClimbSettings;
 use crate::error::Error;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
@@ -31,23 +30,14 @@ impl Refinement {
     pub(super) const MOST_HALVED: usize = 400_000;
 }
 
-/// How the springs' field is corrected.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Correction {
-    /// Which way.
-    pub method: Method,
-    /// How exactly it climbs.
-    pub climb: ClimbSettings,
-}
-
-/// Which way a field is corrected.
+/// Which way the springs' field is corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// A climb where that is quicker: on lattices of a shape that are large.
+    /// Nested where that is quicker: on lattices of a shape that are large.
     Automatic,
     /// Springs on a coarser mesh of the shape, corrected there, from mesh to mesh up to the lattice.
-    Climb,
-    /// From the lattice's own springs by factors.
+    Nested,
+    /// From the lattice's own springs.
     Direct,
 }
 
@@ -55,12 +45,12 @@ impl Method {
     /// The names that studies use.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("automatic", Self::Automatic),
-        ("climb", Self::Climb),
+        ("nested", Self::Nested),
         ("direct", Self::Direct),
     ];
 }
 
-/// Unknowns of a lattice from which on nobody looks at its multipliers one by one, and a climb is quicker than factors.
+/// Unknowns of a lattice from which on nobody looks at its multipliers one by one, and nested meshes are quicker.
 pub const LARGE: usize = 20_000;
 
 /// A specimen, its supports and loads, and how finely it is meshed.
@@ -80,7 +70,7 @@ pub struct Specimen {
     /// How far the finite elements are refined locally; `None` where they have three meshes.
     pub refinement: Option<Refinement>,
     /// How the springs' field is corrected.
-    pub correction: Correction,
+    pub correction: Method,
     /// How the systems of the finite elements are solved.
     pub linear_solver: LinearSolver,
     /// What is meshed, and how.
@@ -119,10 +109,7 @@ impl Specimen {
                 correction_percent: 1.0,
             },
             refinement: None,
-            correction: Correction {
-                method: Method::Automatic,
-                climb: ClimbSettings::default(),
-            },
+            correction: Method::Automatic,
             linear_solver: LinearSolver::Automatic,
             pictures: Pictures::default(),
             outline: Outline::File {
@@ -134,16 +121,14 @@ impl Specimen {
         }
     }
 
-    /// How exactly the corrected field on a lattice with so many unknowns climbs; `None` where it is made from the lattice's own
-    /// springs.
-    pub fn climb(&self, unknowns: usize) -> Option<ClimbSettings> {
+    /// Whether the field on a lattice with so many unknowns is corrected on nested meshes.
+    pub fn is_nested(&self, unknowns: usize) -> bool {
         let able = self.outline.is_shape() && self.problem.law.softening().is_none();
-        let climbs = match self.correction.method {
+        able && match self.correction {
             Method::Automatic => unknowns >= LARGE,
-            Method::Climb => true,
+            Method::Nested => true,
             Method::Direct => false,
-        };
-        (able && climbs).then_some(self.correction.climb)
+        }
     }
 
     /// What stresses follow from.

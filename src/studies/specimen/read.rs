@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::problem::{Correction, Method, Outline, Refinement, Specimen};
+use super::problem::{Method, Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
@@ -12,7 +12,7 @@ use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
-use crate::studies::sections::{Tolerances, check_thickness, read_climb, refuse_climb_with_memory};
+use crate::studies::sections::{Tolerances, check_thickness, refuse_memory};
 use crate::units::Dimension;
 
 mod outline;
@@ -113,21 +113,16 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let size = [0, 1].map(|axis| high[axis] - low[axis]);
     check_thickness(section, thickness, size, Some(&specimen.card));
     given.check(root, &specimen.problem, &mesh);
-    warn_of_rest(root, &specimen.problem);
     warn_of_parts(section, &specimen, &mesh);
     check_refinement(root, &specimen, &mesh);
-    check_climb(root, &specimen);
+    check_nested(root, &specimen);
     Some(specimen)
 }
 
-fn read_correction(section: &Section) -> Option<Correction> {
+fn read_correction(section: &Section) -> Option<Method> {
     let method = section.choice("method", &Method::NAMES);
-    let climb = read_climb(section);
     section.unknown_keys();
-    Some(Correction {
-        method: method?,
-        climb,
-    })
+    method
 }
 
 /// Warns where a file's cells make other finite elements than the study says.
@@ -149,28 +144,18 @@ fn check_elements(root: &Section, outline: &Outline, mesh: &Mesh) {
     }
 }
 
-/// A climb needs coarser meshes of the same shape, and has no memory.
-fn check_climb(root: &Section, specimen: &Specimen) {
-    if specimen.correction.method != Method::Climb {
+/// Nested correction needs coarser meshes of the same shape, and has no memory.
+fn check_nested(root: &Section, specimen: &Specimen) {
+    if specimen.correction != Method::Nested {
         return;
     }
     let section = root.section("corrector");
     if !specimen.outline.is_shape() {
-        let message = "the mesh of a file has no coarser meshes of the same shape to climb from";
+        let message = "the mesh of a file has no coarser meshes of the same shape";
         section.fault("method", message, "leave `method` out, or write \"direct\"");
     }
     if specimen.problem.law.softening().is_some() {
-        refuse_climb_with_memory(&section);
-    }
-}
-
-/// Warns of a sheet that nothing loads or moves.
-fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
-    let held = problem.supports.iter().all(|(_, support)| support.rests());
-    if held && problem.loads.iter().all(|(_, load)| load.is_none()) {
-        let message = "no support moves and no load acts: the sheet stays at rest";
-        let hint = "give a support a displacement, or a group a [[load]]";
-        root.warning("support", message, hint);
+        refuse_memory(&section, "nested correction");
     }
 }
 

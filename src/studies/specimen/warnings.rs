@@ -6,9 +6,8 @@ use crate::mass_spring;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
-use crate::results::{
-    is_one_of_several, locking, one_of_several, small_strain, strained, wrinkling,
-};
+use crate::results::wrinkling::{self, Wrinkling};
+use crate::results::{is_one_of_several, locking, one_of_several, small_strain, strained};
 use crate::units::number;
 
 /// All warnings, each in a sentence.
@@ -22,7 +21,8 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
             )
         })
     };
-    let compression = wrinkling::warning(&*specimen.problem.law, mesh, loads());
+    let compression = loads().map(|(load, u)| (load, Wrinkling::new(specimen.sheet(), mesh, u)));
+    let compression = wrinkling::warning(compression);
     let lattice = mass_spring::warning(&*specimen.problem.law);
     let mut all: Vec<String> = lattice.into_iter().chain(compression).collect();
     let [_, corrected, finite_elements] = models.named();
@@ -45,7 +45,6 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         &specimen.card,
         FINITE_ELEMENTS.name,
         mesh,
-        |stretches| stretches.share > 0.0,
         loads(),
     ));
     all

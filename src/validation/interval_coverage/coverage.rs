@@ -110,18 +110,17 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-const HEAD: &str = "data | explained [%] | with correlated noise [%] | not explained [%] | displacements [%] | stresses [%] | \
+const HEAD: &str = "data | explained [%] | with correlated noise [%] | undecided [%] | not explained [%] | displacements [%] | stresses [%] | \
                     stresses near the hole [%] | force [%] | parameter [%]";
 
 const EXPLANATION: &str = "Marker displacements from converged finite elements on a strip with a hole (for the wrong edge, \
     on a plate); the outermost markers lie half a spacing inside the edges, and the grips are unknown. After the verdicts \
-    come the shares of true values within their 95 % intervals, over the seeds that are explained and therefore have \
-    intervals: displacements of all nodes, stresses more than a fifth of the width from a corner, stresses within 1.6 radii \
+    come the shares of true values within their 95 % intervals, over the seeds that have intervals: displacements of all nodes, stresses more than a fifth of the width from a corner, stresses within 1.6 radii \
     of the hole's centre, the force and the law's first parameter, which is estimated in a second correction with the force \
     measured to 1 %. The wrong law is neo-Hookean, with its parameter fitted to the force; the wrong thickness is combined \
     with the right law and a measured force; the wrong edge is a rigid grip stated at 70 % of the plate. Noise correlated \
     over three spacings or more leaves so few independent values of these 209 markers that it cannot be distinguished from a \
-    misfit: with fewer than a hundred of them a field is judged not explained.";
+    misfit: with fewer than a hundred of them the data cannot judge, and intervals include the widest correlation that they allow.";
 
 fn row(name: &str, shares: &Shares) -> Vec<String> {
     let answers = shares.answers.map(number);
@@ -132,12 +131,12 @@ fn row(name: &str, shares: &Shares) -> Vec<String> {
     [vec![name.to_owned()], answers.to_vec(), covered.to_vec()].concat()
 }
 
-/// Coverage of at least 90 %, or a verdict of "not explained" in 95 % of all seeds.
+/// Of the right equations a coverage of at least 90 %, of wrong ones a verdict of "not explained" in 95 % of all seeds.
 fn checks(name: &str, shares: &Shares, right: bool) -> Vec<Check> {
     let [.., not] = shares.answers;
-    let told = || check(format!("{name}: judged not explained"), "%", not);
-    if !right || not >= 95.0 {
-        return vec![told().at_least(95.0, AIM)];
+    let refuted = check(format!("{name}: judged not explained"), "%", not);
+    if !right {
+        return vec![refuted.at_least(95.0, AIM)];
     }
     let what = [
         "displacements",
@@ -152,7 +151,10 @@ fn checks(name: &str, shares: &Shares, right: bool) -> Vec<Check> {
         let what = format!("{name}: {what} in their 95 % intervals");
         check(what, "%", share).at_least(90.0, AIM)
     };
-    held.map(check).collect()
+    let held = held.map(check);
+    std::iter::once(refuted.at_most(5.0, AIM))
+        .chain(held)
+        .collect()
 }
 
 impl Settings {

@@ -34,7 +34,7 @@ impl CoverageTrial {
         truth: Option<f64>,
     ) -> Self {
         let mut trial = Self::verdict(found);
-        if !found.is_explained() {
+        if !found.has_intervals() {
             return trial;
         }
         trial.displacements(subject, found);
@@ -92,15 +92,20 @@ fn holds(found: &Estimate, truth: f64) -> bool {
 
 /// Shares of all seeds in %.
 pub struct Shares {
-    /// Of explained, explained with correlated noise, not explained.
-    pub answers: [f64; 3],
+    /// Of explained, explained with correlated noise, undecided, not explained.
+    pub answers: [f64; 4],
     held: [[usize; 2]; 5],
 }
 
 impl Shares {
     /// Of all seeds.
     pub fn of(all: &[CoverageTrial]) -> Self {
-        let answers = [Answer::Explained, Answer::Correlated, Answer::NotExplained];
+        let answers = [
+            Answer::Explained,
+            Answer::Correlated,
+            Answer::Undecided,
+            Answer::NotExplained,
+        ];
         let mut held = [[0; 2]; 5];
         for trial in all {
             for (sum, own) in held.iter_mut().zip(trial.held) {

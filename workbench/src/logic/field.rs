@@ -338,7 +338,7 @@ fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Co
         ],
         residuals: residuals.filter_map(residual).collect(),
         verdict: estimate.verdict.answer.words().to_owned(),
-        explained: estimate.verdict.answer != Answer::NotExplained,
+        explained: estimate.has_intervals(),
         forces: forces.collect(),
     }
 }

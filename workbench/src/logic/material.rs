@@ -247,10 +247,7 @@ mod tests {
         let ranking = Fitter.answer(&question).unwrap();
         let fit = &ranking.fits[0];
         // The guide: `gelbench materials fit materials/data/treloar_1944_uniaxial.csv --law yeoh`.
-        assert_eq!(
-            fit.parameters[0],
-            ["c10", "0.176284 MPa", "95 % 0.029289 … 0.32328"]
-        );
+        assert_eq!(fit.parameters[0], ["c10", "0.176284 MPa", "no interval"]);
         assert_eq!(fit.charts.len(), 2);
         let card = CardFile {
             name: "fitted".into(),

@@ -13,7 +13,7 @@ use gelbench::material::Card;
 use gelbench::mesh::Shape;
 use gelbench::problem::Support;
 use gelbench::studies::{Kind, plate, specimen};
-use gelbench::units::Linear;
+use gelbench::units::{Linear, could_be_stretch_ratios};
 
 use super::scene::{CardFile, Grip, Look, Outline, Scene};
 
@@ -54,8 +54,9 @@ impl Scene {
         format!(
             "kind = \"plate\"\ntitle = \"Clamped plate\"\n\n\
              [plate]\nlength = \"{length} mm\"\nwidth = \"{width} mm\"\nthickness = \"{} mm\"\ncells = [{nx}, {ny}]\n\n\
-             [material]\ncard = \"{card}\"\n\n[load]\nstretches = [{stretch}]\n",
-            self.thickness
+             [material]\ncard = \"{card}\"\n\n[load]\nstretches = [{}]\n",
+            self.thickness,
+            stretch_text(stretch)
         )
     }
 
@@ -276,6 +277,15 @@ fn grip_of(supports: &[(String, Support)]) -> Option<Grip> {
     };
     let clamp = support("left")? == Support::Displacement([Some(0.0); 2]);
     (clamp && supports.len() == 2).then(|| Grip::of_lines(lines))?
+}
+
+/// A stretch λ − 1 as a study has it: in percent where a number could be taken for λ.
+fn stretch_text(stretch: f64) -> String {
+    if could_be_stretch_ratios(&[stretch]) {
+        format!("\"{} %\"", 100.0 * stretch)
+    } else {
+        stretch.to_string()
+    }
 }
 
 #[cfg(test)]

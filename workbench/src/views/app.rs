@@ -293,12 +293,16 @@ impl Workbench {
     fn keys(&mut self, ui: &Ui) {
         let pressed =
             |shortcut: &KeyboardShortcut| ui.input_mut(|input| input.consume_shortcut(shortcut));
-        let redo = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-        if pressed(&redo) || pressed(&REDO) {
-            self.table.act(Action::Redo);
-        }
-        if pressed(&UNDO) {
-            self.table.act(Action::Undo);
+        let writes = ui.ctx().text_edit_focused();
+        // An editor takes back what was typed into it.
+        if self.shows_table() && !writes {
+            let redo = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+            if pressed(&redo) || pressed(&REDO) {
+                self.table.act(Action::Redo);
+            }
+            if pressed(&UNDO) {
+                self.table.act(Action::Undo);
+            }
         }
         if pressed(&SAVE) {
             self.save();
@@ -311,13 +315,17 @@ impl Workbench {
                 Tab::Study => self.studies.run(),
             }
         }
-        let writes = ui.ctx().text_edit_focused();
         if !writes && self.tab == Tab::Sheet && ui.input(|input| input.key_pressed(LET_GO)) {
             self.lets_go = true;
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.stop();
         }
+    }
+
+    /// Whether the view shows what lies on the table, so that it may be taken back there.
+    fn shows_table(&self) -> bool {
+        matches!(self.tab, Tab::Sheet | Tab::Material)
     }
 
     /// Stops what is being solved; what is changed next is solved anew.

@@ -71,15 +71,20 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
                 Stroke::Dashed => plot.line(through(1.5).style(LineStyle::dashed_dense())),
                 Stroke::Thin => plot.line(through(0.8)),
                 Stroke::Solid => plot.line(through(2.0)),
-                Stroke::Marked => {
-                    plot.line(through(1.5));
+                Stroke::Marked | Stroke::Ringed => {
+                    plot.line(through(0.8).style(LineStyle::dashed_loose()));
                     plot.points(
                         Points::new(line.label.clone(), places())
                             .color(ink)
+                            .filled(line.stroke == Stroke::Marked)
                             .radius(3.0),
                     );
                 }
             }
+        }
+        if let Some(words) = chart.dashes() {
+            let none = PlotPoints::from(Vec::<[f64; 2]>::new());
+            plot.line(Line::new(words, none).style(LineStyle::dashed_loose()));
         }
     });
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Grid, RichText, Ui};
 
-use gelbench::results::{Axis, Line, LineChart, PALETTE, Stroke};
+use gelbench::results::{Axis, Line, LineChart, PALETTE, Stroke, from_rest};
 
 use crate::logic::engine::Fault;
 use crate::logic::scene::Model;
@@ -21,10 +21,7 @@ pub fn curve(table: &Table) -> LineChart {
         // What is only stretched has no force at rest.
         let grip = table.scene().grip;
         if grip.displacement[1] == 0.0 && grip.angle == 0.0 && !points.is_empty() {
-            let rest = points.partition_point(|[stretch, _]| *stretch < 0.0);
-            if points.get(rest).is_none_or(|[stretch, _]| *stretch > 0.0) {
-                points.insert(rest, [0.0; 2]);
-            }
+            points = from_rest(points);
         }
         Line::new(model.name(), points, colour, Stroke::Marked)
     };

@@ -1,10 +1,25 @@
 //! Files that go out: into the folder in which the program was started, or as downloads of the browser.
 
+#[cfg(not(target_arch = "wasm32"))]
+use std::collections::BTreeMap;
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::PathBuf;
+#[cfg(not(target_arch = "wasm32"))]
+use std::sync::{Mutex, PoisonError};
+
+#[cfg(not(target_arch = "wasm32"))]
+use gelbench::output::free_name;
+
 #[cfg(target_arch = "wasm32")]
 use crate::logic::outputs::archive;
 use crate::logic::studies::NamedFile;
 
-/// Gives a file to the user; says where it is.
+/// What the workbench has written itself since it was started, which it may replace.
+#[cfg(not(target_arch = "wasm32"))]
+static WRITTEN: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
+
+/// Gives a file to the user; says where it is. A file of that name with other words than the workbench has written is kept under
+/// another one.
 ///
 /// # Errors
 /// Says why it could not be written.
@@ -12,13 +27,25 @@ use crate::logic::studies::NamedFile;
 pub fn save(name: &str, content: &[u8]) -> Result<String, String> {
     let path =
         std::path::absolute(name).map_err(|cause| format!("cannot write {name}: {cause}"))?;
-    std::fs::write(&path, content).map_err(|cause| {
+    let unwritable = |cause: std::io::Error| {
         format!(
             "cannot write {}: {cause}; start the workbench in a folder with write permission",
             path.display()
         )
-    })?;
-    Ok(format!("saved as {}", path.display()))
+    };
+    let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+    let there = std::fs::read(&path).ok();
+    let is_replaceable = |there: &Vec<u8>| there == content || written.get(&path) == Some(there);
+    let mut kept = String::new();
+    if there.is_some_and(|there| !is_replaceable(&there)) {
+        let other = free_name(&path);
+        std::fs::rename(&path, &other).map_err(unwritable)?;
+        kept = format!("; the file that was there is kept as {}", other.display());
+    }
+    std::fs::write(&path, content).map_err(unwritable)?;
+    let told = format!("saved as {}{kept}", path.display());
+    written.insert(path, content.to_vec());
+    Ok(told)
 }
 
 /// Gives files to the user: one by itself, several in a folder of a name; says where they are.

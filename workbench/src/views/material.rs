@@ -124,11 +124,7 @@ impl Materials {
                 table.take_card(chosen, false);
             }
             if ui.button("save card").clicked() {
-                let saved = files::save(
-                    &format!("{}.toml", file.name.trim_end_matches(".toml")),
-                    file.text.as_bytes(),
-                );
-                self.told = saved.unwrap_or_else(|fault| fault);
+                self.told = save_card(&file);
             }
         });
         if !self.told.is_empty() {
@@ -350,4 +346,10 @@ fn result(ui: &mut Ui, fit: &Fitted, table: &mut Table) {
         let height = if number == 0 { 260.0 } else { 150.0 };
         chart::show(ui, &format!("fit {number}"), drawn, height);
     }
+}
+
+/// Saves a card under its name; says where it is.
+pub fn save_card(card: &CardFile) -> String {
+    let name = format!("{}.toml", card.name.trim_end_matches(".toml"));
+    files::save(&name, card.text.as_bytes()).unwrap_or_else(|fault| fault)
 }

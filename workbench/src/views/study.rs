@@ -137,8 +137,7 @@ impl Studies {
                 self.run();
             }
             if ui.button("save").clicked() {
-                self.told =
-                    files::save(&self.name, self.text.as_bytes()).unwrap_or_else(|fault| fault);
+                self.told = self.save();
             }
             if self.runner.is_busy() {
                 ui.spinner();
@@ -159,6 +158,11 @@ impl Studies {
                 .desired_width(f32::INFINITY);
             ui.add(edit);
         });
+    }
+
+    /// Saves the text under its name; says where it is.
+    pub fn save(&self) -> String {
+        files::save(&self.name, self.text.as_bytes()).unwrap_or_else(|fault| fault)
     }
 
     /// Runs the study.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::regressed_law::RegressedLaw;
+use super::uncertain_law::UncertainLaw;
 use crate::corrector::estimation::regression::Robust;
 use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
@@ -46,6 +47,8 @@ pub struct Knowledge {
     pub scale_deviation: f64,
     /// Parameters of the law that are found with the field; the specimen's law is not used then.
     pub law: Option<RegressedLaw>,
+    /// The specimen's law with its uncertainty, which the errors include; not used where parameters are found.
+    pub uncertain_law: Option<UncertainLaw>,
 }
 
 /// The assumption on the outer boundary, from corner to corner, where no part is named.
@@ -127,6 +130,16 @@ impl Knowledge {
             true => &[],
             false => &self.forces,
         }
+    }
+
+    /// Whether forces and stresses are as large as the law makes them: no force is measured, and no parameter found.
+    pub(in crate::corrector::estimation) fn is_given_the_law(&self) -> bool {
+        self.law.is_none() && self.forces.is_empty()
+    }
+
+    /// The specimen's law with its uncertainty, where that is known and no parameter is found.
+    pub(in crate::corrector::estimation) fn uncertain_law(&self) -> Option<&UncertainLaw> {
+        self.uncertain_law.as_ref().filter(|_| self.law.is_none())
     }
 
     /// Checks the measured forces and the noise.

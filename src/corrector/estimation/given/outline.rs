@@ -4,13 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::knowledge::EdgeCondition;
 use crate::error::Diagnostic;
-use crate::mesh::Mesh;
-
-/// Turn of the boundary, in rad, from which on a node is a corner.
-const CORNER: f64 = 0.7;
-
-/// Share of a loop's length before and behind a node over which its turn is measured, so that steps of one cell are not corners.
-const REACH: f64 = 0.02;
+use crate::mesh::geometry::distance;
+use crate::mesh::{Mesh, corners};
 
 /// A part of the boundary that has one condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,7 +171,8 @@ fn divide(
 ) {
     let count = chain.len();
     let label = |edge: usize| labels.get(&chain[edge % count][0]).copied();
-    let corner = corners(mesh, chain);
+    let line: Vec<[f64; 2]> = chain.iter().map(|edge| mesh.nodes[edge[0]]).collect();
+    let corner = corners(&line);
     let cuts: Vec<usize> = (0..count)
         .filter(|edge| corner[*edge] || label(*edge) != label(edge + count - 1))
         .collect();
@@ -219,46 +215,6 @@ fn walk<'a>(mesh: &Mesh, edges: impl Iterator<Item = &'a Vec<usize>>) -> (Vec<us
         }
     }
     (nodes, places)
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-/// Whether the boundary turns at the first node of each edge of a loop.
-fn corners(mesh: &Mesh, chain: &[&Vec<usize>]) -> Vec<bool> {
-    let count = chain.len();
-    let node = |edge: usize| mesh.nodes[chain[edge % count][0]];
-    let length: f64 = (0..count)
-        .map(|edge| distance(node(edge), node(edge + 1)))
-        .sum();
-    // The first node at the reach or beyond, on both sides.
-    let away = |edge: usize, step: usize| {
-        let far = (1..count).map(|steps| node(edge + steps * step));
-        let mut far = far.skip_while(|place| distance(*place, node(edge)) < REACH * length);
-        far.next().unwrap_or(node(edge + step))
-    };
-    let turn = |edge: usize| {
-        let (from, at, to) = (away(edge, count - 1), node(edge), away(edge, 1));
-        let (a, b) = (
-            [at[0] - from[0], at[1] - from[1]],
-            [to[0] - at[0], to[1] - at[1]],
-        );
-        (a[0] * b[1] - a[1] * b[0])
-            .atan2(a[0] * b[0] + a[1] * b[1])
-            .abs()
-    };
-    let turns: Vec<f64> = (0..count).map(turn).collect();
-    let sharpest = |edge: usize| {
-        let near =
-            |other: &usize| *other != edge && distance(node(*other), node(edge)) < REACH * length;
-        let mut others = (0..count).filter(near);
-        // The first of several equal ones.
-        others.all(|other| (turns[other], edge) < (turns[edge], other))
-    };
-    (0..count)
-        .map(|edge| turns[edge] > CORNER && sharpest(edge))
-        .collect()
 }
 
 /// Numbers parts that no group names and that would have one name, as they follow each other; numbers that named ones have are left out.

@@ -24,6 +24,9 @@ pub struct RegressedLaw {
     places: Vec<usize>,
 }
 
+/// A law with one parameter a little smaller and larger, and the width between.
+pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
+
 /// The key that stands for all parameters of a card.
 const ALL: &str = "all";
 
@@ -171,6 +174,21 @@ impl RegressedLaw {
                 false => parameter.value,
             });
         Some(self.beginning_at(&values.collect::<Vec<_>>()))
+    }
+
+    /// The laws with each of the parameters a little smaller and larger than these values, and twice the difference.
+    pub fn neighbours(&self, values: &[f64]) -> Vec<Neighbours> {
+        const STEP: f64 = 1e-5;
+        let pair = |index: usize| {
+            let step = STEP * values[index].abs();
+            let moved = [-step, step].map(|step| {
+                let mut moved = values.to_vec();
+                moved[index] += step;
+                self.at(&moved)
+            });
+            (moved, 2.0 * step)
+        };
+        (0..values.len()).map(pair).collect()
     }
 
     /// The law with other values.

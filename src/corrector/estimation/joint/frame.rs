@@ -214,7 +214,7 @@ impl Judged<'_> {
             let rows = Rows::new(&found, &sound, None);
             let noise = rows
                 .as_ref()
-                .and_then(|rows| Model::of_search(rows, &found).noise(rows));
+                .and_then(|rows| Model::of_search(rows, &found).noises(rows).first().copied());
             let markers = observations.chosen.len() as f64;
             let sites = Sites::new(observations.places.clone());
             let independent = 2.0
@@ -267,7 +267,7 @@ impl Judged<'_> {
         from: Option<&State>,
     ) -> Result<CrossPrediction, Error> {
         self.with_field(law, values, from, false, |found| {
-            let forces = found.forces(1.0, None)?;
+            let forces = found.forces(1.0, None, &[])?;
             let prediction = |measured: &MeasuredForce| {
                 let own = forces.iter().filter(|force| force.edge == measured.edge);
                 own.map(|force| force.force[measured.axis].value).sum()

@@ -90,8 +90,8 @@ impl Model {
         }
     }
 
-    /// The correlation of the noise, where the data show one.
-    pub fn noise(&self, rows: &Rows) -> Option<CorrelatedNoise> {
+    /// The correlations that the noise may have, where the data show one, the likeliest first.
+    pub fn noises(&self, rows: &Rows) -> Vec<CorrelatedNoise> {
         let some = rows.clusters();
         let entry = |row: usize| 2 * some.chosen[row / 2] + row % 2;
         let count = 2 * some.chosen.len();
@@ -104,8 +104,9 @@ impl Model {
             slope: &self.slope,
         };
         let longest = 0.5 * (rows.extent[0] * rows.extent[1]).sqrt();
-        let found = regression.likeliest(rows.spacing, longest)?;
-        (found.evidence > EVIDENCE).then_some(found)
+        let found = regression.plausible(rows.spacing, longest);
+        let shown = found.first().is_some_and(|one| one.evidence > EVIDENCE);
+        found.into_iter().take_while(|_| shown).collect()
     }
 
     /// The residuals of the markers in mm, after an ordinary regression.
@@ -131,7 +132,7 @@ impl Reference {
     ) -> Self {
         let most = all.unwrap_or(base);
         let flexible = || most.with(rows, columns.iter().map(|(_, design)| design));
-        let noise = noise.and_then(|_| flexible().noise(rows));
+        let noise = noise.and_then(|_| flexible().noises(rows).into_iter().next());
         let correlation = noise.as_ref().map(|noise| noise.correlation);
         let count = rows.chosen.len() as f64;
         let mesh = own.map_or(0.0, |own| {

@@ -15,8 +15,7 @@ use crate::statistics::Estimate;
 ///
 /// Standard errors come from the noise of the markers, to first order, and from the mesh's own error e: √(s² + e²).
 /// For all quantities e follows from the same equations on cells half as large; for a large mesh only stress and
-/// thickness have it, from the recovered gradient. Standard errors are valid where the verdict is that the data are
-/// explained. `± reach · standard error` is the 95 % interval.
+/// thickness have it, from the recovered gradient. Standard errors are valid where the verdict has intervals. `± reach · standard error` is the 95 % interval.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct FieldEstimate {
     /// ux, uy of node after node in mm.
@@ -66,6 +65,11 @@ pub struct FieldEstimate {
     pub steps: usize,
     /// The change due to an error of the picture's scale.
     pub scale_change: ScaleChange,
+    /// Whether forces and stresses are as large as the given law makes them: no force is measured, and no parameter found.
+    pub is_given_the_law: bool,
+    /// The standard errors of the forces along x and y in N due to the uncertainty of the law that its card records, which their intervals
+    /// include, in the order of the forces; empty where it records none.
+    pub law_deviations: Vec<[f64; 2]>,
     /// Whether the standard errors of displacements, forces and parameters include the mesh's own error, which is not
     /// known for meshes with too many cells.
     pub holds_mesh_error: bool,
@@ -106,9 +110,14 @@ impl ForceCheck {
 }
 
 impl FieldEstimate {
-    /// Whether law, thickness and conditions explain the data, so that intervals are valid.
+    /// Whether law, thickness and conditions explain the data.
     pub fn is_explained(&self) -> bool {
-        self.verdict.answer != Answer::NotExplained
+        matches!(self.verdict.answer, Answer::Explained | Answer::Correlated)
+    }
+
+    /// Whether its intervals are valid.
+    pub fn has_intervals(&self) -> bool {
+        self.verdict.has_intervals()
     }
 
     /// The share of the area on which the mesh's own error is the larger part of the error of stress, and more than a

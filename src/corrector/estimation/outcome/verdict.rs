@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::statistics::small_probability;
+use crate::units::decimals;
 
 /// The answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
@@ -12,6 +13,9 @@ pub enum Answer {
     Explained,
     /// The residuals are noise that is correlated between neighbours; the intervals include that.
     Correlated,
+    /// Nothing speaks against the equations, but the data would hardly show it: too few of their values are independent, or gross
+    /// errors make up their noise.
+    Undecided,
     /// The residuals are not noise: intervals are not valid.
     NotExplained,
 }
@@ -22,7 +26,16 @@ impl Answer {
         match self {
             Self::Explained => "explained",
             Self::Correlated => "explained with correlated noise",
+            Self::Undecided => "the data cannot judge",
             Self::NotExplained => "not explained by this law, thickness and conditions",
+        }
+    }
+
+    /// The answer in words, where the data are those of another `model`.
+    pub fn given(self, model: &str) -> String {
+        match self {
+            Self::NotExplained => format!("not explained by {model}"),
+            other => other.words().to_owned(),
         }
     }
 }
@@ -34,7 +47,7 @@ pub struct Verdict {
     pub answer: Answer,
     /// The correlation of the noise, where there is one.
     pub correlation: Option<NoiseCorrelation>,
-    /// Why the data are not explained; empty where they are.
+    /// Why the data are not explained, or cannot judge; empty where they are.
     pub reasons: Vec<Reason>,
     /// Alternatives that explain the data better, the best first, where the data are not explained.
     pub trials: Vec<Trial>,
@@ -43,6 +56,12 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// Whether intervals are valid: where the residuals are noise, or may be as far as so few independent values show.
+    pub fn has_intervals(&self) -> bool {
+        let gross = |reason: &Reason| matches!(reason, Reason::GrossErrors(_));
+        self.answer != Answer::NotExplained && !self.reasons.iter().any(gross)
+    }
+
     /// Whether data are not explained because cells are too coarse for them: a finer mesh explains more than any other alternative.
     pub fn asks_for_finer_mesh(&self) -> bool {
         let first = self.trials.first().map(|trial| &trial.alternative);
@@ -63,13 +82,20 @@ pub struct NoiseCorrelation {
     pub evidence: f64,
 }
 
-/// Why data are not explained.
+/// Why data are not explained, or cannot judge.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Reason {
     /// An alternative reduces the misfit more than noise would: the probability of that under noise.
     Alternative(f64),
-    /// The residuals are correlated over so many mm that noise cannot be distinguished from a misfit.
-    Long(f64),
+    /// The residuals correlate over so many mm, and so few markers with white noise would carry the same information.
+    Few {
+        /// The distance in mm.
+        length: f64,
+        /// The number of markers with white noise.
+        independent: f64,
+    },
+    /// Gross errors make up the noise, which has this standard deviation in mm.
+    GrossErrors(f64),
     /// A measured force is off by so many standard errors.
     Force(f64),
     /// The residuals are correlated so strongly with those of the frame before or after.
@@ -84,8 +110,17 @@ impl Reason {
                 "an alternative model reduces the misfit by an amount that noise alone would reach with probability {}",
                 small_probability(probability)
             ),
-            Self::Long(length) => format!(
-                "the residuals correlate over {length:.3} mm, too far to be distinguished from a misfit"
+            Self::Few {
+                length,
+                independent,
+            } => format!(
+                "the residuals correlate over {length:.3} mm, so that the markers are worth {independent:.0} independent ones: too few to \
+                 tell noise from a misfit, which is no evidence against the law"
+            ),
+            Self::GrossErrors(noise) => format!(
+                "many markers lie much closer to the field than a noise of {} mm suggests: gross errors make up this noise, and with it any \
+                 law fits: leave out markers that were lost or matched wrongly, or try --robust tukey",
+                decimals(noise, 4)
             ),
             Self::Force(errors) => {
                 format!("a measured force is {errors:.1} standard errors off")

@@ -1,115 +1,25 @@
-//! The errors of a field where only the markers show the position of its free edges.
+//! Free edges where only the markers show the position of the specimen's edge, as considered parameters ([`super::considered`]).
 //!
 //! ```text
 //! sₖ = ∂u/∂dₖ                                    d the distance of edge k outside of the mesh's ([`super::moved_edges`])
-//! M Dₖ = −AᵀWHsₖ/v − Gᵀ∂F/∂dₖ/σ                  what the regression makes of it, as it knows of no distance
 //! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each edge lies as probably anywhere from nothing to the gap g farther out
-//!
-//! Cov(p, d) = [C + DΣDᵀ, DΣ; ΣDᵀ, Σ],   ∂u/∂(p, d) = [S, s]
 //! ```
-//!
-//! with A, W, v, G, M of [`crate::corrector::estimation::regression`]. The field remains the one through the edges of the mesh: the distances are
-//! considered parameters that are not estimated (Schmidt), so that data with little information on them do not move the field.
-//!
-//! # References
-//! S. F. Schmidt, Adv. Control Syst. 3, 293 (1966), doi:10.1016/B978-1-4831-6716-9.50011-4
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use crate::corrector::estimation::equations::solve;
 use crate::corrector::estimation::given::Edge;
 use crate::corrector::estimation::search::NearestField;
-use crate::error::Error;
-use crate::problem::corner_forces::Share;
-use crate::solve::vector::dot;
-
-/// Distances of free edges that are considered.
-pub struct UnknownPlaces {
-    /// sₖ.
-    changes: Vec<Vec<f64>>,
-    /// D.
-    answers: DMatrix<f64>,
-    /// Σ in mm².
-    squares: DMatrix<f64>,
-}
 
 impl NearestField<'_> {
-    /// The free edges at unknown positions; must be called before the covariance includes the noise found, because it has to be M⁻¹.
-    pub(in crate::corrector::estimation) fn unknown_places(
-        &mut self,
-        edges: &[Edge],
-    ) -> Result<Option<UnknownPlaces>, Error> {
+    /// The forces of the strips beside the free edges in N/mm, and Σ in mm²; nothing where the edges are known.
+    pub(super) fn unknown_places(&self, edges: &[Edge]) -> (Vec<Vec<f64>>, DMatrix<f64>) {
         let Some(gap) = self.equations.task.knowledge.edge_gap else {
-            return Ok(None);
+            return (Vec::new(), DMatrix::zeros(0, 0));
         };
         let strips = self.strips(edges);
-        let tangent = &mut self.equations.newton.tangent;
-        let changes = tangent.changes(&strips).map_err(solve)?;
-        let mut answers = DMatrix::zeros(self.fit.covariance.nrows(), changes.len());
-        for (index, (change, strip)) in changes.iter().zip(&strips).enumerate() {
-            let target = self.target(change, strip)?;
-            answers.set_column(index, &(&self.fit.covariance * target));
-        }
         let square = |i, j| gap * gap / if i == j { 3.0 } else { 4.0 };
-        Ok(Some(UnknownPlaces {
-            squares: DMatrix::from_fn(changes.len(), changes.len(), square),
-            changes,
-            answers,
-        }))
-    }
-
-    /// −AᵀWHs/v − Gᵀ∂F/∂d/σ of one strip.
-    fn target(&self, change: &[f64], strip: &[f64]) -> Result<DVector<f64>, Error> {
-        let observations = self.observations();
-        let at_markers = observations.interpolation.multiply(change);
-        let mut target = self
-            .equations
-            .target_of(&at_markers, &self.linear, &self.variances);
-        for (row, measured) in self
-            .equations
-            .task
-            .knowledge
-            .measured_forces()
-            .iter()
-            .enumerate()
-        {
-            let own = self
-                .equations
-                .bodies
-                .iter()
-                .filter(|body| body.name == measured.edge);
-            let shares: Vec<Share> = own
-                .flat_map(|body| &body.shares[measured.axis])
-                .copied()
-                .collect();
-            let grip = self.equations.grip(&shares, measured.axis, &self.field)?;
-            let off = dot(&grip.pull, change) + dot(&grip.marks, strip);
-            let slopes = self.linear.force_rows.0.row(row).transpose();
-            target -= slopes * (off / measured.standard_deviation);
-        }
-        Ok(target)
-    }
-
-    /// Appends the distances to the parameters of the field.
-    pub(in crate::corrector::estimation) fn consider(&mut self, places: UnknownPlaces) {
-        let UnknownPlaces {
-            changes,
-            answers,
-            squares,
-        } = places;
-        let (own, more) = (answers.nrows(), answers.ncols());
-        let across = &answers * &squares;
-        let mut whole = DMatrix::zeros(own + more, own + more);
-        whole
-            .view_mut((0, 0), (own, own))
-            .copy_from(&(&self.fit.covariance + &across * answers.transpose()));
-        whole.view_mut((0, own), (own, more)).copy_from(&across);
-        whole
-            .view_mut((own, 0), (more, own))
-            .copy_from(&across.transpose());
-        whole.view_mut((own, own), (more, more)).copy_from(&squares);
-        self.fit.covariance = whole;
-        self.linear.sensitivities.extend(changes);
+        let squares = DMatrix::from_fn(strips.len(), strips.len(), square);
+        (strips, squares)
     }
 }
 

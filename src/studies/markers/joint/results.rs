@@ -98,14 +98,13 @@ pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
 
 /// What makes the figures of a specimen doubtful, in one sentence.
 fn doubt(specimen: &CorrectedSpecimen) -> Option<String> {
-    let own = specimen.study.all_doubts(&specimen.estimates);
     let off = specimen
         .estimates
         .iter()
         .filter(|found| !found.is_explained());
     let (off, all) = (off.count(), specimen.estimates.len());
     let name = &specimen.name;
-    match (off, own.len()) {
+    match (off, specimen.doubts) {
         (0, 0) => None,
         (0, count) => Some(format!(
             "{name}: {count} doubts, see specimens/{name}/report.html"

@@ -101,6 +101,10 @@ fn settings_that_contradict_each_other_are_refused() {
     assert!(faults("[load]\nstretches = [-0.1, -0.05]\n")[0].contains("from small to large"));
     assert!(faults("[load]\nstretches = [0, 0.3]\n")[0].contains("zero"));
     assert!(faults("[load]\nstretches = [-1]\n")[0].contains("must be"));
+    for text in ["[1.05, 1.1]", "[\"1.05\", \"1.1\"]", "[1.0, \"2.5\"]"] {
+        let fault = &faults(&format!("[load]\nstretches = {text}\n"))[0];
+        assert!(fault.contains("or λ"), "{text}: {fault}");
+    }
     assert!(faults("[finite_element]\ncells = \"auto\"\n")[0].contains("\"automatic\""));
     assert!(faults("[corrector]\nscheme = \"gaus\"\n")[0].contains("did you mean \"gauss\""));
     assert!(

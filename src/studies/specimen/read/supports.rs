@@ -1,7 +1,7 @@
 //! The supports and loads of a specimen's study.
 
 use crate::document::{Bound, Section};
-use crate::error::suggestion;
+use crate::error::{Severity, suggestion};
 use crate::mesh::Mesh;
 use crate::problem::{BoundaryProblem, Drive, Load, Support};
 use crate::units::Dimension;
@@ -77,13 +77,18 @@ impl<'a> SupportsAndLoads<'a> {
         {
             return; // told already
         }
-        for fault in problem.check(mesh).err().unwrap_or_default() {
+        let unstrained = |()| problem.unstrained(mesh).map_err(|fault| vec![fault]);
+        let found = problem.check(mesh).and_then(unstrained);
+        for fault in found.map_or_else(|faults| faults, |found| found.into_iter().collect()) {
             let hint = fault.hint.unwrap_or_default();
             let entry = match fault.key.as_str() {
                 "load" => named(&self.loads, "load", &fault.message),
                 _ => named(&self.supports, "support", &fault.message),
             };
             match entry {
+                _ if fault.severity == Severity::Warning => {
+                    root.warning("support", &fault.message, &hint);
+                }
                 Some(section) => section.fault("group", &fault.message, &hint),
                 None => root.fault("support", &fault.message, &hint),
             }

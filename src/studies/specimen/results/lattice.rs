@@ -1,7 +1,7 @@
 //! Springs and corrected springs on the lattice of a specimen, each as far as its path goes.
 
 use super::end::End;
-use crate::corrector::shape_climb::{Climb, ShapeClimb, ShapeWork};
+use crate::corrector::nested::{NestedCorrection, NestedMeshes};
 use crate::corrector::specimen::{correct, correct_without_multipliers};
 use crate::corrector::{CorrectorSettings, Solver};
 use crate::error::{Error, SolveFault};
@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 use crate::problem::{Model, Solution};
 use crate::results::models::{CORRECTED, MASS_SPRING};
 use crate::solve::vector::difference;
-use crate::solve::{Assembly, Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
+use crate::solve::{Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{LARGE, Specimen};
 
@@ -30,7 +30,7 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// At springs on a coarser mesh.
-    Climb,
+    Nested,
     /// At the springs' field, with what the correction had changed at the load factor before.
     Springs,
     /// At the equilibrium of the lattice's cells, which Newton's method reached from rest in load steps; ū is the
@@ -50,16 +50,8 @@ pub struct OnLattice {
     pub corrected: Solution,
     /// Where the corrector began at each load factor that it reached.
     pub starts: Vec<Start>,
-    /// The climbs to the first of these, or to all.
-    pub climbs: Vec<ClimbTold>,
-}
-
-/// What a climb tells besides its state.
-pub struct ClimbTold {
-    /// See [`ShapeClimb::discretisation_error`].
-    pub discretisation_error: f64,
-    /// See [`ShapeClimb::work`].
-    pub work: Vec<ShapeWork>,
+    /// The discretisation errors in mm of those that began at springs on a coarser mesh.
+    pub discretisation_errors: Vec<f64>,
 }
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
@@ -117,31 +109,28 @@ impl OnLattice {
     ) -> Result<Self, Error> {
         let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
         progress.tell("corrector");
-        let climbs = climbs(specimen, &springs.mesh)?;
-        Self::correct(specimen, springs, uncorrected, climbs, ends, progress)
+        let nested = correct_nested(specimen, &springs.mesh, progress)?;
+        Self::correct(specimen, springs, uncorrected, nested, ends, progress)
     }
 
-    /// Corrects the springs where climbs do not lead.
+    /// Corrects the springs where nested meshes do not lead.
     fn correct(
         specimen: &Specimen,
         springs: MassSpring,
         uncorrected: Solution,
-        climbs: Vec<ShapeClimb>,
+        nested: Vec<NestedCorrection>,
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
         let lattice = &springs.mesh;
         let energy = specimen.problem.finite_elements(lattice);
         let model = specimen.on(lattice, &energy)?.named("corrector");
-        let told = climbs.iter().map(|own| ClimbTold {
-            discretisation_error: own.discretisation_error,
-            work: own.work.clone(),
-        });
-        let told = told.collect();
-        let climbed = climbs.into_iter().map(|own| climbed(&model, own.state));
-        let climbed = climbed.collect();
+        let (states, discretisation_errors) = nested
+            .into_iter()
+            .map(|field| (field.state, field.discretisation_error))
+            .unzip();
         let corrections = Corrections::new(specimen, &model, progress);
-        let (states, starts) = corrections.all(&uncorrected, climbed, ends);
+        let (states, starts) = corrections.all(&uncorrected, states, ends);
         let corrected = Solution::new(&model, &specimen.groups(), states);
         drop(model);
         Ok(Self {
@@ -149,27 +138,36 @@ impl OnLattice {
             uncorrected,
             corrected,
             starts,
-            climbs: told,
+            discretisation_errors,
         })
     }
 }
 
-/// The climbs to the load factors, as far as they lead; none where the study has no climb.
-fn climbs(specimen: &Specimen, lattice: &Mesh) -> Result<Vec<ShapeClimb>, Error> {
-    let Some(settings) = specimen.climb(2 * lattice.nodes.len()) else {
+/// The corrections on nested meshes at the load factors, as far as they lead; none where the study has no such meshes.
+fn correct_nested(
+    specimen: &Specimen,
+    lattice: &Mesh,
+    progress: Progress,
+) -> Result<Vec<NestedCorrection>, Error> {
+    if !specimen.is_nested(2 * lattice.nodes.len()) {
         return Ok(Vec::new());
-    };
-    let meshes = specimen.outline.lattices();
-    let mut climb = Climb::new(&specimen.problem, &meshes, settings);
-    let mut climbs = Vec::new();
-    match climb.follow(&specimen.factors, &mut |own| climbs.push(own.clone())) {
-        // The rest is left to load steps on the lattice, which tell how far they came.
-        Ok(()) | Err(Error::Solve { .. }) => Ok(climbs),
-        Err(other) => Err(other),
     }
+    let meshes = specimen.outline.lattices();
+    let nested = NestedMeshes::new(&specimen.problem, &meshes);
+    let mut fields = Vec::new();
+    for factor in &specimen.factors {
+        match nested.correct(*factor) {
+            Ok(field) => fields.push(field),
+            // The rest goes by load steps on the lattice, which state how far they came.
+            Err(Error::Solve { .. }) => break,
+            Err(other) => return Err(other),
+        }
+        progress.tell(&format!("corrector, load factor {factor} solved"));
+    }
+    Ok(fields)
 }
 
-/// The corrected field alone: where it climbs, the lattice's own springs are not needed.
+/// The corrected field alone: on nested meshes the lattice's own springs are not needed.
 pub fn solve_corrected(
     specimen: &Specimen,
     ends: &mut Vec<End>,
@@ -177,29 +175,18 @@ pub fn solve_corrected(
 ) -> Result<Solution, Error> {
     progress.tell("corrector");
     let lattice = specimen.outline.lattice();
-    let climbs = climbs(specimen, &lattice)?;
-    if climbs.len() == specimen.factors.len() {
+    let nested = correct_nested(specimen, &lattice, progress)?;
+    if nested.len() == specimen.factors.len() {
         let energy = specimen.problem.finite_elements(&lattice);
         let model = specimen.on(&lattice, &energy)?;
-        let states = climbs.into_iter().map(|own| climbed(&model, own.state));
+        let states = nested.into_iter().map(|field| field.state);
         return Ok(Solution::new(&model, &specimen.groups(), states.collect()));
     }
     let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
-    let found = OnLattice::correct(specimen, springs, uncorrected, climbs, ends, progress)?;
+    let found = OnLattice::correct(specimen, springs, uncorrected, nested, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of(MASS_SPRING.name));
     Ok(found.corrected)
-}
-
-/// The state of a climb with its potential, which those between the first and the last do not have.
-fn climbed(model: &Model, mut state: State) -> State {
-    if state.convergence.energy.is_nan() {
-        let potential = model.potential(state.factor, &[]);
-        let mut forces = vec![0.0; state.displacement.len()];
-        let found = Assembly::residual(&*potential, &state.displacement, &mut forces);
-        state.convergence.energy = found.unwrap_or(f64::NAN);
-    }
-    state
 }
 
 /// The corrections at all load factors.
@@ -221,14 +208,14 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// Corrects as many load factors as can be, beyond the states that climbs have led to.
+    /// Corrects as many load factors as can be, beyond the states that nested meshes have led to.
     fn all(
         mut self,
         uncorrected: &Solution,
         mut states: Vec<State>,
         ends: &mut Vec<End>,
     ) -> (Vec<State>, Vec<Start>) {
-        let mut starts = vec![Start::Climb; states.len()];
+        let mut starts = vec![Start::Nested; states.len()];
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         let factors = self.specimen.factors.iter().enumerate();
         for (step, factor) in factors.skip(starts.len()) {

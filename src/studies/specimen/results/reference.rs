@@ -1,7 +1,5 @@
 //! The finite elements that a specimen's other models are held to, and their own error.
 
-use std::f64::consts::PI;
-
 use super::measured::Measured;
 use crate::compare::judgement::Judgement;
 use crate::compare::percent_at_all_nodes;
@@ -9,7 +7,7 @@ use crate::finite_element::convergence::{
     LOWEST_ORDER, at_most_of_order, corner_exponent, of_distances, richardson,
 };
 use crate::finite_element::error_estimate::ErrorEstimate;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, REENTRANT};
 use crate::problem::Solution;
 use crate::results::{Block, Check, Wanted, or_dash};
 use crate::statistics::larger;
@@ -193,10 +191,10 @@ impl Reference {
     /// An error by the distance of the two finest meshes, which re-entrant corners of the finest one let fall slowly, however the coarse
     /// ones came nearer.
     fn beside_corners(&self, error: f64, last: f64) -> f64 {
-        /// A smaller angle in rad is one between the chords of a curve.
-        const CORNER: f64 = 210.0 * PI / 180.0;
         match self.finest.mesh.largest_angle() {
-            angle if angle > CORNER => at_most_of_order(error, last, 2.0 * corner_exponent(angle)),
+            angle if angle > REENTRANT => {
+                at_most_of_order(error, last, 2.0 * corner_exponent(angle))
+            }
             _ => error,
         }
     }

@@ -6,20 +6,29 @@ use super::{Tab, Workbench};
 use crate::logic::outputs::{Format, ShownField, Wanted};
 use crate::logic::scene::Model;
 use crate::views::exports::{self, Offer};
-use crate::views::{figures, files};
+use crate::views::{figures, files, material};
 
 impl Workbench {
-    /// Saves the study, and its card where it is the user's own.
+    /// Saves what is shown.
     pub(super) fn save(&mut self) {
-        let scene = self.table.scene().clone();
+        self.told = match self.tab() {
+            Tab::Sheet => self.save_sheet(),
+            Tab::Material => material::save_card(&self.table.scene().card),
+            Tab::Field => "`export` saves the corrected field".to_owned(),
+            Tab::Study => self.studies.save(),
+        };
+    }
+
+    /// Saves the sheet as a study, and its card where it is the user's own.
+    fn save_sheet(&self) -> String {
+        let scene = self.table.scene();
         let study = files::save("workbench.toml", scene.study().as_bytes());
         let card = (!scene.card.is_shipped())
             .then(|| files::save(&scene.card.reference(), scene.card.text.as_bytes()));
         let told = [Some(study), card].into_iter().flatten();
-        self.told = told
-            .map(|told| told.unwrap_or_else(|fault| fault))
+        told.map(|told| told.unwrap_or_else(|fault| fault))
             .collect::<Vec<_>>()
-            .join("; ");
+            .join("; ")
     }
 
     /// What may go out of the view that is shown, to choose from.

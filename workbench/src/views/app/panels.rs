@@ -60,7 +60,7 @@ impl Workbench {
                 }
                 ui.separator();
             }
-            let [undo, redo] = self.table.steps();
+            let [undo, redo] = self.table.steps().map(|has| has && self.shows_table());
             if ui
                 .add_enabled(undo, egui::Button::new("undo"))
                 .on_hover_text("Ctrl+Z")
@@ -75,7 +75,7 @@ impl Workbench {
             {
                 self.table.act(Action::Redo);
             }
-            let hint = "Ctrl+S: saves the study for `gelbench run`, and its card if it is your own";
+            let hint = "Ctrl+S: saves what is shown: the study for `gelbench run`, with its card if it is your own, or the card";
             if ui.button("save study").on_hover_text(hint).clicked() {
                 self.save();
             }

@@ -1,0 +1,118 @@
+//! What is said of the right law and of a wrong one under noise that is white, or of which few values are independent.
+
+use nalgebra::DMatrix;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+use super::*;
+
+/// 31 × 18 markers on the plate.
+fn places() -> Vec<[f64; 2]> {
+    let [along, across] = SIZE.map(|size| size * 0.98);
+    let place = |i: usize, j: usize| {
+        [
+            0.01 * SIZE[0] + along * i as f64 / 30.0,
+            0.01 * SIZE[1] + across * j as f64 / 17.0,
+        ]
+    };
+    (0..31)
+        .flat_map(|i| (0..18).map(move |j| place(i, j)))
+        .collect()
+}
+
+/// The root of the covariance e^(−d/ℓ) of the places.
+fn root(places: &[[f64; 2]], length: f64) -> DMatrix<f64> {
+    let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let count = places.len();
+    let covariance = DMatrix::from_fn(count, count, |i, j| {
+        (-far(places[i], places[j]) / length).exp()
+    });
+    covariance.cholesky().unwrap().unpack()
+}
+
+/// Markers with noise of a standard deviation in mm, white or with this root of its covariance.
+fn disturbed(
+    truth: &Truth,
+    places: &[[f64; 2]],
+    root: Option<&DMatrix<f64>>,
+    noise: f64,
+    seed: u64,
+) -> Vec<Marker> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let white = DMatrix::from_fn(places.len(), 2, |_, _| StandardNormal.sample(&mut random));
+    let values = root.map_or(white.clone(), |root| root * &white);
+    let marker = |(number, place): (usize, &[f64; 2])| {
+        let exact = truth.at(*place);
+        Marker {
+            number,
+            place: *place,
+            displacement: [0, 1].map(|axis| exact[axis] + noise * values[(number, axis)]),
+            standard_deviation: None,
+        }
+    };
+    places.iter().enumerate().map(marker).collect()
+}
+
+fn pva() -> Arc<dyn HyperelasticLaw> {
+    Card::load("pva-10", std::path::Path::new(".")).unwrap().law
+}
+
+fn found(
+    law: Arc<dyn HyperelasticLaw>,
+    mesh: &crate::mesh::Mesh,
+    markers: &[Marker],
+) -> FieldEstimate {
+    let specimen = Specimen {
+        law,
+        ..specimen(mesh)
+    };
+    estimate(&specimen, markers, &with_grips(EdgeCondition::Unknown)).unwrap()
+}
+
+/// As 4 mm on a strip of 40 mm × 20 mm.
+const LENGTH: f64 = 6.0;
+
+#[test]
+fn too_few_independent_values_leave_the_right_law_undecided_with_intervals_that_hold_the_truth() {
+    let (truth, mesh, places) = (Truth::new(), estimate_mesh(), places());
+    let root = root(&places, LENGTH);
+    let estimated = |seed| {
+        let markers = disturbed(&truth, &places, Some(&root), 0.1, seed);
+        found(law(), &mesh, &markers)
+    };
+    let all: Vec<FieldEstimate> = (0..8).into_par_iter().map(estimated).collect();
+    for found in &all {
+        assert_ne!(found.verdict.answer, Answer::NotExplained);
+        let force = found.forces.iter().find(|force| force.edge == "right");
+        let force = &force.unwrap().force[0];
+        let [low, high] = force.interval;
+        assert!(low < truth.force && truth.force < high, "{force:?}");
+        assert!(high - low < 0.1 * truth.force, "{force:?}");
+    }
+    let undecided = all.iter().map(|found| &found.verdict);
+    let undecided: Vec<_> = undecided
+        .filter(|verdict| verdict.answer == Answer::Undecided)
+        .collect();
+    assert!(undecided.len() >= 5, "{}", undecided.len());
+    for verdict in undecided {
+        assert!(verdict.has_intervals(), "{verdict:?}");
+        let words = verdict.reasons[0].words();
+        assert!(words.contains("no evidence against the law"), "{words}");
+    }
+}
+
+#[test]
+fn a_wrong_law_is_refuted_by_white_noise_and_never_explained_by_correlated_noise() {
+    let (truth, mesh, places) = (Truth::new(), estimate_mesh(), places());
+    let root = root(&places, LENGTH);
+    for seed in 0..4 {
+        let white = disturbed(&truth, &places, None, 0.02, seed);
+        let white = found(pva(), &mesh, &white).verdict;
+        assert_eq!(white.answer, Answer::NotExplained, "{seed} {white:?}");
+        let noisy = disturbed(&truth, &places, Some(&root), 0.02, seed);
+        let noisy = found(pva(), &mesh, &noisy);
+        assert!(!noisy.is_explained(), "{seed} {:?}", noisy.verdict);
+    }
+}

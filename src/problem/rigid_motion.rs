@@ -1,0 +1,58 @@
+//! Rigid motions in the plane.
+
+use std::fmt;
+
+/// A rigid motion of a grip in its plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidMotion {
+    /// Displacement of the grip's middle in mm.
+    pub displacement: [f64; 2],
+    /// Turn about its middle in rad, from X to Y.
+    pub angle: f64,
+}
+
+impl RigidMotion {
+    /// The motion that brings points nearest to others in weighted least squares, and the middle of the points, about
+    /// which it turns; each pair has a weight, an initial and a final place.
+    pub fn nearest(pairs: &[(f64, [f64; 2], [f64; 2])]) -> ([f64; 2], Self) {
+        let whole: f64 = pairs.iter().map(|(weight, ..)| weight).sum();
+        let (mut rest, mut end) = ([0.0; 2], [0.0; 2]);
+        for (weight, from, to) in pairs {
+            for axis in 0..2 {
+                rest[axis] += weight / whole * from[axis];
+                end[axis] += weight / whole * to[axis];
+            }
+        }
+        let (mut cosine, mut sine) = (0.0, 0.0);
+        for (weight, from, to) in pairs {
+            let [a, b] = [from[0] - rest[0], from[1] - rest[1]];
+            let [c, d] = [to[0] - end[0], to[1] - end[1]];
+            cosine += weight * (a * c + b * d);
+            sine += weight * (a * d - b * c);
+        }
+        let motion = Self {
+            displacement: [0, 1].map(|axis| end[axis] - rest[axis]),
+            angle: sine.atan2(cosine),
+        };
+        (rest, motion)
+    }
+
+    /// The displacement of a point at rest in mm from the grip's middle.
+    pub fn at(self, [along, across]: [f64; 2]) -> [f64; 2] {
+        let sine = self.angle.sin();
+        // 1 − cos without cancellation.
+        let lost = 2.0 * (0.5 * self.angle).sin().powi(2);
+        let [x, y] = self.displacement;
+        [
+            x - across * sine - lost * along,
+            y + along * sine - lost * across,
+        ]
+    }
+}
+
+impl fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y], angle) = (self.displacement, self.angle.to_degrees());
+        write!(f, "({x:.3}, {y:.3}) mm turned by {angle:.2}°")
+    }
+}

@@ -1,0 +1,82 @@
+//! Points of a sheet at which stress has no bound: its value there depends on the mesh alone.
+
+use std::collections::BTreeSet;
+
+use super::boundary::BoundaryProblem;
+use crate::error::Diagnostic;
+use crate::mesh::{Mesh, REENTRANT};
+
+impl BoundaryProblem {
+    /// The points at rest in mm at which stress has no bound: where supports that hold a node along both axes end on the boundary, where they
+    /// hold nodes of the sheet itself, and re-entrant corners of the boundary.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
+    pub fn singular_points(&self, mesh: &Mesh) -> Result<Vec<[f64; 2]>, Diagnostic> {
+        let fixed = self.fixed_nodes(mesh)?;
+        let boundary: BTreeSet<usize> = mesh.boundary().iter().flatten().copied().collect();
+        let is_free = |side: &&Vec<usize>| side.iter().any(|node| !fixed.contains(node));
+        let free_sides = mesh.boundary().iter().filter(is_free);
+        let ends = free_sides.flatten().filter(|node| fixed.contains(node));
+        let cells = (0..mesh.cell_count()).map(|cell| mesh.cell(cell));
+        let inside = cells
+            .filter(|cell| cell.iter().any(|node| !fixed.contains(node)))
+            .flatten()
+            .filter(|node| fixed.contains(node) && !boundary.contains(node));
+        let corners = mesh.boundary_angles().into_iter();
+        let corners = corners.filter_map(|(node, angle)| (angle > REENTRANT).then_some(node));
+        let nodes: BTreeSet<usize> = ends.chain(inside).copied().chain(corners).collect();
+        Ok(nodes.into_iter().map(|node| mesh.nodes[node]).collect())
+    }
+
+    /// The nodes that one support, or a grip with a given force, holds along both axes. Two symmetry lines that cross do not bound the sheet.
+    fn fixed_nodes(&self, mesh: &Mesh) -> Result<BTreeSet<usize>, Diagnostic> {
+        let (held, ties) = (self.held_by(mesh)?, self.ties(mesh)?);
+        let is_fixed = |node: &usize| {
+            let [along, across] = [2 * node, 2 * node + 1];
+            match (held.get(&along), held.get(&across)) {
+                (Some(one), Some(other)) => one == other,
+                (Some(_), None) => ties.contains_key(&across),
+                (None, Some(_)) => ties.contains_key(&along),
+                (None, None) => false,
+            }
+        };
+        Ok((0..mesh.nodes.len()).filter(is_fixed).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::material::NeoHooke;
+    use crate::mesh::{CellShape, Shape};
+    use crate::problem::Support;
+
+    fn points(supports: &[(&str, Support)]) -> Vec<[f64; 2]> {
+        let supports = supports.iter();
+        let problem = BoundaryProblem {
+            thickness: 1.0,
+            law: Arc::new(NeoHooke { c10: 0.05 }),
+            supports: supports
+                .map(|(group, support)| ((*group).to_owned(), *support))
+                .collect(),
+            loads: Vec::new(),
+        };
+        let mesh = Shape::Strip { size: [20.0, 10.0] }.mesh(4, CellShape::Quad9);
+        problem.singular_points(&mesh).unwrap()
+    }
+
+    #[test]
+    fn a_clamp_ends_at_two_corners_and_symmetry_lines_at_none() {
+        let clamp = Support::Displacement([Some(0.0); 2]);
+        let mut ends = points(&[("left", clamp)]);
+        ends.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        assert_eq!(ends.len(), 2);
+        assert_eq!([ends[0][0], ends[1][0]], [0.0; 2]);
+        assert!((ends[1][1] - ends[0][1] - 10.0).abs() < 1e-12);
+        let lines = [("left", Support::Roller), ("bottom", Support::Roller)];
+        assert!(points(&lines).is_empty());
+    }
+}

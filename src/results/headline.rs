@@ -1,0 +1,301 @@
+//! What a study of a sheet is computed for, in short: the force and displacement of its groups along the path, and where stress and stretch are
+//! largest.
+
+use super::{Block, Deformed, LocalState, nodal_states, or_dash};
+use crate::material::HyperelasticLaw;
+use crate::mesh::Mesh;
+use crate::problem::GroupState;
+use crate::units::number;
+
+/// Most rows of the table of forces; of more, steps are left out.
+const MOST_ROWS: usize = 12;
+
+/// Forces, moments and displacements below this share of the largest say nothing at a glance.
+const NOTHING: f64 = 1e-4;
+
+/// The result of one model of a sheet.
+pub struct Headline<'a> {
+    /// The model.
+    pub model: &'a str,
+    /// What the steps are, as a head of a table.
+    pub along: &'static str,
+    /// The names of the groups.
+    pub groups: Vec<&'a str>,
+    /// Each step in figures, with the states of its groups.
+    pub steps: Vec<(String, Vec<GroupState>)>,
+    /// The state in which the largest values are looked for.
+    pub state: LoadedSheet<'a>,
+}
+
+/// A sheet in one state.
+pub struct LoadedSheet<'a> {
+    /// Where on the path, such as `50 % stretch`.
+    pub at: String,
+    /// The material.
+    pub law: &'a dyn HyperelasticLaw,
+    /// Its mesh and fields.
+    pub deformed: Deformed<'a>,
+    /// Points at rest in mm at which stress has no bound.
+    pub singular: Vec<[f64; 2]>,
+    /// Its gauge section, where it has one.
+    pub gauge: Option<Gauge>,
+}
+
+/// A part of a sheet along x in which stress and stretch are nearly uniform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gauge {
+    /// Both ends of its middle line at rest in mm.
+    pub ends: [[f64; 2]; 2],
+    /// In words.
+    pub words: &'static str,
+}
+
+impl Gauge {
+    /// The middle half of a part of some length along x in the middle of a sheet.
+    pub fn middle_half(mesh: &Mesh, length: f64, words: &'static str) -> Self {
+        let [x, y] = mesh.middle();
+        let quarter = 0.25 * length;
+        Self {
+            ends: [[x - quarter, y], [x + quarter, y]],
+            words,
+        }
+    }
+
+    /// The length of its middle line over that at rest.
+    fn stretch(&self, mesh: &Mesh, displacement: &[f64]) -> f64 {
+        let [from, to] = self.ends;
+        let [u, v] = self.ends.map(|end| mesh.displacement_at(displacement, end));
+        let along = |axis: usize| to[axis] + v[axis] - from[axis] - u[axis];
+        along(0).hypot(along(1)) / (to[0] - from[0])
+    }
+
+    /// The mean of a value at the nodes over the cells of the section.
+    fn mean(&self, mesh: &Mesh, value: &dyn Fn(usize) -> f64) -> f64 {
+        let [[from, _], [to, _]] = self.ends;
+        let cells =
+            (0..mesh.cell_count()).filter(|cell| (from..=to).contains(&mesh.centre(*cell)[0]));
+        let (mut sum, mut areas) = (0.0, 0.0);
+        for cell in cells {
+            let (area, nodes) = (mesh.cell_area(cell), mesh.cell(cell));
+            sum += area * nodes.iter().map(|node| value(*node)).sum::<f64>() / nodes.len() as f64;
+            areas += area;
+        }
+        sum / areas
+    }
+}
+
+/// A quantity of [`GroupState`] and its head.
+type Column = (&'static str, fn(&GroupState) -> f64);
+
+const DISPLACEMENTS: [Column; 2] = [
+    ("displacement along x [mm]", |state| state.displacement[0]),
+    ("displacement along y [mm]", |state| state.displacement[1]),
+];
+const FORCES: [Column; 2] = [
+    ("force along x [N]", |state| state.carried()[0]),
+    ("force along y [N]", |state| state.carried()[1]),
+];
+const MOMENT: Column = ("moment [N·mm]", |state| state.carried()[2]);
+
+impl Headline<'_> {
+    /// The tables of a report's begin.
+    pub fn blocks(&self) -> Vec<Block> {
+        let mut blocks = vec![self.forces()];
+        blocks.extend(self.state.largest());
+        blocks.push(Block::Paragraph(self.note()));
+        blocks
+    }
+
+    fn note(&self) -> String {
+        let mut note = format!("By the {}.", self.model);
+        let shown = self.shown().len();
+        if shown < self.steps.len() {
+            note += &format!(" {shown} of {} steps are listed.", self.steps.len());
+        }
+        if !self.state.singular.is_empty() {
+            note += &format!(
+                " Largest values: farther than {} mm from ends of supports and re-entrant corners, where stress has no bound.",
+                (1e4 * self.state.distance()).round() / 1e4
+            );
+        }
+        if let Some(gauge) = &self.state.gauge {
+            note += &format!(" Gauge section: {}.", gauge.words);
+        }
+        note
+    }
+
+    /// The numbers of the steps that are listed, evenly spread, the last among them.
+    fn shown(&self) -> Vec<usize> {
+        let most = (MOST_ROWS / self.listed().len().max(1)).max(1);
+        let every = self.steps.len().div_ceil(most).max(1);
+        let mut shown: Vec<usize> = (0..self.steps.len()).rev().step_by(every).collect();
+        shown.reverse();
+        shown
+    }
+
+    fn states(&self) -> impl Iterator<Item = &GroupState> {
+        self.steps.iter().flat_map(|(_, groups)| groups)
+    }
+
+    /// Whether a quantity of some states is worth a glance, next to its largest size.
+    fn is_any<'b>(
+        column: Column,
+        mut states: impl Iterator<Item = &'b GroupState>,
+        size: f64,
+    ) -> bool {
+        states.any(|state| column.1(state).abs() > NOTHING * size)
+    }
+
+    /// The largest displacement in mm, force in N and, of that force over the sheet's larger side, moment in N·mm.
+    fn sizes(&self) -> [f64; 3] {
+        let [low, high] = self.state.deformed.mesh.bounding_box();
+        let side = (high[0] - low[0]).max(high[1] - low[1]);
+        let largest = |[x, y]: [Column; 2]| {
+            let sizes = self.states().map(|state| x.1(state).hypot(y.1(state)));
+            sizes.fold(0.0, f64::max)
+        };
+        let force = largest(FORCES);
+        [largest(DISPLACEMENTS), force, force * side]
+    }
+
+    /// The quantities that are worth a glance in a group, with their largest sizes; a force in any case.
+    fn columns(&self) -> Vec<(Column, f64)> {
+        let [displacement, force, moment] = self.sizes();
+        let displacements = DISPLACEMENTS.map(|column| (column, displacement));
+        let forces = FORCES.map(|column| (column, force));
+        let all = displacements
+            .into_iter()
+            .chain(forces)
+            .chain([(MOMENT, moment)]);
+        let mut columns: Vec<_> = all
+            .filter(|(column, size)| Self::is_any(*column, self.states(), *size))
+            .collect();
+        if force == 0.0 {
+            columns.push(forces[0]);
+        }
+        columns
+    }
+
+    /// The groups that move or carry something. Of two that balance each other without moments, the one that rests says nothing more.
+    fn listed(&self) -> Vec<usize> {
+        let [displacement, force, moment] = self.sizes();
+        let of = |group: usize| self.steps.iter().map(move |(_, groups)| &groups[group]);
+        let carries = |group: &usize| {
+            FORCES
+                .iter()
+                .any(|column| Self::is_any(*column, of(*group), force))
+        };
+        let moves = |group: &usize| {
+            DISPLACEMENTS
+                .iter()
+                .any(|column| Self::is_any(*column, of(*group), displacement))
+        };
+        let turned = Self::is_any(MOMENT, self.states(), moment);
+        let all = 0..self.groups.len();
+        let carrying: Vec<usize> = all.clone().filter(carries).collect();
+        let is_pair = !turned && carrying.len() == 2 && carrying.iter().any(moves);
+        all.filter(|group| moves(group) || carries(group) && !is_pair)
+            .collect()
+    }
+
+    fn forces(&self) -> Block {
+        let (columns, listed) = (self.columns(), self.listed());
+        let head = [self.along, "group"].into_iter();
+        let head = head.chain(columns.iter().map(|((head, _), _)| *head));
+        let row = |step: usize, group: usize| {
+            let (at, groups) = &self.steps[step];
+            let figure = |((_, value), size): &(Column, f64)| match value(&groups[group]) {
+                small if small.abs() <= NOTHING * size => number(0.0),
+                value => number(value),
+            };
+            let names = [at.clone(), self.groups[group].to_owned()];
+            names
+                .into_iter()
+                .chain(columns.iter().map(figure))
+                .collect()
+        };
+        let rows = self.shown().into_iter();
+        let rows = rows.flat_map(|step| listed.iter().map(move |group| (step, *group)));
+        let head = head.map(str::to_owned).collect();
+        Block::Table(head, rows.map(|(step, group)| row(step, group)).collect())
+    }
+}
+
+/// A quantity of [`LocalState`] with its name.
+type Quantity = (&'static str, fn(&LocalState) -> f64);
+
+const STRETCH: &str = "principal stretch [–]";
+const QUANTITIES: [Quantity; 3] = [
+    ("principal Cauchy stress [MPa]", |state| {
+        state.principal_cauchy()[0]
+    }),
+    (STRETCH, |state| state.stretches[0]),
+    ("von Mises stress [MPa]", LocalState::von_mises),
+];
+
+impl LoadedSheet<'_> {
+    /// The distance from singular points in mm from which on values count: a fifth of the sheet's smaller side, whatever the mesh.
+    fn distance(&self) -> f64 {
+        let [low, high] = self.deformed.mesh.bounding_box();
+        (high[0] - low[0]).min(high[1] - low[1]) / 5.0
+    }
+
+    /// A table of the largest values and of those of the gauge section; `None` where no node is far enough from singular points.
+    fn largest(&self) -> Option<Block> {
+        let Deformed {
+            mesh,
+            fields,
+            viscous,
+            ..
+        } = &self.deformed;
+        let states = nodal_states(self.law, mesh, fields, viscous);
+        let distance = self.distance();
+        let is_regular = |node: &usize| {
+            let [x, y] = mesh.nodes[*node];
+            self.singular
+                .iter()
+                .all(|[a, b]| (x - a).hypot(y - b) > distance)
+        };
+        let regular: Vec<usize> = (0..mesh.nodes.len()).filter(is_regular).collect();
+        let row = |(name, value): Quantity| {
+            let value = |node: usize| value(&states[node]);
+            let node = largest_node(mesh, &regular, &value)?;
+            let position = mesh.nodes[node]
+                .map(|along| format!("{along:.1}"))
+                .join(", ");
+            let mut row = vec![
+                name.to_owned(),
+                number(value(node)),
+                format!("({position})"),
+            ];
+            row.extend(self.gauge.map(|gauge| {
+                let mean = match name {
+                    STRETCH => gauge.stretch(mesh, fields.last().copied().unwrap_or_default()),
+                    _ => gauge.mean(mesh, &value),
+                };
+                or_dash(Some(mean), number)
+            }));
+            Some(row)
+        };
+        let rows: Vec<Vec<String>> = QUANTITIES.into_iter().filter_map(row).collect();
+        let at = format!("at {}", self.at);
+        let head = [&*at, "largest", "at rest at x, y [mm]", "gauge section"];
+        let count = head.len() - usize::from(self.gauge.is_none());
+        (!rows.is_empty()).then(|| Block::table(&head[..count], rows))
+    }
+}
+
+/// The node with the largest value; of nodes that differ by rounding alone, as those of a symmetric sheet, the first along x, then y.
+fn largest_node(mesh: &Mesh, nodes: &[usize], value: &dyn Fn(usize) -> f64) -> Option<usize> {
+    const ALIKE: f64 = 1e-6;
+    let known = nodes
+        .iter()
+        .copied()
+        .filter(|node| value(*node).is_finite());
+    let most = known.clone().map(value).reduce(f64::max)?;
+    let alike = known.filter(|node| value(*node) >= most - ALIKE * most.abs());
+    alike.min_by(|a, b| {
+        let ([ax, ay], [bx, by]) = (mesh.nodes[*a], mesh.nodes[*b]);
+        ax.total_cmp(&bx).then(ay.total_cmp(&by))
+    })
+}

@@ -1,0 +1,64 @@
+//! What a specimen is computed for at a glance.
+
+use super::problem::{Outline, Specimen};
+use super::results::models::Models;
+use crate::mesh::{Mesh, Shape};
+use crate::results::{Block, Deformed, Gauge, Headline, LoadedSheet};
+
+/// The groups' forces and displacements at every load factor and the largest values at the largest one, by the finite elements, or else by the
+/// corrected field or the springs.
+pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
+    let named = models.named();
+    let Some(model) = named
+        .iter()
+        .rev()
+        .find(|model| model.solution.reached() > 0)
+    else {
+        return Vec::new();
+    };
+    let solution = model.solution;
+    let (mesh, reached) = (&solution.mesh, 0..solution.reached());
+    let states = reached.clone().filter_map(|step| {
+        let groups = solution.groups(step)?.to_vec();
+        Some((specimen.factors[step].to_string(), groups))
+    });
+    let size = |step: &usize| specimen.factors[*step].abs();
+    let largest = reached
+        .max_by(|a, b| size(a).total_cmp(&size(b)))
+        .unwrap_or_default();
+    let mut fields = solution.past(largest);
+    fields.extend(solution.displacement(largest));
+    let headline = Headline {
+        model: model.name,
+        along: "load factor [–]",
+        groups: specimen.groups(),
+        steps: states.collect(),
+        state: LoadedSheet {
+            at: format!("load factor {}", specimen.factors[largest]),
+            law: specimen.sheet().law,
+            deformed: Deformed::elastic(model.name, mesh, fields),
+            // Supports were checked when the study was read.
+            singular: specimen.problem.singular_points(mesh).unwrap_or_default(),
+            gauge: gauge(&specimen.outline, mesh),
+        },
+    };
+    headline.blocks()
+}
+
+/// The gauge section of a strip or a dog-bone.
+fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
+    let Outline::Shape { shape, .. } = outline else {
+        return None;
+    };
+    match shape {
+        Shape::Strip { size } => {
+            let words = "the middle half of the length";
+            Some(Gauge::middle_half(mesh, size[0], words))
+        }
+        Shape::DogBone { narrow, .. } => {
+            let words = "the middle half of the narrow part";
+            Some(Gauge::middle_half(mesh, narrow[0], words))
+        }
+        Shape::StripWithHole { .. } | Shape::NotchedStrip { .. } | Shape::RingSector { .. } => None,
+    }
+}
