@@ -61,7 +61,7 @@ pub struct ReadingArguments {
     /// without names, or of equal names, have numbers: strain=2,stress=1
     #[arg(long, value_name = "WHAT=COLUMN")]
     columns: Vec<String>,
-    /// All files are one specimen, under several protocols; files of several specimens state `# sample: NAME` each
+    /// All files are one specimen, under several protocols; files of several specimens state `# specimen name: NAME` each
     #[arg(long)]
     one_specimen: bool,
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::cycles::{PRECONDITIONED, SAMPLE};
+use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
 use super::test_data::{StrainColumn, Test, TestData};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
@@ -24,7 +24,7 @@ const KEPT: [&str; 6] = [
     "source",
     "doi",
     "specimen",
-    SAMPLE,
+    SPECIMEN_NAME,
     "licence",
     "compiled by",
 ];

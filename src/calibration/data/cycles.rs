@@ -46,7 +46,7 @@ impl Cycle {
 }
 
 /// The key of the name of the specimen: files of one name are one specimen.
-pub const SAMPLE: &str = "sample";
+pub const SPECIMEN_NAME: &str = "specimen name";
 
 /// The key of the stretch to which a specimen was stretched before its record.
 pub const PRECONDITIONED: &str = "preconditioned";

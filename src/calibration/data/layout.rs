@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::choice::{Chosen, choose};
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
-use super::cycles::{SAMPLE, Turns, preconditioned};
+use super::cycles::{SPECIMEN_NAME, Turns, preconditioned};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{Role, check_columns};
@@ -150,7 +150,7 @@ impl Layout {
             preconditioned: preconditioned(head, self.test, farthest(widest))?,
             left_out,
             found_zero: part.found_zero,
-            sample: head.text(SAMPLE)?,
+            specimen: head.text(SPECIMEN_NAME)?,
             table: TableReading::of(head, &self.roles, &part.rows),
             remarks: part.remarks,
             head: head.written(),

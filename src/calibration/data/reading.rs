@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::choice::COLUMNS;
-use super::cycles::{PRECONDITIONED, SAMPLE};
+use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
 use super::layout::Layout;
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
@@ -29,7 +29,7 @@ pub const KEYS: [&str; 18] = [
     "ramp",
     PRECONDITIONED,
     COLUMNS,
-    SAMPLE,
+    SPECIMEN_NAME,
 ];
 
 impl TestData {

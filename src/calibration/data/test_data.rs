@@ -179,7 +179,7 @@ pub struct TestData {
     /// The zero that was found in the record, if one was.
     pub found_zero: Option<FoundZero>,
     /// The name of the specimen, where it is stated: tests of one name are one specimen.
-    pub sample: Option<String>,
+    pub specimen: Option<String>,
     /// The columns and rows of the file that were read.
     pub table: TableReading,
     /// Descriptions of the part of a record that was taken, and of what was subtracted.

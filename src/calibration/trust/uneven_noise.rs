@@ -89,24 +89,24 @@ impl WeightedResiduals<'_> {
             return None;
         }
         let protocols: Vec<Protocol> = tests.iter().flat_map(Protocol::of).collect();
-        let samples: BTreeSet<_> = tests
+        let names: BTreeSet<_> = tests
             .iter()
-            .filter_map(|test| test.sample.as_ref())
+            .filter_map(|test| test.specimen.as_ref())
             .collect();
-        let is_stated = tests.iter().all(|test| test.sample.is_some());
+        let is_stated = tests.iter().all(|test| test.specimen.is_some());
         let what = match tests[0].test {
             Test::Biaxial => "protocols",
             _ => "tests",
         };
-        match (is_stated, samples.len()) {
+        match (is_stated, names.len()) {
             (true, 2..) => {
-                let of = |sample: &&String| {
+                let of = |name: &&String| {
                     let own = protocols
                         .iter()
-                        .filter(|one| one.test.sample.as_ref() == Some(sample));
+                        .filter(|one| one.test.specimen.as_ref() == Some(name));
                     own.copied().collect()
                 };
-                let groups: Vec<Vec<Protocol>> = samples.iter().map(of).collect();
+                let groups: Vec<Vec<Protocol>> = names.iter().map(of).collect();
                 Some(specimens_differ(&self.differing(&groups)?, has_intervals))
             }
             (stated, _) => {
@@ -122,7 +122,7 @@ impl WeightedResiduals<'_> {
                     }
                     false => format!(
                         "{differ}. Either this law does not explain them, or they are specimens that differ: the residuals of both look alike. State \
-                         which: `--one-specimen`, or `# sample: NAME` in each file"
+                         which: `--one-specimen`, or `# specimen name: NAME` in each file"
                     ),
                 })
             }
@@ -249,11 +249,11 @@ mod tests {
         assert!(found >= 6, "{found} of 10");
     }
 
-    /// The warnings of a fit of neo-Hooke to three strips of some moduli, of samples with some names.
-    fn of_strips(moduli: [f64; 3], samples: [Option<&str>; 3]) -> String {
-        let tests = moduli.iter().zip(samples).zip(0..);
-        let tests = tests.map(|((c10, sample), seed)| TestData {
-            sample: sample.map(str::to_owned),
+    /// The warnings of a fit of neo-Hooke to three strips of some moduli, whose specimens have some names.
+    fn of_strips(moduli: [f64; 3], names: [Option<&str>; 3]) -> String {
+        let tests = moduli.iter().zip(names).zip(0..);
+        let tests = tests.map(|((c10, name), seed)| TestData {
+            specimen: name.map(str::to_owned),
             ..tension(*c10, seed, |_| 0.003)
         });
         let tests: Vec<TestData> = tests.collect();
@@ -284,8 +284,8 @@ mod tests {
                 "{warned}"
             );
         }
-        for samples in [unstated, [Some("a"); 3], [Some("a"), Some("b"), Some("c")]] {
-            let warned = of_strips([0.05; 3], samples);
+        for names in [unstated, [Some("a"); 3], [Some("a"), Some("b"), Some("c")]] {
+            let warned = of_strips([0.05; 3], names);
             assert!(!warned.contains("specimen"), "{warned}");
         }
     }
@@ -321,9 +321,9 @@ mod tests {
             .zip(ratios)
             .map(|(seed, ratio)| protocol(ratio, seed))
             .collect();
-        let warned = |files: &[String], sample: &str| {
+        let warned = |files: &[String], stated: &str| {
             let head = format!(
-                "# test: biaxial\n{sample}stretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n"
+                "# test: biaxial\n{stated}stretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n"
             );
             let read = |rows: &String| {
                 TestData::parse("a.csv", &format!("{head}{rows}"), &Statements::default()).unwrap()
@@ -341,7 +341,7 @@ mod tests {
         let in_one = warned(&[parts.concat()], "");
         assert_eq!(in_one, warned(&parts, ""));
         assert!(in_one.contains("--one-specimen"), "{in_one}");
-        let stated = warned(&parts, "# sample: a\n");
+        let stated = warned(&parts, "# specimen name: a\n");
         assert!(
             stated.starts_with("this law does not explain the specimen"),
             "{stated}"
