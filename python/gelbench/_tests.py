@@ -188,7 +188,7 @@ def fit(
     starts: int = 8,
     relaxation: bool | int = False,
     softening: bool = False,
-    columns: tuple[str, str] = ("stretch [-]", "stress [MPa]"),
+    columns: tuple[str, str] | str = ("stretch [-]", "stress [MPa]"),
     progress: Progress | None = None,
     **reading: Quantity | Sequence[Quantity],
 ) -> Fit:
@@ -225,13 +225,14 @@ def fit(
     softening : bool
         Also fits softening by the largest previous load (Mullins effect), to loading and unloading. The law is that of the
         first loading.
-    columns : tuple of str
-        Heads of an array's columns.
+    columns : tuple of str, or str
+        Heads of an array's columns; or, of a table in which several columns may be meant, those to read, such as
+        ``"strain=Extension,stress=Load 2"``.
     progress : callable or tqdm bar, optional
         Receives progress messages.
     **reading : str or quantity
         Anything else the data do not state, by the keys of ``gelbench materials fit`` with ``_``: ``direction``,
-        ``strain_ratio``, ``area`` [mm²], ``length``, ``width``, ``thickness`` [mm], ``time_unit``, ``cycle``, ``zero``, ``ramp``;
+        ``strain_ratio``, ``area`` [mm²], ``length``, ``width``, ``thickness`` [mm], ``time_unit``, ``cycle``, ``zero``, ``ramp``, ``specimen_name``;
         such as ``cycle="last"`` or ``area="8 mm^2"``.
 
     Returns
@@ -254,8 +255,11 @@ def fit(
         "strain unit": strain_unit,
     }
     given |= {key.replace("_", " "): value for key, value in reading.items()}
+    heads = ("stretch [-]", "stress [MPa]") if isinstance(columns, str) else columns
+    if isinstance(columns, str):
+        given["columns"] = columns
     said, of_each = _statements(given, len(all_data))
-    named = [_table(one, f"{name} {place}", columns) for place, one in enumerate(all_data, 1)]
+    named = [_table(one, f"{name} {place}", heads) for place, one in enumerate(all_data, 1)]
     tables = [(own, head + table) for (own, table), head in zip(named, of_each, strict=True)]
     history = _history(law, relaxation, softening)
     limits = [(key, _limits(key, pair)) for key, pair in (bounds or {}).items()]

@@ -7,6 +7,7 @@ mod cycles;
 mod layout;
 mod plausible;
 mod reading;
+mod readings;
 mod record;
 mod roles;
 mod rounding;
@@ -16,6 +17,6 @@ mod zero;
 
 pub use conversion::Conversion;
 pub use cycles::{Branches, PRECONDITIONED};
-pub use reading::{KEYS, SPECIMEN};
+pub use reading::KEYS;
 pub use table_reading::{ColumnReading, TableReading};
 pub use test_data::{FoundZero, Observation, StrainColumn, Test, TestData, Times};

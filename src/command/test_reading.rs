@@ -61,9 +61,9 @@ pub struct ReadingArguments {
     /// without names, or of equal names, have numbers: strain=2,stress=1
     #[arg(long, value_name = "WHAT=COLUMN")]
     columns: Vec<String>,
-    /// Name of the specimen, where all files are protocols of one
-    #[arg(long, value_name = "NAME")]
-    specimen: Option<String>,
+    /// All files are one specimen, under several protocols; files of several specimens state `# specimen name: NAME` each
+    #[arg(long)]
+    one_specimen: bool,
 }
 
 impl ReadingArguments {
@@ -87,7 +87,7 @@ impl ReadingArguments {
             self.ramp,
             self.preconditioned,
             Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
-            self.specimen,
+            self.one_specimen.then(|| "one".to_owned()),
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs

@@ -37,13 +37,12 @@ impl<'a> Head<'a> {
         })
     }
 
-    /// The keys and values in the file, and those that supplement it.
-    pub fn statements(&self) -> Statements {
+    /// The keys and values in the file.
+    pub fn written(&self) -> Statements {
         let pairs = self.pairs.iter();
-        let in_file = pairs.map(|(key, (value, _))| (key.clone(), value.clone()));
-        let mut all = self.given.clone();
-        all.extend(in_file);
-        all
+        pairs
+            .map(|(key, (value, _))| (key.clone(), value.clone()))
+            .collect()
     }
 
     /// A fault at a place of the table.

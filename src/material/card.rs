@@ -92,10 +92,10 @@ pub struct FitRecord {
     pub softening: bool,
     /// The card, relative to this one, whose law is the base of the fitted softening; `None` where the law was fitted with it.
     pub base_card: Option<String>,
-    /// The uncertainty of the law's parameters; `None` where the residuals were no noise, or nothing is recorded.
-    pub uncertainty: Option<ParameterUncertainty>,
     /// What the fit found: `key = value` in internal units; empty where it was not recorded.
     pub values: Vec<String>,
+    /// The uncertainty of the law's parameters; `None` where the residuals were no noise, or nothing is recorded.
+    pub uncertainty: Option<ParameterUncertainty>,
 }
 
 impl Card {
@@ -333,8 +333,8 @@ fn read_fit(section: &Section) -> FitRecord {
             .then(|| section.count("relaxation_terms", 0, 6)),
         softening: section.has("softening") && section.flag("softening"),
         base_card: section.has("base_card").then(|| section.text("base_card")),
-        uncertainty: ParameterUncertainty::read(section),
         values: optional("values"),
+        uncertainty: ParameterUncertainty::read(section),
     };
     section.unknown_keys();
     record

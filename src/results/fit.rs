@@ -213,6 +213,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
         "data": tests.iter().map(|test| json!({
             "file": test.name,
             "test": test.test.name(),
+            "specimen": test.specimen,
             "stress_measure": test.stress_measure.name(),
             "points": test.observations.len(),
             "columns": test.table.columns.iter().map(|own| json!({

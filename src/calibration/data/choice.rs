@@ -1,13 +1,12 @@
 //! Which columns of a table are read. Where several may be the same quantity and differ, the user is asked.
 
-use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
+use super::readings::{Named, Readings, values};
+use super::roles::{DISPLACEMENT, FORCE, Kind, Role, of_kind};
 use super::test_data::Test;
 use crate::document::{ChosenColumns, Column, ColumnRole, FoundColumns, Head};
 use crate::error::{Diagnostic, Error};
 use crate::statistics::extremes;
 use crate::units::{self, Dimension};
-
-mod readings;
 
 /// The key under which the columns are stated.
 pub const COLUMNS: &str = "columns";
@@ -30,18 +29,35 @@ impl ColumnRole for Quantity {
 }
 
 /// What each column is read as, with questions where more than one reading is possible.
-pub fn choose(head: &Head, test: Option<Test>) -> (Vec<Role>, Vec<Diagnostic>) {
+pub struct Chosen {
+    /// The role of each column.
+    pub roles: Vec<Role>,
+    /// The questions about strains and stresses.
+    pub questions: Vec<Diagnostic>,
+    /// The question about times, which few fits read.
+    pub of_times: Option<Diagnostic>,
+}
+
+/// Chooses the columns of a table.
+pub fn choose(head: &Head, test: Option<Test>) -> Chosen {
     let columns = &head.table.columns;
     let unread = || vec![Role::OTHER; columns.len()];
     let chosen = match chosen(head) {
         Ok(chosen) => chosen,
-        Err(faults) => return (unread(), faults),
+        Err(questions) => {
+            return Chosen {
+                roles: unread(),
+                questions,
+                of_times: None,
+            };
+        }
     };
     let mut choice = Choice {
         head,
         test,
         roles: unread(),
         questions: Vec::new(),
+        of_times: None,
     };
     for (_, quantity) in Quantity::NAMES {
         if let Some(column) = chosen.of(*quantity) {
@@ -54,7 +70,17 @@ pub fn choose(head: &Head, test: Option<Test>) -> (Vec<Role>, Vec<Diagnostic>) {
             .into_iter()
             .for_each(|kind| choice.of_names(kind)),
     }
-    (choice.roles, choice.questions)
+    let Choice {
+        roles,
+        questions,
+        of_times,
+        ..
+    } = choice;
+    Chosen {
+        roles,
+        questions,
+        of_times,
+    }
 }
 
 /// The columns that are stated.
@@ -103,6 +129,7 @@ struct Choice<'a> {
     test: Option<Test>,
     roles: Vec<Role>,
     questions: Vec<Diagnostic>,
+    of_times: Option<Diagnostic>,
 }
 
 impl Choice<'_> {
@@ -111,41 +138,50 @@ impl Choice<'_> {
         of_kind(&self.roles, kind).next().is_some()
     }
 
+    fn readings(&self) -> Readings<'_> {
+        Readings {
+            head: self.head,
+            roles: &self.roles,
+        }
+    }
+
     /// Chooses by the names of columns.
     fn of_names(&mut self, kind: Kind) {
         if self.has(kind) {
             return;
         }
         let columns = 0..self.roles.len();
-        let named: Vec<Named> = columns
+        let mut named: Vec<Named> = columns
             .filter_map(|column| self.named(kind, column))
             .collect();
-        let [first, second]: [Vec<Named>; 2] = match self.is_one(kind, &named) {
-            true => [
-                named.into_iter().map(Named::of_one_axis).collect(),
-                Vec::new(),
-            ],
-            false => {
-                let (second, first) = named.into_iter().partition(|own| own.role.axis() == 1);
-                [first, second]
-            }
+        let has_numbers = |own: &Named| {
+            let mut values = values(self.head, (own.column, 1.0)).into_iter();
+            values.any(f64::is_finite)
         };
-        [first, second]
-            .iter()
-            .for_each(|candidates| self.of_candidates(kind, candidates));
+        if named.iter().any(has_numbers) {
+            named.retain(has_numbers);
+        }
+        let name = kind.name();
+        if self.is_one(kind, &named) {
+            return self.of_candidates(name, &named);
+        }
+        let (second, first): (Vec<_>, _) = named.into_iter().partition(|own| own.role.axis() == 1);
+        match (self.test, second.is_empty()) {
+            (Some(Test::Biaxial), _) | (_, false) => {
+                self.of_candidates(&format!("{name}_1"), &first)
+            }
+            _ => self.of_candidates(name, &first),
+        }
+        self.of_candidates(&format!("{name}_2"), &second);
     }
 
-    /// A column that is not chosen yet and has numbers, where its name is one of a kind.
+    /// A column that is not chosen yet, where its name is one of a kind.
     fn named(&self, kind: Kind, column: usize) -> Option<Named> {
         let own = &self.head.table.columns[column];
         let (mut role, naming) = Role::of(own);
         let is_free = self.roles[column].kind == Kind::Other && role.kind == kind;
-        let mut values = self.values((column, 1.0)).into_iter();
-        if !is_free || !values.any(f64::is_finite) {
-            return None;
-        }
         role.measure = role.measure.or_else(|| of_unit(self.head, own, kind));
-        Some(Named {
+        is_free.then_some(Named {
             column,
             role,
             naming,
@@ -158,37 +194,40 @@ impl Choice<'_> {
         let numbered = named.iter().filter(|own| own.role.numbered.is_some());
         let is_mixed = numbered.count() < named.len();
         match self.test {
+            _ if kind == Kind::Time => true,
             None | Some(Test::Biaxial) => false,
             Some(Test::Uniaxial) if kind == Kind::Stress => true,
-            _ => is_mixed || kind == Kind::Time,
+            _ => is_mixed,
         }
     }
 
     /// Chooses one of the columns that may be the same quantity; where others differ from it, the user is asked.
-    fn of_candidates(&mut self, kind: Kind, candidates: &[Named]) {
-        let Some(first) = candidates.iter().min_by_key(|own| (own.naming, own.column)) else {
+    fn of_candidates(&mut self, quantity: &str, candidates: &[Named]) {
+        let Some(first) = candidates
+            .iter()
+            .min_by_key(|own| (own.naming, own.role.numbered, own.column))
+        else {
             return;
         };
         self.roles[first.column] = first.role;
-        let differing = |other: &&Named| other.column != first.column && !self.agree(first, other);
+        let differing =
+            |other: &&Named| other.column != first.column && !self.readings().agree(first, other);
         if !candidates.iter().any(|other| differing(&other)) {
             return;
         }
-        let quantity = match (kind, first.role.axis(), self.test) {
-            (_, 1, _) => format!("{}_2", kind.name()),
-            (_, _, Some(Test::Biaxial)) => format!("{}_1", kind.name()),
-            _ => kind.name().to_owned(),
-        };
         let each = candidates.iter();
-        let options = each.map(|own| self.option(&[(&quantity, own.column)]));
+        let options = each.map(|own| self.option(&[(quantity, own.column)]));
         let message = format!(
             "{}: {} columns may be the {}, and they do not agree",
             self.head.table.source.name,
             candidates.len(),
-            kind.name()
+            first.role.kind.name()
         );
         let question = question(message, options.collect());
-        self.questions.push(question);
+        match first.role.kind {
+            Kind::Time => self.of_times = Some(question),
+            _ => self.questions.push(question),
+        }
     }
 
     /// Finds the columns of a table without names: their order is known where one alone is possible.
@@ -235,7 +274,7 @@ impl Choice<'_> {
         let stated = self.head.setting("strain measure", None).ok().flatten();
         let percent = self.head.setting("strain unit", None).ok().flatten();
         let unit = units::factor(percent.as_deref().unwrap_or("-"), Dimension::Ratio);
-        let least = extremes(self.values((column, unit.unwrap_or(1.0))).into_iter())[0];
+        let least = extremes(values(self.head, (column, unit.unwrap_or(1.0))).into_iter())[0];
         match stated.as_deref() {
             Some("stretch") => least > 0.0,
             Some("nominal") => least > -1.0,
@@ -248,7 +287,7 @@ impl Choice<'_> {
         let table = self.head.table;
         let (mut written, mut ranges) = (Vec::new(), Vec::new());
         for (quantity, column) in columns {
-            let [low, high] = extremes(self.values((*column, 1.0)).into_iter());
+            let [low, high] = extremes(values(self.head, (*column, 1.0)).into_iter());
             let unit = table.columns[*column].unit.as_deref().unwrap_or_default();
             let range = format!("{quantity} from {low} to {high} {unit}");
             written.push(format!("{quantity}={}", self.written(*column)));
@@ -273,22 +312,6 @@ impl Choice<'_> {
             true => (column + 1).to_string(),
             false => head,
         }
-    }
-}
-
-/// A column whose name says what it may be.
-#[derive(Clone, Copy)]
-struct Named {
-    column: usize,
-    role: Role,
-    naming: Naming,
-}
-
-impl Named {
-    /// A number in the name of a column, such as that of a load cell, is no axis of a test that has one.
-    fn of_one_axis(mut self) -> Self {
-        self.role.numbered = None;
-        self
     }
 }
 

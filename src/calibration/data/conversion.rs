@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::cycles::PRECONDITIONED;
+use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
 use super::test_data::{StrainColumn, Test, TestData};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
@@ -20,7 +20,14 @@ pub struct Conversion {
 }
 
 /// The statements of a file that hold in every measure and unit.
-const KEPT: [&str; 5] = ["source", "doi", "specimen", "licence", "compiled by"];
+const KEPT: [&str; 6] = [
+    "source",
+    "doi",
+    "specimen",
+    SPECIMEN_NAME,
+    "licence",
+    "compiled by",
+];
 
 impl Conversion {
     /// The data as a table that `gelbench materials fit` reads.

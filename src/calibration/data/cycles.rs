@@ -45,6 +45,9 @@ impl Cycle {
     }
 }
 
+/// The key of the name of the specimen: files of one name are one specimen.
+pub const SPECIMEN_NAME: &str = "specimen name";
+
 /// The key of the stretch to which a specimen was stretched before its record.
 pub const PRECONDITIONED: &str = "preconditioned";
 
@@ -150,6 +153,21 @@ fn turns(values: &[f64]) -> Vec<usize> {
         _ => highest,
     });
     turns
+}
+
+/// The rows of each pull away from rest and back: a new one begins where values that are zero at rest turn up again.
+pub fn pulls(values: &[f64]) -> Vec<Range<usize>> {
+    let turns = turns(values);
+    let rising = turns
+        .windows(2)
+        .filter(|pair| values[pair[0]] < values[pair[1]]);
+    let begins = rising.map(|pair| pair[0]).filter(|row| *row > 0);
+    let edges: Vec<usize> = [0]
+        .into_iter()
+        .chain(begins)
+        .chain([values.len()])
+        .collect();
+    edges.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
 /// The rows between two turns without the holds there, and the row of the end.

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::choice::choose;
+use super::choice::{Chosen, choose};
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
-use super::cycles::{Turns, preconditioned};
+use super::cycles::{SPECIMEN_NAME, Turns, preconditioned};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{Role, check_columns};
@@ -40,7 +40,11 @@ impl Layout {
     pub fn new(head: &Head) -> Result<Self, Vec<Diagnostic>> {
         let mut faults = Faults::default();
         let test = faults.of(head.choice("test", None, &Test::NAMES));
-        let (roles, questions) = choose(head, test);
+        let Chosen {
+            roles,
+            questions,
+            of_times,
+        } = choose(head, test);
         faults.0.extend(questions);
         let strains = faults.of(strains(head, &roles));
         let stresses = faults.of(stresses(head, &roles));
@@ -64,7 +68,10 @@ impl Layout {
             stresses,
             strain_ratio,
             machine,
-            time: time(head, &roles),
+            time: match of_times {
+                Some(question) => Some(Err(Box::new(question))),
+                None => time(head, &roles),
+            },
             roles,
         })
     }
@@ -143,9 +150,10 @@ impl Layout {
             preconditioned: preconditioned(head, self.test, farthest(widest))?,
             left_out,
             found_zero: part.found_zero,
+            specimen: head.text(SPECIMEN_NAME)?,
             table: TableReading::of(head, &self.roles, &part.rows),
             remarks: part.remarks,
-            head: head.statements(),
+            head: head.written(),
             warnings: warnings.into_iter().flatten().collect(),
         })
     }

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::choice::COLUMNS;
-use super::cycles::PRECONDITIONED;
+use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
 use super::layout::Layout;
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
@@ -29,11 +29,8 @@ pub const KEYS: [&str; 18] = [
     "ramp",
     PRECONDITIONED,
     COLUMNS,
-    SPECIMEN,
+    SPECIMEN_NAME,
 ];
-
-/// The key of the name of the specimen: tests with the same one are protocols of one specimen.
-pub const SPECIMEN: &str = "specimen";
 
 impl TestData {
     /// Reads a file; `reading` supplements the file's own statements, by [`KEYS`].
@@ -155,6 +152,8 @@ fn input(fault: Diagnostic) -> Error {
     Error::Input(vec![fault])
 }
 
+#[cfg(test)]
+mod layouts_tests;
 #[cfg(test)]
 mod missing_tests;
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::quality::Quality;
-use crate::calibration::data::{Observation, SPECIMEN, TestData};
+use crate::calibration::data::{Observation, Test, TestData};
 use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::statistics::cochran;
@@ -27,8 +27,8 @@ pub fn noise_warnings(
     let has_intervals = quality.has_intervals();
     let residuals = WeightedResiduals { law, weighting };
     let uneven = has_intervals.then(|| uneven(quality, weighting)).flatten();
-    let differing = residuals.differing(tests, has_intervals);
-    uneven.into_iter().chain(differing).collect()
+    let specimens = residuals.specimens(tests, has_intervals);
+    uneven.into_iter().chain(specimens).collect()
 }
 
 struct WeightedResiduals<'a> {
@@ -57,12 +57,14 @@ impl WeightedResiduals<'_> {
         [weight * fitted, weight * (one.stress - fitted)]
     }
 
-    /// How many times the law's stress a test measured, and its variance by the noise of its own, neighbours of which may correlate.
-    fn factor(&self, test: &TestData) -> Option<[f64; 2]> {
-        let count = test.observations.len();
-        let rows = test.observations.iter();
+    /// How many times the law's stress was measured in some protocols, and its variance by the noise of their own, neighbours of which
+    /// may correlate.
+    fn factor(&self, protocols: &[Protocol]) -> Option<[f64; 2]> {
+        let rows = protocols
+            .iter()
+            .flat_map(|own| own.rows.iter().map(|one| (own.test, one)));
         let pairs: Vec<[f64; 2]> = rows
-            .map(|one| self.fitted_and_residual(test, one))
+            .map(|(test, one)| self.fitted_and_residual(test, one))
             .collect();
         let square: f64 = pairs.iter().map(|[fitted, _]| fitted * fitted).sum();
         let along: f64 = pairs.iter().map(|[fitted, left]| fitted * left).sum();
@@ -75,67 +77,117 @@ impl WeightedResiduals<'_> {
         let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let correlation = (products / squares).clamp(0.0, 0.99);
         let fewer = (1.0 + correlation) / (1.0 - correlation);
-        let variance = fewer * squares / (count as f64 - 1.0) / square;
-        (count >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
+        let variance = fewer * squares / (pairs.len() as f64 - 1.0) / square;
+        (pairs.len() >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
     }
 
-    /// Whether tests of one kind differ by more than their noise: those of several specimens, or those of one that the law does not describe.
-    fn differing(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
+    /// Whether specimens, or protocols, of one kind of test differ from the law by more than their noise. Only a user knows which of them are
+    /// one specimen: a wrong law and specimens that differ make alike residuals.
+    fn specimens(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
         let alike = |test: &&TestData| (test.test, &test.axes) == (tests[0].test, &tests[0].axes);
-        if tests.len() < 2 || !tests.iter().all(|test| alike(&test)) {
+        if !tests.iter().all(|test| alike(&test)) {
             return None;
         }
-        let factors: Option<Vec<[f64; 2]>> = tests.iter().map(|test| self.factor(test)).collect();
+        let protocols: Vec<Protocol> = tests.iter().flat_map(Protocol::of).collect();
+        let names: BTreeSet<_> = tests
+            .iter()
+            .filter_map(|test| test.specimen.as_ref())
+            .collect();
+        let is_stated = tests.iter().all(|test| test.specimen.is_some());
+        let what = match tests[0].test {
+            Test::Biaxial => "protocols",
+            _ => "tests",
+        };
+        match (is_stated, names.len()) {
+            (true, 2..) => {
+                let of = |name: &&String| {
+                    let own = protocols
+                        .iter()
+                        .filter(|one| one.test.specimen.as_ref() == Some(name));
+                    own.copied().collect()
+                };
+                let groups: Vec<Vec<Protocol>> = names.iter().map(of).collect();
+                Some(specimens_differ(&self.differing(&groups)?, has_intervals))
+            }
+            (stated, _) => {
+                let each: Vec<Vec<Protocol>> = protocols.into_iter().map(|own| vec![own]).collect();
+                let factors = listed(&self.differing(&each)?);
+                let differ = format!(
+                    "the stresses of the {} {what} are {factors} times those of the law, which is more than the noise of each",
+                    each.len()
+                );
+                Some(match stated {
+                    true => {
+                        format!("this law does not explain the specimen: {differ}; try another law")
+                    }
+                    false => format!(
+                        "{differ}. Either this law does not explain them, or they are specimens that differ: the residuals of both look alike. State \
+                         which: `--one-specimen`, or `# specimen name: NAME` in each file"
+                    ),
+                })
+            }
+        }
+    }
+
+    /// The factors of some groups of protocols where they differ by more than chance.
+    fn differing(&self, groups: &[Vec<Protocol>]) -> Option<Vec<f64>> {
+        if groups.len() < 2 {
+            return None;
+        }
+        let factors: Option<Vec<[f64; 2]>> = groups.iter().map(|own| self.factor(own)).collect();
         let factors = factors?;
         let freedom = factors.len() as f64 - 1.0;
         // χ² by Wilson's and Hilferty's cube root.
         let deviate = ((cochran(&factors) / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
             / (2.0 / (9.0 * freedom)).sqrt();
-        (deviate > CLEARLY).then(|| {
-            let factors: Vec<f64> = factors.iter().map(|[factor, _]| *factor).collect();
-            difference(&factors, count_of_specimens(tests), has_intervals)
-        })
+        (deviate > CLEARLY).then(|| factors.iter().map(|[factor, _]| *factor).collect())
     }
 }
 
-/// How many specimens the tests state; `None` where not all of them state one.
-fn count_of_specimens(tests: &[TestData]) -> Option<usize> {
-    let names: Option<BTreeSet<&String>> =
-        tests.iter().map(|test| test.head.get(SPECIMEN)).collect();
-    names.map(|names| names.len())
+/// A part of a test that was pulled one way.
+#[derive(Clone, Copy)]
+struct Protocol<'a> {
+    test: &'a TestData,
+    rows: &'a [Observation],
 }
 
-/// The warning about tests that are some times as stiff as the law.
-fn difference(factors: &[f64], specimens: Option<usize>, has_intervals: bool) -> String {
-    let count = factors.len() as f64;
-    let mean = factors.iter().sum::<f64>() / count;
-    let spread = factors.iter().map(|factor| (factor - mean).powi(2));
-    let of_mean = 100.0 * (spread.sum::<f64>() / (count - 1.0) / count).sqrt();
-    let stiffness: Vec<String> = factors
+impl<'a> Protocol<'a> {
+    fn of(test: &'a TestData) -> impl Iterator<Item = Self> {
+        let all = test.protocols().into_iter();
+        all.filter(|rows| rows.len() >= FEWEST)
+            .map(move |rows| Self { test, rows })
+    }
+}
+
+/// Numbers of three decimals.
+fn listed(factors: &[f64]) -> String {
+    let each: Vec<String> = factors
         .iter()
         .map(|factor| format!("{factor:.3}"))
         .collect();
-    let differ = format!(
-        "the tests differ by more than the noise of each: they are {} times as stiff as the law",
-        stiffness.join(", ")
-    );
-    let of_one = "this law does not describe all of its protocols";
-    let of_several = format!(
-        "they differ, and their mean gives the material's stiffness to ± {of_mean:.2} % (standard error); {}",
-        if has_intervals {
-            "the intervals apply to these specimens only"
-        } else {
-            "fit each specimen by itself to judge the law"
+    each.join(", ")
+}
+
+/// The warning about specimens with some stiffnesses over that of the law.
+fn specimens_differ(factors: &[f64], has_intervals: bool) -> String {
+    let count = factors.len() as f64;
+    let mean = factors.iter().sum::<f64>() / count;
+    let spread = factors
+        .iter()
+        .map(|factor| (factor - mean).powi(2))
+        .sum::<f64>();
+    let of_mean = 100.0 * (spread / (count - 1.0) / count).sqrt();
+    let then = match has_intervals {
+        true => "The intervals apply to these specimens only",
+        false => {
+            "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law"
         }
-    );
-    match specimens {
-        Some(1) => format!("{differ}. They are of one specimen: {of_one}"),
-        Some(_) => format!("{differ}. The specimens: {of_several}"),
-        None => format!(
-            "{differ}. Either they are of one specimen: then {of_one}. Or they are of several: then {of_several}. State which with --specimen NAME \
-             for one, or with `# {SPECIMEN}: NAME` at the top of each file"
-        ),
-    }
+    };
+    format!(
+        "the specimens differ by more than the noise of each: they are {} times as stiff as the law. {then}; their mean gives the \
+         material's stiffness to ± {of_mean:.2} % (standard error)",
+        listed(factors)
+    )
 }
 
 #[cfg(test)]
@@ -147,25 +199,6 @@ mod tests {
     use crate::calibration::{FitSettings, TestData, Weighting, fit};
     use crate::document::Statements;
     use crate::material::registry::Law;
-
-    #[test]
-    fn protocols_of_one_specimen_are_no_specimens_that_differ() {
-        let warning = |specimens| super::difference(&[0.9, 1.1], specimens, false);
-        let [one, several, unknown] = [Some(1), Some(2), None].map(warning);
-        let says = |text: &str| {
-            [
-                one.contains(text),
-                several.contains(text),
-                unknown.contains(text),
-            ]
-        };
-        assert_eq!(
-            says("does not describe all of its protocols"),
-            [true, false, true]
-        );
-        assert_eq!(says("fit each specimen by itself"), [false, true, true]);
-        assert_eq!(says("--specimen NAME"), [false, false, true]);
-    }
 
     /// Tension of a neo-Hookean strip with noise of a size for each stress.
     fn tension(c10: f64, seed: u64, noise: fn(f64) -> f64) -> TestData {
@@ -216,19 +249,102 @@ mod tests {
         assert!(found >= 6, "{found} of 10");
     }
 
+    /// The warnings of a fit of neo-Hooke to three strips of some moduli, whose specimens have some names.
+    fn of_strips(moduli: [f64; 3], names: [Option<&str>; 3]) -> String {
+        let tests = moduli.iter().zip(names).zip(0..);
+        let tests = tests.map(|((c10, name), seed)| TestData {
+            specimen: name.map(str::to_owned),
+            ..tension(*c10, seed, |_| 0.003)
+        });
+        let tests: Vec<TestData> = tests.collect();
+        let law = Law::named("neo-hooke").unwrap();
+        let found = fit(law, &tests, &FitSettings::default()).unwrap();
+        assert!(found.quality.has_intervals());
+        found.quality.warnings.join("; ")
+    }
+
     #[test]
-    fn specimens_that_differ_by_more_than_their_noise_are_told() {
-        let differ = "tests differ";
-        let of = |moduli: [f64; 3]| {
-            let tests = moduli
-                .iter()
-                .zip(0..)
-                .map(|(c10, seed)| tension(*c10, seed, |_| 0.003));
-            warned(&tests.collect::<Vec<_>>(), Weighting::Absolute, differ)
+    fn tests_that_differ_by_more_than_their_noise_are_specimens_or_a_wrong_law() {
+        let unstated = [None; 3];
+        // The second so different that all residuals together are systematic.
+        for moduli in [[0.0502, 0.0518, 0.0509], [0.045, 0.055, 0.05]] {
+            let warned = of_strips(moduli, unstated);
+            assert!(
+                warned.contains("Either this law does not explain them, or they are specimens")
+            );
+            assert!(!warned.contains("their mean gives"), "{warned}");
+            let warned = of_strips(moduli, [Some("a"), Some("b"), Some("c")]);
+            assert!(
+                warned.contains("the specimens differ by more than the noise"),
+                "{warned}"
+            );
+            let warned = of_strips(moduli, [Some("a"); 3]);
+            assert!(
+                warned.contains("this law does not explain the specimen"),
+                "{warned}"
+            );
+        }
+        for names in [unstated, [Some("a"); 3], [Some("a"), Some("b"), Some("c")]] {
+            let warned = of_strips([0.05; 3], names);
+            assert!(!warned.contains("specimen"), "{warned}");
+        }
+    }
+
+    /// One sheet of Fung's energy c (e^Q − 1)/2, Q = 6 E₁² + 2.5 E₂² + 2 E₁ E₂ of Green's strains, at a ratio of strains.
+    fn protocol(ratio: [f64; 2], seed: u64) -> String {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut rows = String::new();
+        for row in 0..30 {
+            let stretch = ratio.map(|share| 1.0 + 0.3 * share * f64::from(row) / 29.0);
+            let [e, f] = stretch.map(|l| 0.5 * (l * l - 1.0));
+            let energy = 0.01 * (6.0 * e * e + 2.5 * f * f + 2.0 * e * f).exp();
+            let mut noise = || -> f64 {
+                let z: f64 = StandardNormal.sample(&mut random);
+                2e-4 * z
+            };
+            let stresses = [
+                energy * (6.0 * e + f) * stretch[0] + noise(),
+                energy * (2.5 * f + e) * stretch[1] + noise(),
+            ];
+            rows += &format!(
+                "{},{},{:.6},{:.6}\n",
+                stretch[0], stretch[1], stresses[0], stresses[1]
+            );
+        }
+        rows
+    }
+
+    #[test]
+    fn protocols_of_one_specimen_are_judged_alike_in_one_file_and_in_several() {
+        let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
+        let parts: Vec<String> = (0..)
+            .zip(ratios)
+            .map(|(seed, ratio)| protocol(ratio, seed))
+            .collect();
+        let warned = |files: &[String], stated: &str| {
+            let head = format!(
+                "# test: biaxial\n{stated}stretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n"
+            );
+            let read = |rows: &String| {
+                TestData::parse("a.csv", &format!("{head}{rows}"), &Statements::default()).unwrap()
+            };
+            let tests: Vec<TestData> = files.iter().map(read).collect();
+            let found = fit(
+                Law::named("fung-demiray").unwrap(),
+                &tests,
+                &FitSettings::default(),
+            )
+            .unwrap();
+            let mut warnings = found.quality.warnings.into_iter();
+            warnings.find(|one| one.contains("3 protocols")).unwrap()
         };
-        assert!(of([0.0502, 0.0518, 0.0509]));
-        // So different that all residuals together are systematic.
-        assert!(of([0.045, 0.055, 0.05]));
-        assert!(!of([0.05; 3]));
+        let in_one = warned(&[parts.concat()], "");
+        assert_eq!(in_one, warned(&parts, ""));
+        assert!(in_one.contains("--one-specimen"), "{in_one}");
+        let stated = warned(&parts, "# specimen name: a\n");
+        assert!(
+            stated.starts_with("this law does not explain the specimen"),
+            "{stated}"
+        );
     }
 }

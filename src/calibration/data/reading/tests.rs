@@ -39,6 +39,7 @@ fn measures_and_units_are_read_from_names_head_or_command_line() {
                 ("strain unit", "-"),
                 ("stress measure", "nominal"),
                 ("stress unit", "MPa"),
+                ("columns", "strain=1,stress=2"),
             ],
         ),
         (
@@ -128,16 +129,16 @@ fn a_loop_of_loading_and_unloading_is_told() {
 fn columns_that_do_not_fit_together_are_refused() {
     for (text, message) in [
         (
-            "# test: uniaxial\nstretch [-],nominal_stress [MPa],cauchy_stress [MPa]\n1.1,1,1.1",
-            "two columns of stress along axis 1",
+            "# test: uniaxial\nstretch [-],nominal_stress [MPa],cauchy_stress [MPa]\n1.1,1,1.2",
+            "2 columns may be the stress, and they do not agree",
         ),
         (
             "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],cauchy_stress_2 [MPa]\n1.1,1.1,1,1",
             "`cauchy_stress_2` has another measure",
         ),
         (
-            "# test: uniaxial; length: 10 mm\ndisplacement [mm],stretch [-],nominal_stress [MPa]\n1,1.1,1",
-            "two columns of strain along axis 1",
+            "# test: uniaxial; length: 10 mm\ndisplacement [mm],stretch [-],nominal_stress [MPa]\n1,1.2,1",
+            "2 columns may be the strain, and they do not agree",
         ),
         (
             "# test: equibiaxial\nstretch_1 [-],stretch_2 [-],nominal_stress [MPa]\n1.1,1.2,1",

@@ -1,15 +1,36 @@
-//! What the values of a column say in each of the measures that it may have.
+//! The values of a column in each of the measures that it may have.
 
-use super::{Choice, Named, unit};
-use crate::calibration::data::columns::{Scaled, area, ratio};
-use crate::calibration::data::roles::{DISPLACEMENT, FORCE, Kind, Naming, of_kind};
-use crate::calibration::data::test_data::StrainColumn;
+use super::choice::unit;
+use super::columns::{Scaled, area, ratio};
+use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
+use super::test_data::StrainColumn;
+use crate::document::Head;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::{self, Dimension};
 
-impl Choice<'_> {
+/// A column whose name says what it may be.
+#[derive(Clone, Copy)]
+pub struct Named {
+    pub column: usize,
+    pub role: Role,
+    pub naming: Naming,
+}
+
+/// The values of a column times a factor.
+pub fn values(head: &Head, (column, factor): Scaled) -> Vec<f64> {
+    let rows = head.table.rows.iter();
+    rows.map(|(row, _)| row[column] * factor).collect()
+}
+
+/// The columns of a table as they may be read beside those that are chosen.
+pub struct Readings<'a> {
+    pub head: &'a Head<'a>,
+    pub roles: &'a [Role],
+}
+
+impl Readings<'_> {
     /// Whether two columns say the same in one of the measures that they may have.
-    pub(super) fn agree(&self, first: &Named, other: &Named) -> bool {
+    pub fn agree(&self, first: &Named, other: &Named) -> bool {
         /// Differences below this share of the largest value are rounding.
         const ROUNDING: f64 = 5e-3;
         let readings = [first, other].map(|own| self.readings(own));
@@ -38,7 +59,7 @@ impl Choice<'_> {
                     values.iter().map(|value| value - first).collect()
                 };
                 let factor = self.factor(own, Dimension::Time);
-                let scaled = factor.map(|factor| self.values((own.column, factor)));
+                let scaled = factor.map(|factor| values(self.head, (own.column, factor)));
                 scaled.map(rise).into_iter().collect()
             }
         }
@@ -49,7 +70,8 @@ impl Choice<'_> {
             let length = self.head.quantity("length", Dimension::Length);
             let factor = self.factor(own, Dimension::Length);
             let strains = factor.zip(length.ok().flatten());
-            let strains = strains.map(|(unit, length)| self.values((own.column, unit / length)));
+            let strains =
+                strains.map(|(unit, length)| values(self.head, (own.column, unit / length)));
             return strains.into_iter().collect();
         }
         let measures: Vec<StrainColumn> = match own.role.measure {
@@ -65,7 +87,7 @@ impl Choice<'_> {
         };
         let read = |measure: StrainColumn| {
             let factor = ratio(self.head, own.column, measure).ok()?;
-            let values = self.values((own.column, factor)).into_iter();
+            let values = values(self.head, (own.column, factor)).into_iter();
             Some(values.map(|value| measure.to_nominal(value)).collect())
         };
         measures.into_iter().filter_map(read).collect()
@@ -75,15 +97,16 @@ impl Choice<'_> {
         if own.role.measure == Some(FORCE) {
             let factor = self.factor(own, Dimension::Force);
             let stresses = factor.zip(area(self.head).ok());
-            let stresses = stresses.map(|(unit, area)| self.values((own.column, unit / area)));
+            let stresses =
+                stresses.map(|(unit, area)| values(self.head, (own.column, unit / area)));
             return stresses.into_iter().collect();
         }
         let Some(factor) = self.factor(own, Dimension::Stress) else {
             return Vec::new();
         };
-        let values = self.values((own.column, factor));
+        let values = values(self.head, (own.column, factor));
         let axis = own.role.axis();
-        let strains = of_kind(&self.roles, Kind::Strain).find(|(_, role)| role.axis() == axis);
+        let strains = of_kind(self.roles, Kind::Strain).find(|(_, role)| role.axis() == axis);
         let strains = strains.and_then(|(column, role)| {
             let named = Named {
                 column,
@@ -110,10 +133,5 @@ impl Choice<'_> {
         let column = &self.head.table.columns[own.column];
         let unit = unit(self.head, column, own.role.kind)?;
         units::factor(&unit, dimension).ok()
-    }
-
-    pub(super) fn values(&self, (column, factor): Scaled) -> Vec<f64> {
-        let rows = self.head.table.rows.iter();
-        rows.map(|(row, _)| row[column] * factor).collect()
     }
 }
