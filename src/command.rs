@@ -18,21 +18,21 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::budget::Budget;
 use crate::document::inputs;
-use crate::error::Diagnostic;
 use crate::kinds;
 use crate::output;
 use crate::output::ResultFolder;
-use crate::results::{Check, End, Results};
 use crate::studies::{self, name};
 use crate::validation;
+use conclusion::conclude;
 use journal::FolderJournal;
 use large::Large;
 use progress::{Progress, Shown, tell_files};
 use reference::FileKind;
-use terminal::{Outcome, Printed, complain, complain_of_end, print, print_report, warn};
+use terminal::{Outcome, Printed, complain, print, print_report, warn};
 
 mod choice;
 mod compare;
+mod conclusion;
 mod containment;
 mod correct;
 mod export;
@@ -312,28 +312,6 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     ];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     conclude(&[results], &parts.join("\n"))
-}
-
-/// The exit code of a study of which a model has no solution.
-const NO_SOLUTION: u8 = 3;
-
-/// Prints the results in words, then warnings, and decides on the exit code.
-fn conclude(results: &[Results], words: &str) -> Outcome {
-    print(words)?;
-    let outcomes = || results.iter().map(|results| &results.outcome);
-    for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
-        warn(&[Diagnostic::warning("", warning.clone())]);
-    }
-    let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
-    let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
-    ends.iter().for_each(|end| complain_of_end(end));
-    if let Some(end) = ends.first() {
-        return Ok(end.exit_code);
-    }
-    if outcomes().any(|outcome| outcome.checks.iter().any(Check::is_end)) {
-        return Ok(NO_SOLUTION);
-    }
-    Ok(u8::from(!results.iter().all(Results::passed)))
 }
 
 fn check(path: &Path, budget: Budget) -> Outcome {

@@ -33,6 +33,7 @@ mod joint;
 mod law_text;
 mod penalty;
 mod recording;
+mod resolution;
 mod sample;
 mod smoothing;
 mod spikes;
@@ -45,11 +46,13 @@ pub use basis::{Basis, Form, Shape, UnknownForm};
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
+use resolution::largest;
 pub use sample::Sample;
 use suspects::examine;
-pub use types::{FittedMotion, HiddenLag, Identification, IdentificationSettings};
-pub use verdict::RecordingVerdict;
-use verdict::{Evidence, Faults, largest, notes};
+pub use types::{
+    FittedMotion, HiddenLag, Identification, IdentificationSettings, RecordingVerdict,
+};
+use verdict::{Evidence, Faults, notes};
 
 #[cfg(test)]
 mod tests;

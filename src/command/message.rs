@@ -3,8 +3,10 @@
 use miette::{
     GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report,
 };
+use textwrap::{WordSeparator, WordSplitter};
 
 use super::fit_message;
+
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::{Mode, far_end};
@@ -48,6 +50,10 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) 
     let mut text = String::new();
     let handler = GraphicalReportHandler::new_themed(theme)
         .with_width(columns.unwrap_or(USUAL_COLUMNS))
+        // Paths and options stay whole.
+        .with_word_separator(WordSeparator::AsciiSpace)
+        .with_word_splitter(WordSplitter::NoHyphenation)
+        .with_break_words(false)
         .with_context_lines(1);
     match handler.render_report(&mut text, report.as_ref()) {
         Ok(()) => text,

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::conclusion::conclude;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, print_report, warn};
-use super::{conclude, identity, interrupt};
+use super::{identity, interrupt};
 use crate::error::{Diagnostic, Error};
 use crate::kinds;
 use crate::output::{self, ResultFolder};

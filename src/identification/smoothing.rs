@@ -1,6 +1,6 @@
 //! Least-squares splines of a signal over time, with as many parts as its noise allows.
 
-use super::verdict::{RESOLUTION, largest};
+use super::resolution::{RESOLUTION, largest};
 use crate::solve::{Cholesky, FactorFault, SymmetricPattern};
 use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 

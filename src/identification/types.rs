@@ -3,7 +3,6 @@
 use super::band::Function;
 use super::basis::{Form, Shape};
 use super::joint::Argument;
-use super::verdict::RecordingVerdict;
 use crate::corrector::estimation::Answer;
 use crate::units::number;
 
@@ -16,6 +15,30 @@ pub struct IdentificationSettings {
     pub shapes: [Shape; 2],
     /// The argument of D(·).
     pub argument: Argument,
+}
+
+/// The verdict on a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordingVerdict {
+    /// The answer.
+    pub answer: Answer,
+    /// Why a spring and a dashpot do not explain the recording, the likeliest cause first; empty where they do.
+    pub reasons: Vec<String>,
+    /// What makes intervals and bands invalid although the recording is explained.
+    pub doubts: Vec<String>,
+}
+
+impl RecordingVerdict {
+    /// The answer in words.
+    pub fn words(&self) -> String {
+        self.answer
+            .given("one spring with one dashpot of this mass and length")
+    }
+
+    /// Whether intervals and bands are valid.
+    pub fn is_sound(&self) -> bool {
+        self.answer != Answer::NotExplained && self.doubts.is_empty()
+    }
 }
 
 impl Identification {

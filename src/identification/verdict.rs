@@ -4,10 +4,11 @@ use super::band::Function;
 use super::basis::Form;
 use super::corners::corners;
 use super::recording::Recording;
+use super::resolution::exceeds_resolution;
 use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
 use super::spikes::{bridged, spikes};
 use super::suspects::{Suspected, description};
-use super::types::{FittedMotion, Identification};
+use super::types::{FittedMotion, Identification, RecordingVerdict};
 use crate::corrector::estimation::Answer;
 use crate::units::number;
 
@@ -37,15 +38,6 @@ fn gap(recording: &Recording, [wanted, bridged]: [usize; 2]) -> Option<String> {
             longest[0], longest[1]
         )
     })
-}
-
-/// The share of a signal's largest value below which a deviation is no evidence against a body: sensors are not more linear, and splines of
-/// a motion without noise not more exact.
-pub const RESOLUTION: f64 = 1e-3;
-
-/// The largest magnitude of a signal.
-pub fn largest(signal: &[f64]) -> f64 {
-    signal.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Fewest corners that count: a single one is a jerk, or chance.
@@ -162,30 +154,6 @@ pub fn notes(found: &Identification, recording: &Recording) -> Vec<String> {
     undetermined.chain(mass).collect()
 }
 
-/// The verdict on a recording.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RecordingVerdict {
-    /// The answer.
-    pub answer: Answer,
-    /// Why a spring and a dashpot do not explain the recording, the likeliest cause first; empty where they do.
-    pub reasons: Vec<String>,
-    /// What makes intervals and bands invalid although the recording is explained.
-    pub doubts: Vec<String>,
-}
-
-impl RecordingVerdict {
-    /// The answer in words.
-    pub fn words(&self) -> String {
-        self.answer
-            .given("one spring with one dashpot of this mass and length")
-    }
-
-    /// Whether intervals and bands are valid.
-    pub fn is_sound(&self) -> bool {
-        self.answer != Answer::NotExplained && self.doubts.is_empty()
-    }
-}
-
 /// What a verdict follows from, beside the functions that were identified.
 pub struct Evidence<'a> {
     pub recording: &'a Recording,
@@ -265,10 +233,3 @@ impl Evidence<'_> {
 
 /// A misfit above this is larger than the noise: what a spring and a dashpot leave of the recording.
 const MOST_MISFIT: f64 = 2.0;
-
-/// Whether the residuals of a signal are larger than sensors are linear and splines exact.
-fn exceeds_resolution(measured: &[f64], fitted: &[f64]) -> bool {
-    let squares = measured.iter().zip(fitted).map(|(a, b)| (a - b).powi(2));
-    let mean_square = squares.sum::<f64>() / measured.len() as f64;
-    mean_square.sqrt() > RESOLUTION * largest(measured)
-}

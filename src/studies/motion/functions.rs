@@ -75,22 +75,24 @@ pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
                 frequency: section.quantity("frequency", Dimension::Frequency, Bound::Positive),
             }
         }
-        Grip::Table => {
-            let times = section.quantities("times", Dimension::Time, Bound::NonNegative);
-            let stretches = section.stretches("stretches", STRETCHES);
-            if stretches.first().is_some_and(|first| *first != start) {
-                let hint = "the grips have held the plate at `start.stretch` before time 0";
-                section.fault(
-                    "stretches",
-                    "must begin with the stretch at the start",
-                    hint,
-                );
-            }
-            let points = ascending(section, "times", times, stretches)?;
-            TimeFunction::Table(points)
-        }
+        Grip::Table => TimeFunction::Table(read_table(section, start)?),
     };
     Some(GripMotion { stretch, release })
+}
+
+/// The instants and stretches of a grip that moves as a table says.
+fn read_table(section: &Section, start: f64) -> Option<Vec<[f64; 2]>> {
+    let times = section.quantities("times", Dimension::Time, Bound::NonNegative);
+    let stretches = section.stretches("stretches", STRETCHES);
+    if stretches.first().is_some_and(|first| *first != start) {
+        let hint = "the grips have held the plate at `start.stretch` before time 0";
+        section.fault(
+            "stretches",
+            "must begin with the stretch at the start",
+            hint,
+        );
+    }
+    ascending(section, "times", times, stretches)
 }
 
 /// The least and the largest stretch of a grip's motion.

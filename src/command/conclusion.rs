@@ -1,0 +1,27 @@
+//! What a command ends with: its words, the warnings about its results, and the exit code.
+
+use super::terminal::{Outcome, complain_of_end, print, warn};
+use crate::error::Diagnostic;
+use crate::results::{Check, End, Results};
+
+/// The exit code of a study of which a model has no solution.
+const NO_SOLUTION: u8 = 3;
+
+/// Prints the results in words, then warnings, and decides on the exit code.
+pub fn conclude(results: &[Results], words: &str) -> Outcome {
+    print(words)?;
+    let outcomes = || results.iter().map(|results| &results.outcome);
+    for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
+        warn(&[Diagnostic::warning("", warning.clone())]);
+    }
+    let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
+    let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
+    ends.iter().for_each(|end| complain_of_end(end));
+    if let Some(end) = ends.first() {
+        return Ok(end.exit_code);
+    }
+    if outcomes().any(|outcome| outcome.checks.iter().any(Check::is_end)) {
+        return Ok(NO_SOLUTION);
+    }
+    Ok(u8::from(!results.iter().all(Results::passed)))
+}
