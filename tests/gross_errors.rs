@@ -103,12 +103,15 @@ fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
         text.contains("markers are outliers, more than noise explains"),
         "{text}"
     );
-    // Without weights their size is taken for noise, and told.
+    // Without weights their size is taken for noise, by which nothing can be judged.
     let (text, found) = corrected(
         &with_a_third_anywhere(),
         &[&EDGES[..], &["--robust", "no"]].concat(),
     );
     assert!(found["noise_mm"].as_f64().unwrap() > 5.0 * NOISE);
+    let verdict = &found["verdict"];
+    assert_eq!(verdict["answer"], "the data cannot judge", "{text}");
+    assert!(text.contains("no interval: the noise is that of gross errors"));
     assert!(text.contains("of the specimen's smaller extent"), "{text}");
 }
 

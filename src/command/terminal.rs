@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn only_lines_longer_than_the_terminal_are_broken_between_words() {
         let text = "  force on --edge-gap is 12.5 N\n\nshort   line\n";
-        let broken = "  force on\n    --edge-gap is 12.5\n    N\n\nshort   line\n";
+        let broken = "  force on --edge-gap\n    is 12.5 N\n\nshort   line\n";
         assert_eq!(wrapped(text, Some(22)), broken);
         assert_eq!(wrapped(text, Some(80)), text);
         assert_eq!(wrapped(text, None), text);

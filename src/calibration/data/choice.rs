@@ -274,7 +274,7 @@ impl Choice<'_> {
         let stated = self.head.setting("strain measure", None).ok().flatten();
         let percent = self.head.setting("strain unit", None).ok().flatten();
         let unit = units::factor(percent.as_deref().unwrap_or("-"), Dimension::Ratio);
-        let least = extremes(values(self.head, (column, unit.unwrap_or(1.0))).into_iter())[0];
+        let least = extremes(values(self.head, (column, unit.unwrap_or(1.0))))[0];
         match stated.as_deref() {
             Some("stretch") => least > 0.0,
             Some("nominal") => least > -1.0,
@@ -287,7 +287,7 @@ impl Choice<'_> {
         let table = self.head.table;
         let (mut written, mut ranges) = (Vec::new(), Vec::new());
         for (quantity, column) in columns {
-            let [low, high] = extremes(values(self.head, (*column, 1.0)).into_iter());
+            let [low, high] = extremes(values(self.head, (*column, 1.0)));
             let unit = table.columns[*column].unit.as_deref().unwrap_or_default();
             let range = format!("{quantity} from {low} to {high} {unit}");
             written.push(format!("{quantity}={}", self.written(*column)));

@@ -114,7 +114,7 @@ pub fn judge(
         answer,
         correlation,
         worst: against.map(|_| rows.worst(found)),
-        reasons: against.into_iter().chain(few).collect(),
+        reasons: against.or(few).into_iter().collect(),
         trials,
     };
     Ok(Judgement {

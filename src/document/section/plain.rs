@@ -44,6 +44,14 @@ pub(super) fn bare(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
+/// A bare number or a list of them, in quotes or not.
+pub(super) fn bare_numbers(value: &DeValue<'_>) -> Option<Vec<f64>> {
+    match value {
+        DeValue::Array(items) => items.iter().map(|item| bare(item.get_ref())).collect(),
+        one => bare(one).map(|number| vec![number]),
+    }
+}
+
 /// How to write a number that stands in quotes.
 pub(super) fn unquoted(text: &str) -> String {
     let point = text.trim().replacen(',', ".", 1);

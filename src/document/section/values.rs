@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::plain::{
-    bare, count_pair, plain_number, quantity, rounded, text, unquoted, whole_number,
+    bare, bare_numbers, count_pair, plain_number, quantity, rounded, text, unquoted, whole_number,
 };
 use super::{Section, Value};
 use crate::document::{Bound, Takes};
@@ -223,7 +223,7 @@ impl<'a> Section<'a> {
         self.list(key, (dimension, &dimension.blank()), bound, MOST_BARE)
     }
 
-    /// A list of stretches λ − 1. Numbers without a percent sign, in quotes or not, that could as well be λ are refused.
+    /// A list of stretches λ − 1; numbers without a percent sign, in quotes or not, that could as well be λ are refused.
     pub fn stretches(&self, key: &'static str, bound: Bound) -> Vec<f64> {
         self.refuse_stretch_ratios(key);
         self.quantities(key, Dimension::Ratio, bound)
@@ -236,14 +236,10 @@ impl<'a> Section<'a> {
     }
 
     fn refuse_stretch_ratios(&self, key: &'static str) {
-        let Some(value) = self.written(key) else {
-            return;
-        };
-        let ratios: Option<Vec<f64>> = match value.get_ref() {
-            DeValue::Array(items) => items.iter().map(|item| bare(item.get_ref())).collect(),
-            one => bare(one).map(|ratio| vec![ratio]),
-        };
-        if let Some(ratios) = ratios.filter(|ratios| units::could_be_stretch_ratios(ratios)) {
+        if let Some(value) = self.written(key)
+            && let Some(ratios) = bare_numbers(value.get_ref())
+            && units::could_be_stretch_ratios(&ratios)
+        {
             let largest = ratios.into_iter().fold(1.0, f64::max);
             let [stretch, other] = [largest, largest - 1.0].map(|ratio| rounded(100.0 * ratio));
             let message = format!("{largest} could be a stretch of {stretch} % or λ, {other} %");

@@ -154,7 +154,11 @@ mod tests {
     fn estimated(answer: Answer, far: f64) -> FieldEstimate {
         let marker = |index: usize| {
             let near = 1.0 / (0.9 + 0.1 * far * far).sqrt();
-            let standardised_residual = if index % 10 == 0 { far * near } else { near };
+            let standardised_residual = if index.is_multiple_of(10) {
+                far * near
+            } else {
+                near
+            };
             Some(MarkerEstimate {
                 residual: [standardised_residual, 0.0],
                 standardised_residual,

@@ -14,8 +14,11 @@ fn strains() -> impl Iterator<Item = f64> {
     (0..40).map(|row| 0.02 * f64::from(row))
 }
 
+/// The name of a column, and its values as a function of the strain.
+type Column = (&'static str, fn(f64) -> f64);
+
 /// A table of named columns with values by the strain, or of columns without names.
-fn table(separator: &str, columns: &[(&str, fn(f64) -> f64)], has_names: bool) -> String {
+fn table(separator: &str, columns: &[Column], has_names: bool) -> String {
     let line = |fields: Vec<String>| fields.join(separator) + "\n";
     let names = line(columns.iter().map(|(name, _)| (*name).to_owned()).collect());
     let rows = strains().map(|strain| {
@@ -81,11 +84,11 @@ fn asks(text: &str, reading: &[(&str, &str)], count: usize) {
 
 #[test]
 fn columns_without_names_are_read_where_one_order_is_possible_and_asked_for_elsewhere() {
-    let columns: [(&str, fn(f64) -> f64); 2] = [("", |x| 1.0 + x), ("", stress)];
-    let strain: [(&str, fn(f64) -> f64); 2] = [("", |x| x), ("", stress)];
+    let columns: [Column; 2] = [("", |x| 1.0 + x), ("", stress)];
+    let strain: [Column; 2] = [("", |x| x), ("", stress)];
     for separator in [",", ";", "\t", "    ", " "] {
         for exchanged in [false, true] {
-            let ordered = |mut columns: [(&'static str, fn(f64) -> f64); 2]| {
+            let ordered = |mut columns: [Column; 2]| {
                 if exchanged {
                     columns.reverse();
                 }
@@ -105,7 +108,7 @@ fn columns_without_names_are_read_where_one_order_is_possible_and_asked_for_else
             asks(&ordered(strain), &[&MEASURES[..], &nominal].concat(), 2);
         }
     }
-    let three: [(&str, fn(f64) -> f64); 3] = [("", |x| 7.0 * x), ("", stress), ("", |x| 1.0 + x)];
+    let three: [Column; 3] = [("", |x| 7.0 * x), ("", stress), ("", |x| 1.0 + x)];
     asks(
         &table(",", &three, false),
         &[&MEASURES[..], &[("strain measure", "stretch")]].concat(),
@@ -115,7 +118,7 @@ fn columns_without_names_are_read_where_one_order_is_possible_and_asked_for_else
 
 #[test]
 fn columns_with_names_are_read_in_any_order_with_any_separator() {
-    let columns: [(&str, fn(f64) -> f64); 2] = [
+    let columns: [Column; 2] = [
         ("nominal strain [-]", |x| x),
         ("nominal stress [MPa]", stress),
     ];
@@ -133,7 +136,7 @@ fn columns_with_names_are_read_in_any_order_with_any_separator() {
 
 #[test]
 fn of_two_loads_the_user_says_which_is_that_of_the_specimen() {
-    let extension: (&str, fn(f64) -> f64) = ("Extension (mm)", |x| 20.0 * x);
+    let extension: Column = ("Extension (mm)", |x| 20.0 * x);
     for names in [
         ["Load 2 (N)", "Load (N)"],
         ["Load 1 (N)", "Load 2 (N)"],
@@ -141,8 +144,7 @@ fn of_two_loads_the_user_says_which_is_that_of_the_specimen() {
         ["Load (N)", "Load (N)"],
     ] {
         for exchanged in [false, true] {
-            let mut loads: [(&str, fn(f64) -> f64); 2] =
-                [(names[0], |_| 0.0), (names[1], |x| 10.0 * stress(x))];
+            let mut loads: [Column; 2] = [(names[0], |_| 0.0), (names[1], |x| 10.0 * stress(x))];
             if exchanged {
                 loads.reverse();
             }
@@ -154,7 +156,7 @@ fn of_two_loads_the_user_says_which_is_that_of_the_specimen() {
         }
     }
     // Both cells in series, and a stress that the machine evaluates.
-    let alike: [(&str, fn(f64) -> f64); 4] = [
+    let alike: [Column; 4] = [
         extension,
         ("Load (N)", |x| 10.0 * stress(x)),
         ("Load 2 (N)", |x| 10.0 * stress(x)),
@@ -167,7 +169,7 @@ fn of_two_loads_the_user_says_which_is_that_of_the_specimen() {
 
 #[test]
 fn an_extensometer_beside_the_crosshead_is_asked_for_and_an_evaluation_is_not() {
-    let load: (&str, fn(f64) -> f64) = ("Load (N)", |x| 10.0 * stress(x));
+    let load: Column = ("Load (N)", |x| 10.0 * stress(x));
     for (displacement, strain) in [
         ("Extension (mm)", "Tensile strain (%)"),
         ("Crosshead (mm)", "Strain (%)"),
@@ -175,8 +177,7 @@ fn an_extensometer_beside_the_crosshead_is_asked_for_and_an_evaluation_is_not() 
     ] {
         let reading = [&SPECIMEN[..], &[("strain measure", "nominal")]].concat();
         for exchanged in [false, true] {
-            let mut strains: [(&str, fn(f64) -> f64); 2] =
-                [(displacement, |x| 25.0 * x), (strain, |x| 100.0 * x)];
+            let mut strains: [Column; 2] = [(displacement, |x| 25.0 * x), (strain, |x| 100.0 * x)];
             if exchanged {
                 strains.reverse();
             }
@@ -186,8 +187,7 @@ fn an_extensometer_beside_the_crosshead_is_asked_for_and_an_evaluation_is_not() 
                 2,
             );
         }
-        let evaluated: [(&str, fn(f64) -> f64); 3] =
-            [(displacement, |x| 20.0 * x), (strain, |x| 100.0 * x), load];
+        let evaluated: [Column; 3] = [(displacement, |x| 20.0 * x), (strain, |x| 100.0 * x), load];
         let data = read(&table(",", &evaluated, true), &reading).unwrap();
         assert!(is_right(&data), "{displacement}");
         assert!(
