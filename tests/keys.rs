@@ -143,7 +143,13 @@ fn every_kind_of_new_file_is_accepted_as_it_is() {
         gelbench(folder.path(), &["new", kind, "--kind", kind]).code(0);
         let file = format!("{kind}.toml");
         if kind == "card" {
-            gelbench(folder.path(), &["materials", "show", &file]).code(0);
+            let shown = gelbench(folder.path(), &["materials", "show", &file]).code(0);
+            let shown = words(&shown.get_output().stdout);
+            assert!(
+                shown.contains("not stated")
+                    && !shown.contains("Treloar")
+                    && !shown.contains("doi")
+            );
         } else if kind != "markers" {
             gelbench(folder.path(), &["check", &file]).code(0);
         } else {

@@ -132,6 +132,52 @@ fn test_data_that_cannot_be_trusted_are_refused_with_line_and_remedy() {
     assert!(words(&refused.get_output().stderr).contains("is not a text file"));
 }
 
+/// The terminal, the card and the figures say what was read; a card that was changed by hand is a warning.
+#[test]
+fn what_was_read_stands_with_the_fit_and_a_changed_card_is_told() {
+    let folder = TempDir::new().unwrap();
+    let text = "Extension (mm),Load 2 (N),Load (N)\n0,0,0\n2,0,0.27\n4,0,0.5\n6,0,0.7\n8,0,0.9\n";
+    fs::write(folder.path().join("a.csv"), text).unwrap();
+    let fit = "materials fit a.csv --law neo-hooke --test uniaxial --name a --output .";
+    let mut arguments: Vec<&str> = fit.split(' ').collect();
+    arguments.extend(["--length", "20 mm", "--area", "10 mm^2"]);
+    let asked = gelbench(folder.path(), &arguments).code(2);
+    let asked = words(&asked.get_output().stderr);
+    assert!(asked.contains("--columns \"stress=Load [N]\""), "{asked}");
+    arguments.extend(["--columns", "stress=Load [N]"]);
+    let printed = words(
+        &gelbench(folder.path(), &arguments)
+            .code(0)
+            .get_output()
+            .stdout,
+    );
+    let read = "displacement from `Extension` [mm] over 20 mm, force from `Load` [N] over 10 mm²; lines 2 to 6; not read: `Load 2`";
+    assert!(printed.contains(read), "{printed}");
+    let card = fs::read_to_string(folder.path().join("a.toml")).unwrap();
+    assert!(
+        card.contains(read) && card.contains("values = [\"c10 = "),
+        "{card}"
+    );
+    let figures = fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let figures: Value = serde_json::from_str(&figures).unwrap();
+    assert_eq!(figures["data"][0]["columns"][1]["column"], "`Load`");
+    assert_eq!(figures["data"][0]["lines"], serde_json::json!([2, 6]));
+    let refit = gelbench(folder.path(), &["materials", "refit", "a.toml"]).code(0);
+    assert!(!words(&refit.get_output().stderr).contains("was changed"));
+    let parameter = card
+        .lines()
+        .find(|line| line.starts_with("c10 = "))
+        .unwrap();
+    let changed = card.replace(parameter, "c10 = \"0.06 MPa\"");
+    fs::write(folder.path().join("a.toml"), changed).unwrap();
+    let shown = gelbench(folder.path(), &["materials", "show", "a.toml"]).code(0);
+    let warned = words(&shown.get_output().stderr);
+    assert!(
+        warned.contains("was changed since its fit: c10 = 0.06 where the fit"),
+        "{warned}"
+    );
+}
+
 #[test]
 fn test_data_are_converted() {
     let folder = TempDir::new().unwrap();

@@ -1,7 +1,8 @@
 //! Which columns of a table are read. Where several may be the same quantity and differ, the user is asked.
 
+use super::columns::unit;
 use super::readings::{Named, Readings, values};
-use super::roles::{DISPLACEMENT, FORCE, Kind, Role, of_kind};
+use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, of_kind};
 use super::test_data::Test;
 use crate::document::{ChosenColumns, Column, ColumnRole, FoundColumns, Head};
 use crate::error::{Diagnostic, Error};
@@ -10,23 +11,6 @@ use crate::units::{self, Dimension};
 
 /// The key under which the columns are stated.
 pub const COLUMNS: &str = "columns";
-
-/// A quantity whose column a user may name: its kind, and the axis where it is stated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quantity(Kind, Option<usize>);
-
-impl ColumnRole for Quantity {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("strain", Self(Kind::Strain, None)),
-        ("strain_1", Self(Kind::Strain, Some(0))),
-        ("strain_2", Self(Kind::Strain, Some(1))),
-        ("stress", Self(Kind::Stress, None)),
-        ("stress_1", Self(Kind::Stress, Some(0))),
-        ("stress_2", Self(Kind::Stress, Some(1))),
-        ("time", Self(Kind::Time, None)),
-    ];
-    const EXAMPLE: &'static str = "strain=Extension,stress=\"Load (N)\"";
-}
 
 /// What each column is read as, with questions where more than one reading is possible.
 pub struct Chosen {
@@ -115,12 +99,6 @@ fn of_unit(head: &Head, column: &Column, kind: Kind) -> Option<&'static str> {
         Kind::Stress if is_of(Dimension::Force) => Some(FORCE),
         _ => None,
     }
-}
-
-/// The unit of a column, or the one that is stated for its kind.
-pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
-    let said = || head.setting(&format!("{} unit", kind.name()), None);
-    column.unit.clone().or_else(|| said().ok().flatten())
 }
 
 /// The choice while it is made.

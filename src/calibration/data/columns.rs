@@ -1,8 +1,10 @@
 //! Measures and units of the columns that are read.
 
-use super::choice::Quantity;
+use std::ops::Range;
+
 use super::record::Machine;
-use super::roles::{DISPLACEMENT, FORCE, Kind, Role, of_kind};
+use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, of_kind};
+use super::table_reading::{ColumnReading, TableReading};
 use super::test_data::StrainColumn;
 use crate::document::{Column, ColumnRole, Faulty, Head};
 use crate::error::Diagnostic;
@@ -164,4 +166,69 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
         let message = format!("the strain ratio {ratio} is not a number");
         head.fault(head.place(KEY), message, "it is ε₂/ε₁ of nominal strains")
     })
+}
+
+/// The unit of a column, or the one that is stated for its kind.
+pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
+    let said = || head.setting(&format!("{} unit", kind.name()), None);
+    column.unit.clone().or_else(|| said().ok().flatten())
+}
+
+impl TableReading {
+    /// What some roles say, and the rows that are fitted.
+    pub fn of(head: &Head, roles: &[Role], rows: &Range<usize>) -> Self {
+        let mut found = Self::default();
+        for kind in [Kind::Strain, Kind::Stress, Kind::Time, Kind::Other] {
+            for (index, role) in of_kind(roles, kind) {
+                let column = &head.table.columns[index];
+                let name = match column.written.is_empty() {
+                    true => format!("column {}", index + 1),
+                    false => format!("`{}`", column.written),
+                };
+                match kind {
+                    Kind::Other => found.unread.push(name),
+                    _ => found
+                        .columns
+                        .push(ColumnReading::of(head, (column, name), role)),
+                }
+            }
+        }
+        let line = |row: usize| {
+            let (_, place) = &head.table.rows[row.min(head.table.rows.len() - 1)];
+            head.table.source.line(place.start)
+        };
+        found.lines = [line(rows.start), line(rows.end.saturating_sub(1))];
+        found
+    }
+}
+
+impl ColumnReading {
+    fn of(head: &Head, (column, name): (&Column, String), role: &Role) -> Self {
+        let key = format!("{} measure", role.kind.name());
+        let said = || head.setting(&key, None).ok().flatten();
+        let measure = role.measure.map(str::to_owned).or_else(said);
+        let measure = measure.unwrap_or_default();
+        let length = || head.quantity("length", Dimension::Length).ok().flatten();
+        let divided_by = match &*measure {
+            DISPLACEMENT => length().map(|length| format!("{length} mm")),
+            FORCE => area(head).ok().map(|area| format!("{area} mm²")),
+            _ => None,
+        };
+        let quantity = match (&*measure, role.kind) {
+            (_, Kind::Time) => "time".to_owned(),
+            (DISPLACEMENT | FORCE | "stretch", _) => measure,
+            ("cauchy", kind) => format!("Cauchy {}", kind.name()),
+            (measure, kind) => format!("{measure} {}", kind.name()),
+        };
+        let axis = match role.numbered {
+            Some(axis) => format!(" along axis {}", axis + 1),
+            None => String::new(),
+        };
+        Self {
+            quantity: format!("{quantity}{axis}"),
+            column: name,
+            unit: unit(head, column, role.kind).unwrap_or_else(|| "-".to_owned()),
+            divided_by: divided_by.unwrap_or_default(),
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::test_data::Test;
+use super::test_data::{Observation, Test, TestData};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::statistics::{extremes, farthest};
@@ -156,7 +156,7 @@ fn turns(values: &[f64]) -> Vec<usize> {
 }
 
 /// The rows of each pull away from rest and back: a new one begins where values that are zero at rest turn up again.
-pub fn pulls(values: &[f64]) -> Vec<Range<usize>> {
+fn pulls(values: &[f64]) -> Vec<Range<usize>> {
     let turns = turns(values);
     let rising = turns
         .windows(2)
@@ -168,6 +168,22 @@ pub fn pulls(values: &[f64]) -> Vec<Range<usize>> {
         .chain([values.len()])
         .collect();
     edges.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
+impl TestData {
+    /// The observations of each protocol: a biaxial test is pulled at several ratios, in one file or in several; any other is one.
+    pub fn protocols(&self) -> Vec<&[Observation]> {
+        if self.test != Test::Biaxial {
+            return vec![&self.observations];
+        }
+        let each = self.axes.len();
+        let rows = self.observations.chunks(each);
+        let sizes: Vec<f64> = rows.map(|row| farthest(row[0].strains).abs()).collect();
+        let pulls = pulls(&sizes).into_iter();
+        pulls
+            .map(|rows| &self.observations[each * rows.start..each * rows.end])
+            .collect()
+    }
 }
 
 /// The rows between two turns without the holds there, and the row of the end.

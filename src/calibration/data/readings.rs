@@ -1,7 +1,6 @@
 //! The values of a column in each of the measures that it may have.
 
-use super::choice::unit;
-use super::columns::{Scaled, area, ratio};
+use super::columns::{Scaled, area, ratio, unit};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
 use super::test_data::StrainColumn;
 use crate::document::Head;

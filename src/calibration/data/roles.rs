@@ -1,7 +1,7 @@
 //! The meaning of the names of columns.
 
 use super::test_data::Test;
-use crate::document::{Column, Faulty, Head};
+use crate::document::{Column, ColumnRole, Faulty, Head};
 
 /// The kind of quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,23 @@ impl Kind {
             Self::Other => "",
         }
     }
+}
+
+/// A quantity whose column a user may name: its kind, and the axis where it is stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity(pub Kind, pub Option<usize>);
+
+impl ColumnRole for Quantity {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("strain", Self(Kind::Strain, None)),
+        ("strain_1", Self(Kind::Strain, Some(0))),
+        ("strain_2", Self(Kind::Strain, Some(1))),
+        ("stress", Self(Kind::Stress, None)),
+        ("stress_1", Self(Kind::Stress, Some(0))),
+        ("stress_2", Self(Kind::Stress, Some(1))),
+        ("time", Self(Kind::Time, None)),
+    ];
+    const EXAMPLE: &'static str = "strain=Extension,stress=\"Load (N)\"";
 }
 
 /// The meaning of a column's name.

@@ -1,13 +1,11 @@
 //! Test data: the strains of a specimen, and the stresses that were measured.
 
-use super::cycles::pulls;
 use super::table_reading::TableReading;
 use crate::document::{Statements, name_of};
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::sheet::{Kinematics, PlaneTensor};
-use crate::statistics::farthest;
 
 /// The kinds of test of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -297,20 +295,6 @@ impl TestData {
         let stresses = all.observations.iter().map(|one| one.stress.abs());
         all.largest_stress = stresses.fold(0.0, f64::max);
         all
-    }
-
-    /// The observations of each protocol: a biaxial test is pulled at several ratios, in one file or in several; any other is one.
-    pub fn protocols(&self) -> Vec<&[Observation]> {
-        if self.test != Test::Biaxial {
-            return vec![&self.observations];
-        }
-        let each = self.axes.len();
-        let rows = self.observations.chunks(each);
-        let sizes: Vec<f64> = rows.map(|row| farthest(row[0].strains).abs()).collect();
-        let pulls = pulls(&sizes).into_iter();
-        pulls
-            .map(|rows| &self.observations[each * rows.start..each * rows.end])
-            .collect()
     }
 
     /// λ − 1 along the axis over which the data are drawn: the one of the stress in a uniaxial test, otherwise the one that is stretched further.

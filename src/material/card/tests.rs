@@ -115,3 +115,20 @@ fn a_sheet_is_told_as_its_card_and_plane_state_make_it() {
     let softens = "c10 = \"0.05 MPa\"\n[softening]\nr = 2\nm = \"10 kPa\"\nbeta = 0.1\n";
     assert!(told("neo-hooke", softens).ends_with("plane stress, with Mullins softening"));
 }
+
+/// A number in a hint would be that of another material.
+#[test]
+fn a_missing_parameter_is_asked_for_without_a_number() {
+    let text = Card::load("pva-10-yeoh", Path::new(".")).unwrap().text;
+    let without: String = text
+        .split_inclusive('\n')
+        .filter(|line| !line.starts_with("c30"))
+        .collect();
+    let fault = Card::parse("a", "a.toml", &without)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        fault.contains("add `c30 = \"… MPa\"` under [parameters]"),
+        "{fault}"
+    );
+}

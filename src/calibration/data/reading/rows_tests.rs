@@ -5,7 +5,7 @@ use crate::calibration::Times;
 
 /// As laboratories write them in German, where neither displacements nor forces stand beside.
 #[test]
-fn strains_and_stresses_of_machines_are_read_where_nothing_better_stands_beside_them() {
+fn strains_and_stresses_that_machines_evaluate_are_read_alone_and_are_no_second_ones() {
     let stated = [
         ("test", "uniaxial"),
         ("strain measure", "nominal"),
@@ -15,7 +15,7 @@ fn strains_and_stresses_of_machines_are_read_where_nothing_better_stands_beside_
     assert!((data.observations[0].strains[0] - 0.105).abs() < 1e-15);
     assert!((data.observations[1].stress - 8e-3).abs() < 1e-15);
     let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2\n";
-    let text = "Tensile extension [mm],Tensile strain [%],Load [N],Tensile stress [MPa]\n2,99,1,99\n4,99,2,99\n";
+    let text = "Tensile extension [mm],Tensile strain [%],Load [N],Tensile stress [MPa]\n2,10,1,0.1\n4,20,2,0.2\n";
     let data = read(&(head.to_owned() + text), &[]).unwrap();
     assert!((data.observations[0].strains[0] - 0.1).abs() < 1e-15);
     assert!((data.observations[0].stress - 0.1).abs() < 1e-15);
