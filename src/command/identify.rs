@@ -118,13 +118,7 @@ enum Over {
 pub fn run(options: Options) -> Outcome {
     options.printed.choose();
     if let Some(file) = options.sample {
-        let sample = Sample {
-            seed: options.seed,
-            ..Sample::default()
-        };
-        save(&file, sample.csv().as_bytes())?;
-        print(&format!("{} written\n", file.display()))?;
-        return Ok(0);
+        return write_sample(&file, options.seed);
     }
     let path = options.data.unwrap_or_default();
     let given = [
@@ -181,6 +175,17 @@ pub fn run(options: Options) -> Outcome {
         folder.join(format!("{stem}.toml")).display()
     ))?;
     Ok(exit_code(found.verdict.answer, found.verdict.is_sound()))
+}
+
+/// Writes a computed recording.
+fn write_sample(file: &Path, seed: u64) -> Outcome {
+    let sample = Sample {
+        seed,
+        ..Sample::default()
+    };
+    save(file, sample.csv().as_bytes())?;
+    print(&format!("{} written\n", file.display()))?;
+    Ok(0)
 }
 
 /// Writes law, figures and picture; returns a warning where the picture cannot be drawn.

@@ -137,10 +137,9 @@ impl<'a> Reader<'a> {
                 .map(|head| length(table, head, units))
                 .transpose()?,
             frame: plain_column(Role::Frame, FRAME),
-            time: match plain_column(Role::Time, TIME) {
-                Some(column) => Some((column, columns::seconds(table, column)?)),
-                None => None,
-            },
+            time: plain_column(Role::Time, TIME)
+                .map(|column| Ok::<_, Error>((column, columns::seconds(table, column)?)))
+                .transpose()?,
             name: plain_column(Role::Id, NAME),
             mismatch: plain(table, &["match"]),
             lost: plain(table, layout.lost),
