@@ -167,8 +167,9 @@ pub fn run(options: Options) -> Outcome {
     print_report(|| json)?;
     warn(warnings.as_slice());
     let doubts = found.verdict.doubts.iter().chain(&found.warnings);
-    let doubts: Vec<_> = doubts.map(|one| Diagnostic::warning("", one)).collect();
-    warn(&doubts);
+    warn(&Vec::from_iter(
+        doubts.map(|one| Diagnostic::warning("", one)),
+    ));
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&found, &recording, &path),
