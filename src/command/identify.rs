@@ -11,7 +11,7 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, save, warn};
-use crate::budget::Need;
+use crate::budget::{Budget, Need};
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Sample, Shape,
@@ -130,18 +130,7 @@ pub fn run(options: Options) -> Outcome {
         .into_iter()
         .filter_map(|(key, value)| Some((key.to_owned(), value?)));
     let recording = Recording::read(&path, &given.collect())?;
-    let need = Need {
-        bytes: BYTES_OF_AN_INSTANT * recording.times.len() as f64,
-        ..Need::default()
-    };
-    let afforded = options.large.budget().afford(need);
-    afforded.map_err(|excess| {
-        let what = format!("{}: {} instants", path.display(), recording.times.len());
-        Error::input(
-            format!("{what}: this {excess}"),
-            excess.remedy("take every other instant"),
-        )
-    })?;
+    check_size(&path, &recording, options.large.budget())?;
     let settings = IdentificationSettings {
         forms: [options.stiffness, options.damping],
         shapes: [options.stiffness_shape.into(), options.damping_shape.into()],
@@ -176,6 +165,21 @@ pub fn run(options: Options) -> Outcome {
         folder.join(format!("{stem}.toml")).display()
     ))?;
     Ok(exit_code(found.verdict.answer, found.verdict.is_sound()))
+}
+
+/// Refuses a recording that is larger than the budget.
+fn check_size(path: &Path, recording: &Recording, budget: Budget) -> Result<(), Error> {
+    let need = Need {
+        bytes: BYTES_OF_AN_INSTANT * recording.times.len() as f64,
+        ..Need::default()
+    };
+    budget.afford(need).map_err(|excess| {
+        let what = format!("{}: {} instants", path.display(), recording.times.len());
+        Error::input(
+            format!("{what}: this {excess}"),
+            excess.remedy("take every other instant"),
+        )
+    })
 }
 
 /// Writes a computed recording.
