@@ -17,12 +17,22 @@ impl ParameterUncertainty {
     /// Reads the keys of a record of a fit, if there are any.
     pub(super) fn read(section: &Section) -> Option<Self> {
         const DEVIATIONS: &str = "standard_deviations";
+        const PARAMETERS: &str = "parameters";
+        const CORRELATIONS: &str = "correlations";
         if !section.has(DEVIATIONS) {
             return None;
         }
-        let keys = section.texts("parameters");
+        let keys = if section.has(PARAMETERS) {
+            section.texts(PARAMETERS)
+        } else {
+            Vec::new()
+        };
         let deviations = section.multiples(DEVIATIONS, Bound::NonNegative, f64::INFINITY);
-        let correlations = section.multiples("correlations", Bound::Within(-1.0, 1.0), 1.0);
+        let correlations = if section.has(CORRELATIONS) {
+            section.multiples(CORRELATIONS, Bound::Within(-1.0, 1.0), 1.0)
+        } else {
+            Vec::new()
+        };
         let count = keys.len();
         if deviations.len() != count || correlations.len() != count * count.saturating_sub(1) / 2 {
             let message =
