@@ -23,7 +23,7 @@ use crate::running::caught;
 pub struct Sheet {
     pub law: Arc<dyn HyperelasticLaw>,
     pub thickness: f64,
-    /// What deserves attention in the study.
+    /// What deserves attention in the study and the states.
     pub warnings: Vec<String>,
     /// The time that the library took.
     pub took: Duration,
@@ -54,7 +54,13 @@ struct State {
 }
 
 impl Solution {
-    pub fn new(py: Python<'_>, found: OneModel, own: Sheet, groups: Vec<String>) -> PyResult<Self> {
+    pub fn new(
+        py: Python<'_>,
+        found: OneModel,
+        mut own: Sheet,
+        groups: Vec<String>,
+    ) -> PyResult<Self> {
+        own.warnings.extend(found.warnings);
         let ends = found.ends.iter();
         let ends = ends.map(|end| exception(py, end).into_value(py).into_any());
         let ends = ends.collect();

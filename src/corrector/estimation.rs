@@ -69,16 +69,24 @@ pub fn estimate(
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
     let found = estimate_with(specimen, markers, knowledge);
-    let known = knowledge.law.is_none() && !knowledge.measured_forces().is_empty();
+    if knowledge.law.is_some() || knowledge.measured_forces().is_empty() {
+        return found;
+    }
+    let compared = || {
+        let checked = Knowledge {
+            forces_are_checks: true,
+            ..knowledge.clone()
+        };
+        estimate_with(specimen, markers, &checked)
+    };
     match found {
-        // Where no field has such forces, the field is compared with them.
-        Err(Error::Solve { .. }) if known => {
-            let checked = Knowledge {
-                forces_are_checks: true,
-                ..knowledge.clone()
-            };
-            estimate_with(specimen, markers, &checked)
-        }
+        // Where no field has such forces, the field of the markers alone is compared with them.
+        Err(Error::Solve { .. }) => compared(),
+        // A wrong force leaves smooth residuals too, which must not pass for noise.
+        Ok(found) if found.verdict.answer == Answer::Undecided => match compared() {
+            Ok(other) if other.force_checks.iter().any(ForceCheck::contradicts) => Ok(other),
+            _ => Ok(found),
+        },
         found => found,
     }
 }

@@ -19,6 +19,8 @@ pub mod sheets;
 
 pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {
     let mut command = Command::cargo_bin("gelbench").unwrap();
+    // Lines of messages are as long as they are.
+    command.env("COLUMNS", "100000");
     command.current_dir(folder).args(arguments).assert()
 }
 

@@ -4,8 +4,6 @@
 //! alternative of [`alternatives`] and all edges released, where the residuals are noise more surely. The data, made white by the
 //! latter, determine which alternative reduces the misfit more than noise would (F test, in one linearised step).
 
-use nalgebra::DMatrix;
-
 use super::equations::Equations;
 use super::given::{Edge, EdgeCondition, Task};
 use super::outcome::{
@@ -21,6 +19,7 @@ mod linear_model;
 mod rows;
 mod whiteness;
 
+use alternatives::Granted;
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
 
@@ -70,12 +69,12 @@ pub fn judge(
             ..Judgement::default()
         });
     };
-    let granted = found.granted();
-    let base = Model::of_search(&rows, found).with(&rows, &granted);
+    let granted = found.granted(edges)?;
+    let base = Model::of_search(&rows, found).granting(&rows, &granted);
     let mut noises = base.noises(&rows);
     let noise = noises.first();
     let columns = found.alternatives(own)?;
-    let all = all.map(|scored| Model::of_score(&rows, found, &scored).with(&rows, &granted));
+    let all = all.map(|scored| Model::of_score(&rows, found, &scored).granting(&rows, &granted));
     let basis = Basis {
         reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, own),
         rows: &rows,
@@ -160,12 +159,12 @@ impl Basis<'_> {
         task: &Task,
         found: &NearestField,
         edges: &[Edge],
-        granted: &[DMatrix<f64>],
+        granted: &[Granted],
     ) -> Vec<Trial> {
         let names = said(edges).into_iter();
         let released = names.filter_map(|name| {
             let scored = let_go(task, found, edges, &|other| other == name)?;
-            let model = Model::of_score(self.rows, found, &scored).with(self.rows, granted);
+            let model = Model::of_score(self.rows, found, &scored).granting(self.rows, granted);
             Some(self.try_out(found, Alternative::Edge(name.to_owned()), &model))
         });
         released.collect()

@@ -5,8 +5,8 @@ use super::problem::MovingPlate;
 use crate::finite_element::Element;
 use crate::mass_spring::{self, SpringLaw};
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS};
-use crate::results::wrinkling::{self, Wrinkling};
-use crate::results::{Sheet, locking, small_strain, strained};
+use crate::results::strained::{self, StrainedSheet};
+use crate::results::{Sheet, locking};
 use crate::units::number;
 
 /// The warnings about plates that move, at the given instants in s: a lattice of another ν, compression, a law of small strains, locking, and a
@@ -19,15 +19,23 @@ pub fn warnings(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> V
     if !is_alike {
         all.extend(mass_spring::warning_of_plate(law));
     }
-    all.extend(compression(plate, times, plates));
+    all.extend(locking(plate, plates));
     let Some(own) = plates.iter().find(|own| own.is_reference) else {
         return all;
     };
-    let states = own.motion.iter().zip(times);
-    let states = states.map(|([u, _], time)| (format!("{} s", number(*time)), *u));
-    all.extend(small_strain::warning(law, own.mesh, states.clone()));
-    all.extend(locking(plate, plates));
-    all.extend(strained::warnings(&plate.card, own.name, own.mesh, states));
+    let states = own.motion.iter().zip(&own.viscous).zip(times);
+    let states = states.map(|(([displacement, _], viscous), time)| StrainedSheet {
+        load: format!("{} s", number(*time)),
+        sheet: Sheet {
+            law,
+            thickness: plate.problem.thickness,
+            past: &[],
+            viscous: Some(viscous),
+        },
+        displacement,
+    });
+    let states: Vec<_> = states.collect();
+    all.extend(strained::warnings(&plate.card, own.name, own.mesh, &states));
     all
 }
 
@@ -42,20 +50,4 @@ fn locking(plate: &MovingPlate, plates: &[PlateMotion]) -> Option<String> {
         (plate.element.0 == Element::Q1).then_some((FINITE_ELEMENTS.name, locking::SECOND_DEGREE));
     let found: Vec<_> = corrected.into_iter().chain(elements).collect();
     locking::warning(&*plate.problem.law, &found)
-}
-
-/// The warning of a sheet that would wrinkle: at the instant at which the critical compression is exceeded most.
-fn compression(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> Option<String> {
-    let own = plates.iter().find(|own| own.is_reference)?;
-    let states = own.motion.iter().zip(&own.viscous).zip(times);
-    wrinkling::warning(states.map(|(([u, _], viscous), time)| {
-        let sheet = Sheet {
-            law: &*plate.problem.law,
-            thickness: plate.problem.thickness,
-            past: &[],
-            viscous: Some(viscous),
-        };
-        let load = format!("{} s", number(*time));
-        (load, Wrinkling::new(sheet, own.mesh, u))
-    }))
 }

@@ -7,8 +7,8 @@ use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 use crate::results::models::CORRECTED;
-use crate::results::wrinkling::{self, Wrinkling};
-use crate::results::{is_one_of_several, locking, one_of_several, small_strain, strained};
+use crate::results::strained::{self, StrainedSheet};
+use crate::results::{is_one_of_several, locking, one_of_several};
 
 /// Reactions further from balance than this, relative to the largest, deserve a word: those of a residual that is solved for, and those of
 /// the climb, which ends at a share of the discretisation error.
@@ -36,35 +36,30 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     all.extend(locking::warning(&*study.problem.law, &locking));
     let left_out = study.card.viscosity.left_out();
     all.extend(left_out.map(|told| format!("{told}.")));
-    all.extend(compression_and_strains(study, results));
+    all.extend(of_states(study, results));
     all.extend(instability(results));
     all.extend(imbalance(study, results));
     all
 }
 
-/// Compression, strains that are too large for the law or the card, and a material that is not stable, in the finite elements, or in the corrected field where there are none.
-fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
+/// What is said of the states of the finite elements, or of those of the corrected field where there are none.
+fn of_states(study: &Study, results: &Results) -> Vec<String> {
     let finest = results.finest();
     let model = match finest.solution.states.is_empty() {
         true => 1,
         false => 2,
     };
-    let mesh = results.meshes()[model];
     let steps = 0..results.comparison.len();
     let states = steps.filter_map(|step| {
         let solution = results.models(step)[model]?;
-        let load = ClampedPlate::describe_step(solution.factor);
-        Some((load, &*solution.displacement))
+        Some(StrainedSheet {
+            load: ClampedPlate::describe_step(solution.factor),
+            sheet: study.sheet(),
+            displacement: &solution.displacement,
+        })
     });
     let states: Vec<_> = states.collect();
-    let law = &*study.problem.law;
-    let compression = states.iter().cloned();
-    let compression = compression.map(|(load, u)| (load, Wrinkling::new(study.sheet(), mesh, u)));
-    let compression = wrinkling::warning(compression);
-    let strains = small_strain::warning(law, mesh, states.iter().cloned());
-    let beyond = strained::warnings(&study.card, MODELS[model], mesh, states.into_iter());
-    let all = compression.into_iter().chain(strains).chain(beyond);
-    all.collect()
+    strained::warnings(&study.card, MODELS[model], results.meshes()[model], &states)
 }
 
 /// States that were reached through tangents that are not positive definite.

@@ -51,6 +51,9 @@ pub fn one_model(
         forces: measured_forces(specimen, &solution),
         multipliers: vec![Vec::new(); solution.reached()],
         ends: ends.iter().map(end::End::error).collect(),
+        warnings: kind.warnings(&specimen.card, specimen.sheet(), &solution, |factor| {
+            format!("load factor {factor}")
+        }),
         solution,
     })
 }

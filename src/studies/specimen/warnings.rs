@@ -6,8 +6,8 @@ use crate::mass_spring;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
-use crate::results::wrinkling::{self, Wrinkling};
-use crate::results::{is_one_of_several, locking, one_of_several, small_strain, strained};
+use crate::results::strained::{self, StrainedSheet};
+use crate::results::{is_one_of_several, locking, one_of_several};
 use crate::units::number;
 
 /// All warnings, each in a sentence.
@@ -21,10 +21,9 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
             )
         })
     };
-    let compression = loads().map(|(load, u)| (load, Wrinkling::new(specimen.sheet(), mesh, u)));
-    let compression = wrinkling::warning(compression);
-    let lattice = mass_spring::warning(&*specimen.problem.law);
-    let mut all: Vec<String> = lattice.into_iter().chain(compression).collect();
+    let mut all: Vec<String> = mass_spring::warning(&*specimen.problem.law)
+        .into_iter()
+        .collect();
     let [_, corrected, finite_elements] = models.named();
     let remedies = [specimen.outline.unlocking(), locking::SECOND_DEGREE];
     let locking = [corrected, finite_elements].into_iter().zip(remedies);
@@ -33,7 +32,6 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         .map(|(model, remedy)| (model.name, remedy))
         .collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
-    all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
     let left_out = specimen.card.viscosity.left_out();
     all.extend(left_out.map(|told| format!("{told}.")));
     all.extend(idle_loads(specimen, mesh));
@@ -41,11 +39,16 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(moved_points(specimen, mesh));
     all.extend(several(models));
     all.extend(overlap(mesh, loads()));
+    let strained = loads().map(|(load, displacement)| StrainedSheet {
+        load,
+        sheet: specimen.sheet(),
+        displacement,
+    });
     all.extend(strained::warnings(
         &specimen.card,
         FINITE_ELEMENTS.name,
         mesh,
-        loads(),
+        &strained.collect::<Vec<_>>(),
     ));
     all
 }

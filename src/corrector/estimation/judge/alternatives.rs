@@ -9,6 +9,7 @@
 use nalgebra::DMatrix;
 
 use crate::corrector::estimation::equations::nodal_areas;
+use crate::corrector::estimation::given::Edge;
 use crate::corrector::estimation::outcome::Alternative;
 use crate::corrector::estimation::search::NearestField;
 use crate::corrector::estimation::uncertainty::MeshError;
@@ -18,6 +19,14 @@ use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 
 /// An alternative with the displacements of the markers due to its parameters: two rows per marker.
 pub type Column = (Alternative, DMatrix<f64>);
+
+/// A change that is no alternative to the equations, because it is known to be possible.
+pub struct Granted {
+    /// The displacements of the markers due to its parameters: two rows per marker.
+    pub design: DMatrix<f64>,
+    /// The standard deviation of its parameters; `None` where they may have any value.
+    pub deviation: Option<f64>,
+}
 
 impl NearestField<'_> {
     /// The alternatives of forces, stiffness, law, picture and mesh, with all edges as they are.
@@ -44,10 +53,25 @@ impl NearestField<'_> {
         Ok(columns)
     }
 
-    /// The change that is admitted as stated: a picture of another scale.
-    pub(super) fn granted(&self) -> Vec<DMatrix<f64>> {
-        let stated = self.equations.task.knowledge.scale_deviation > 0.0;
-        stated.then(|| self.magnification()).into_iter().collect()
+    /// The changes that what is known admits: a picture of another scale, and free edges up to the gap away from those of the mesh.
+    pub(super) fn granted(&mut self, edges: &[Edge]) -> Result<Vec<Granted>, Error> {
+        let knowledge = self.equations.task.knowledge;
+        let stated = knowledge.scale_deviation > 0.0;
+        let scale = stated.then(|| Granted {
+            design: self.magnification(),
+            deviation: None,
+        });
+        let mut all: Vec<Granted> = scale.into_iter().collect();
+        if let Some(gap) = knowledge.edge_gap {
+            let strips = self.strips(edges);
+            let designs = self.marker_changes(&strips)?;
+            all.extend((0..designs.ncols()).map(|column| Granted {
+                design: designs.columns(column, 1).into_owned(),
+                // As probably anywhere up to the gap farther out.
+                deviation: Some(gap / 3.0_f64.sqrt()),
+            }));
+        }
+        Ok(all)
     }
 
     /// Forces along x and along y with smooth densities.

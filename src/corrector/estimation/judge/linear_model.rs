@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::alternatives::Column;
+use super::alternatives::{Column, Granted};
 use super::rows::Rows;
 use crate::corrector::estimation::outcome::{Alternative, Trial};
 use crate::corrector::estimation::search::{NearestField, Scored};
@@ -67,25 +67,45 @@ impl Model {
 
     /// The model with further columns without penalty.
     pub fn with<'a>(&self, rows: &Rows, more: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Self {
+        self.extended(rows, more.into_iter().map(|design| (design, None)))
+    }
+
+    /// The model with changes that are known to be possible.
+    pub fn granting(&self, rows: &Rows, granted: &[Granted]) -> Self {
+        let more = granted.iter();
+        self.extended(rows, more.map(|change| (&change.design, change.deviation)))
+    }
+
+    /// The model with further columns, each of unit mean square, and the standard deviations of their parameters where known.
+    fn extended<'a>(
+        &self,
+        rows: &Rows,
+        more: impl Iterator<Item = (&'a DMatrix<f64>, Option<f64>)>,
+    ) -> Self {
         let mut columns: Vec<DVector<f64>> = Vec::new();
-        for design in more {
+        let mut information: Vec<f64> = Vec::new();
+        for (design, deviation) in more {
             let scaled = rows.scaled(design);
             for column in scaled.column_iter() {
                 let length = column.norm();
                 if length > 0.0 && length.is_finite() {
-                    columns.push(column * ((column.len() as f64).sqrt() / length));
+                    let scale = (column.len() as f64).sqrt() / length;
+                    columns.push(column * scale);
+                    information.push(deviation.map_or(0.0, |own| (scale / own).powi(2)));
                 }
             }
         }
         let (own, all) = (self.design.ncols(), self.design.ncols() + columns.len());
         let mut design = self.design.clone().resize_horizontally(all, 0.0);
-        for (index, column) in columns.iter().enumerate() {
+        let mut held = self.held.clone().resize(all, all, 0.0);
+        for (index, (column, information)) in columns.iter().zip(information).enumerate() {
             design.set_column(own + index, column);
+            held[(own + index, own + index)] = information;
         }
         Self {
             design,
             residual: self.residual.clone(),
-            held: self.held.clone().resize(all, all, 0.0),
+            held,
             slope: self.slope.clone().resize_vertically(all, 0.0),
         }
     }

@@ -112,12 +112,12 @@ pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel
         let [.., finest] = run.reference();
         let is_whole = finest.solution.reached() == plate.stretches.len();
         let ends = run.ends.pop().filter(|_| !is_whole);
-        return of_solution(finest.solution, ends.into_iter().collect());
+        return of_solution(study, kind, finest.solution, ends.into_iter().collect());
     }
     let springs = MassSpring::new(plate, study.cells, study.lattice);
     let uncorrected = run.solve(MASS_SPRING.name, &springs.model(plate), study.mass_spring);
     if kind == ModelKind::MassSpring {
-        return of_solution(uncorrected, run.ends);
+        return of_solution(study, kind, uncorrected, run.ends);
     }
     // Where the springs end early the correction goes on.
     run.ends.clear();
@@ -130,23 +130,36 @@ pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel
         .into_iter()
         .map(|own| (own.state, own.multipliers))
         .unzip();
+    let solution = Solution::new(&plate.on(&mesh, &energy), &GRIPS, states);
     OneModel {
-        solution: Solution::new(&plate.on(&mesh, &energy), &GRIPS, states),
         forces,
         multipliers,
         ends: run.ends,
+        warnings: warnings(study, kind, &solution),
+        solution,
     }
 }
 
 /// The names of the grips.
 const GRIPS: [&str; 2] = ["left", "right"];
 
-fn of_solution(solution: Solution, ends: Vec<Error>) -> OneModel {
+fn warnings(study: &Study, kind: ModelKind, solution: &Solution) -> Vec<String> {
+    let describe = ClampedPlate::describe_step;
+    kind.warnings(&study.card, study.sheet(), solution, describe)
+}
+
+fn of_solution(
+    study: &Study,
+    kind: ModelKind,
+    solution: Solution,
+    ends: Vec<Error>,
+) -> OneModel {
     let states = solution.states.iter();
     let forces = states.map(|state| Measures::of(&solution.mesh, state).force);
     OneModel {
         forces: forces.collect(),
         multipliers: vec![Vec::new(); solution.reached()],
+        warnings: warnings(study, kind, &solution),
         solution,
         ends,
     }
