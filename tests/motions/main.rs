@@ -179,7 +179,7 @@ fn a_motion_that_ends_before_its_time_keeps_its_instants() {
     let run = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(3);
     let told = words(&run.get_output().stdout);
     assert!(
-        told.contains("FAIL motion: mass-spring (6 × 2 cells) at time 0.007 s"),
+        told.contains("FAIL mass-spring (6 × 2 cells) at time 0.007 s"),
         "{told}"
     );
     assert!(told.contains("end the path or motion before it"), "{told}");
@@ -264,7 +264,7 @@ fn the_finite_elements_own_error_is_what_finer_ones_differ_by() {
     ] {
         let run = |cells: &str, rest: &str| {
             let text = motion(&format!(
-                "{probes}{rest}[tolerances]\ndeviation = \"90 %\"\nenergy = \"20 %\"\n"
+                "{probes}{rest}[tolerances]\ndeviation = \"90 %\"\nforce = \"90 %\"\nenergy = \"20 %\"\n"
             ));
             let cells = format!("element = \"{element}\"\ncells = {cells}");
             let text = text.replace("element = \"Q2\"\ncells = [8, 4]", &cells);
