@@ -10,7 +10,7 @@
 //! ```
 use std::{error::Error, path::Path};
 
-use gelbench::corrector::estimation::{EdgeCondition, Knowledge, Robust, Specimen, estimate};
+use gelbench::estimation::{EdgeCondition, Knowledge, Robust, Specimen, estimate};
 use gelbench::markers::{ReadSettings, read};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Mesh};

@@ -50,7 +50,7 @@
 //! | state how a sheet is supported and loaded; get displacement and stress at a point | [`problem`] |
 //! | read measured markers | [`markers`] |
 //! | solve a problem with springs, with finite elements, or in time | [`mass_spring`], [`finite_element`], [`dynamics`] |
-//! | correct a field with conditions of your own; correct a plate; estimate a field from markers | [`corrector`], [`corrector::climb`], [`corrector::estimation`] |
+//! | correct a field with conditions of your own; correct a plate; estimate a field from markers | [`corrector`], [`corrector::climb`], [`estimation`] |
 //! | fit a law to test data; find springs and dashpots in a recording | [`calibration`], [`identification`] |
 //! | compare two fields, with the reference's own error | [`compare`] |
 //! | solve, compare and report what a study asks for | [`studies`], [`results`] |
@@ -62,33 +62,30 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
-pub mod budget;
-pub mod calibration;
 #[cfg(feature = "command")]
 pub mod command;
-pub mod compare;
-pub mod corrector;
-pub mod document;
-pub mod dynamics;
-pub mod error;
-pub mod finite_element;
 pub mod guide;
-pub mod identification;
 pub mod kinds;
-pub mod markers;
-pub mod mass_spring;
-pub mod material;
-pub mod mesh;
-pub mod multigrid;
-pub mod output;
-pub mod problem;
-pub mod results;
-pub mod solve;
-pub mod statistics;
-pub mod studies;
 pub mod sweep;
-pub mod units;
-pub mod validation;
+
+#[doc(inline)]
+pub use gelbench_base::{budget, document, error, statistics, units};
+#[doc(inline)]
+pub use gelbench_calibration::{calibration, identification};
+#[doc(inline)]
+pub use gelbench_corrector::{corrector, multigrid};
+#[doc(inline)]
+pub use gelbench_estimation::estimation;
+#[doc(inline)]
+pub use gelbench_mechanics::{
+    dynamics, finite_element, markers, mass_spring, material, mesh, problem, solve,
+};
+#[doc(inline)]
+pub use gelbench_report::{compare, output, results};
+#[doc(inline)]
+pub use gelbench_studies::studies;
+#[doc(inline)]
+pub use gelbench_validation::validation;
 
 /// The program in the README.
 #[cfg(doctest)]

@@ -106,7 +106,7 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
         ("motion", "examples/released_plate.toml"),
         ("motion", "examples/relaxing_plate.toml"),
         ("markers", "examples/measured_plate.toml"),
-        ("markers", "src/studies/markers/default.toml"),
+        ("markers", "crates/studies/src/studies/markers/default.toml"),
         ("card", "materials/pva-10.toml"),
         ("card", "materials/treloar-ogden-3.toml"),
     ];

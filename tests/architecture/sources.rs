@@ -1,4 +1,4 @@
-//! The source files of the crate as text: what each declares, names and passes on.
+//! The source files of all crates as text, as if they were modules of one: what each declares, names and passes on.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// `crate::a::b` as `["a", "b"]`.
 pub type ModulePath = Vec<String>;
 
-/// A file of the crate.
+/// A source file.
 pub struct Source {
     pub path: PathBuf,
     module: ModulePath,
@@ -157,9 +157,15 @@ impl Source {
 }
 
 impl Sources {
-    pub fn of_crate() -> Self {
+    /// Those of the crate in `src` and of all crates in `crates`, whose top modules have one name everywhere.
+    pub fn of_workspace() -> Self {
         let mut sources = Self(BTreeMap::new());
-        sources.read(Path::new("src/lib.rs"), Vec::new());
+        let crates = fs::read_dir("crates").unwrap();
+        let mut roots: Vec<PathBuf> = crates.map(|own| own.unwrap().path()).collect();
+        roots.push(PathBuf::new());
+        for root in roots {
+            sources.read(&root.join("src/lib.rs"), Vec::new());
+        }
         assert!(sources.0.len() > 100, "run from the root of the repository");
         let modules: BTreeSet<ModulePath> = sources.0.keys().cloned().collect();
         for source in sources.0.values_mut() {
@@ -185,7 +191,7 @@ impl Sources {
         });
         for child in declared.collect::<Vec<_>>() {
             let folder = if module.is_empty() {
-                PathBuf::from("src")
+                path.with_file_name("")
             } else {
                 path.with_extension("")
             };

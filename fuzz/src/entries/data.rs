@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use gelbench::budget::Budget;
 use gelbench::calibration::{FitSettings, TestData, Weighting, fit as fit_law};
-use gelbench::corrector::estimation::{EdgeCondition, Physics, Robust, Unnamed};
 use gelbench::document::{Statements, Table};
 use gelbench::error::Error;
+use gelbench::estimation::{EdgeCondition, Physics, Robust, Unnamed};
 use gelbench::identification::{
     Argument, Form, IdentificationSettings, Recording, Shape, identify as identify_spring, law_text,
 };

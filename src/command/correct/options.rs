@@ -9,8 +9,8 @@ use super::values::{Cells, Holds, Holes, Places, Weights, YAxis};
 use super::values::{encoding, force, force_column, gap, length, scale_error, size, unit};
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
-use crate::corrector::estimation::{JointSettings, MeasuredForce};
 use crate::document::TextEncoding;
+use crate::estimation::{JointSettings, MeasuredForce};
 use crate::mesh::Exemptions;
 use crate::studies::markers::ForceColumn;
 

@@ -2,8 +2,8 @@
 
 use super::options::Options;
 use super::values::{Cells, Holds, Holes, Places, Weights, YAxis};
-use crate::corrector::estimation::{EdgeCondition, Physics, Robust};
 use crate::error::Error;
+use crate::estimation::{EdgeCondition, Physics, Robust};
 use crate::markers::{ChosenColumns, ReadSettings};
 use crate::mesh::{CellShape, Exemptions, MeshReading};
 use crate::studies::markers::{Conditions, MeshSource, Request};

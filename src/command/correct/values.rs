@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 
-use crate::corrector::estimation::MeasuredForce;
 use crate::document::TextEncoding;
 use crate::error::Diagnostic;
+use crate::estimation::MeasuredForce;
 use crate::studies::markers::{ForceColumn, measured_force};
 use crate::units::{self, Dimension};
 

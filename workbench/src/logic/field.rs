@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use web_time::Instant;
 
-use gelbench::corrector::estimation::{Answer, FieldEstimate};
 use gelbench::document::with_files;
 use gelbench::error::Error;
+use gelbench::estimation::{Answer, FieldEstimate};
 use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
 use gelbench::output::{self, vtk};
@@ -310,7 +310,7 @@ fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Co
     let residuals = frame.markers.iter().zip(&estimate.markers);
     let residual = |(marker, found): (
         &gelbench::markers::Marker,
-        &Option<gelbench::corrector::estimation::MarkerEstimate>,
+        &Option<gelbench::estimation::MarkerEstimate>,
     )| {
         let found = found.as_ref()?;
         Some((marker.place, found.residual, found.trust))

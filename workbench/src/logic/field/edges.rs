@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use gelbench::corrector::estimation::EdgeCondition;
 use gelbench::error::Error;
+use gelbench::estimation::EdgeCondition;
 use gelbench::results::MeshFigure;
 
 use super::length;

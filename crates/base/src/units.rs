@@ -1,0 +1,393 @@
+//! Physical quantities as text with a unit, and their conversion to gelbench's internal units.
+//!
+//! Inside the program every length is in mm, force in N, stress in MPa, energy in mJ, time in s and
+//! mass in tonne. These units are consistent: 1 N = 1 tonne·mm/s², 1 MPa = 1 N/mm², 1 mJ = 1 N·mm.
+
+use std::fmt;
+
+mod figures;
+mod linear;
+mod ranges;
+mod remedy;
+mod sheet_size;
+
+pub use figures::{decimals, extents, number};
+pub use linear::{Linear, LinearFault, parse_linear_length};
+pub use ranges::{SIZES, on_the_end};
+pub use remedy::{bare_ratio, could_be_stretch_ratios};
+pub use sheet_size::implausible_sheet;
+
+/// The kind of a physical quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Internal unit mm.
+    Length,
+    /// Internal unit mm².
+    Area,
+    /// Internal unit N.
+    Force,
+    /// Internal unit MPa = N/mm².
+    Stress,
+    /// Internal unit tonne/mm³.
+    Density,
+    /// Internal unit tonne.
+    Mass,
+    /// Internal unit s.
+    Time,
+    /// Internal unit Hz = 1/s.
+    Frequency,
+    /// Internal unit mm/s².
+    Acceleration,
+    /// Internal unit MPa·s.
+    Viscosity,
+    /// Internal unit K.
+    Temperature,
+    /// Internal unit mm³/mol.
+    MolarVolume,
+    /// Internal unit mol/mm³.
+    Concentration,
+    /// Internal unit rad.
+    Angle,
+    /// A ratio, written as a bare number or in percent.
+    Ratio,
+}
+
+/// `(symbol, dimension, factor to the internal unit)`; the first symbol of a dimension is the
+/// one that error messages suggest.
+const UNITS: &[(&str, Dimension, f64)] = &[
+    ("mm", Dimension::Length, 1.0),
+    ("cm", Dimension::Length, 10.0),
+    ("m", Dimension::Length, 1e3),
+    ("km", Dimension::Length, 1e6),
+    ("nm", Dimension::Length, 1e-6),
+    ("um", Dimension::Length, 1e-3),
+    ("µm", Dimension::Length, 1e-3),
+    ("in", Dimension::Length, 25.4),
+    ("mm^2", Dimension::Area, 1.0),
+    ("cm^2", Dimension::Area, 100.0),
+    ("m^2", Dimension::Area, 1e6),
+    ("in^2", Dimension::Area, 645.16),
+    ("N", Dimension::Force, 1.0),
+    ("mN", Dimension::Force, 1e-3),
+    ("kN", Dimension::Force, 1e3),
+    ("µN", Dimension::Force, 1e-6),
+    ("gf", Dimension::Force, 9.80665e-3),
+    ("kgf", Dimension::Force, 9.80665),
+    ("lbf", Dimension::Force, 4.448_221_615_260_5),
+    ("MPa", Dimension::Stress, 1.0),
+    ("kPa", Dimension::Stress, 1e-3),
+    ("Pa", Dimension::Stress, 1e-6),
+    ("GPa", Dimension::Stress, 1e3),
+    ("N/mm^2", Dimension::Stress, 1.0),
+    ("N/m^2", Dimension::Stress, 1e-6),
+    ("bar", Dimension::Stress, 0.1),
+    ("mmHg", Dimension::Stress, 133.322_387_415e-6),
+    ("psi", Dimension::Stress, 6.894_757_293_168e-3),
+    ("kg/m^3", Dimension::Density, 1e-12),
+    ("g/cm^3", Dimension::Density, 1e-9),
+    ("tonne/mm^3", Dimension::Density, 1.0),
+    ("g", Dimension::Mass, 1e-6),
+    ("kg", Dimension::Mass, 1e-3),
+    ("mg", Dimension::Mass, 1e-9),
+    ("tonne", Dimension::Mass, 1.0),
+    ("s", Dimension::Time, 1.0),
+    ("ms", Dimension::Time, 1e-3),
+    ("us", Dimension::Time, 1e-6),
+    ("µs", Dimension::Time, 1e-6),
+    ("min", Dimension::Time, 60.0),
+    ("h", Dimension::Time, 3600.0),
+    ("Hz", Dimension::Frequency, 1.0),
+    ("kHz", Dimension::Frequency, 1e3),
+    ("1/s", Dimension::Frequency, 1.0),
+    ("m/s^2", Dimension::Acceleration, 1e3),
+    ("mm/s^2", Dimension::Acceleration, 1.0),
+    ("Pa·s", Dimension::Viscosity, 1e-6),
+    ("mPa·s", Dimension::Viscosity, 1e-9),
+    ("kPa·s", Dimension::Viscosity, 1e-3),
+    ("MPa·s", Dimension::Viscosity, 1.0),
+    ("K", Dimension::Temperature, 1.0),
+    ("cm^3/mol", Dimension::MolarVolume, 1e3),
+    ("mL/mol", Dimension::MolarVolume, 1e3),
+    ("mm^3/mol", Dimension::MolarVolume, 1.0),
+    ("m^3/mol", Dimension::MolarVolume, 1e9),
+    ("mol/m^3", Dimension::Concentration, 1e-9),
+    ("mol/L", Dimension::Concentration, 1e-6),
+    ("mmol/L", Dimension::Concentration, 1e-9),
+    ("mol/cm^3", Dimension::Concentration, 1e-3),
+    ("mol/mm^3", Dimension::Concentration, 1.0),
+    ("rad", Dimension::Angle, 1.0),
+    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
+    ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
+    ("%", Dimension::Ratio, 1e-2),
+];
+
+/// The unit of temperature with another zero than K: a factor alone does not convert it.
+const CELSIUS: [&str; 2] = ["°C", "degC"];
+/// 0 °C in K.
+const ICE_POINT: f64 = 273.15;
+
+impl Dimension {
+    /// All dimensions.
+    pub const ALL: [Self; 15] = [
+        Self::Length,
+        Self::Area,
+        Self::Force,
+        Self::Stress,
+        Self::Density,
+        Self::Mass,
+        Self::Time,
+        Self::Frequency,
+        Self::Acceleration,
+        Self::Viscosity,
+        Self::Temperature,
+        Self::MolarVolume,
+        Self::Concentration,
+        Self::Angle,
+        Self::Ratio,
+    ];
+
+    /// The quantity's name as used in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Area => "area",
+            Self::Force => "force",
+            Self::Stress => "stress",
+            Self::Density => "density",
+            Self::Mass => "mass",
+            Self::Time => "time",
+            Self::Frequency => "frequency",
+            Self::Acceleration => "acceleration",
+            Self::Viscosity => "viscosity",
+            Self::Temperature => "temperature",
+            Self::MolarVolume => "molar volume",
+            Self::Concentration => "concentration",
+            Self::Angle => "angle",
+            Self::Ratio => "ratio",
+        }
+    }
+
+    /// The units that are understood for this dimension.
+    pub fn units(self) -> impl Iterator<Item = &'static str> {
+        UNITS
+            .iter()
+            .filter(move |(_, dimension, _)| *dimension == self)
+            .map(|(symbol, ..)| *symbol)
+            .chain(
+                CELSIUS
+                    .into_iter()
+                    .filter(move |_| self == Self::Temperature),
+            )
+    }
+
+    /// The unit of this dimension inside the program; empty for a ratio.
+    pub fn internal_unit(self) -> &'static str {
+        match self {
+            Self::Length => "mm",
+            Self::Area => "mm^2",
+            Self::Force => "N",
+            Self::Stress => "MPa",
+            Self::Density => "tonne/mm^3",
+            Self::Mass => "tonne",
+            Self::Time => "s",
+            Self::Frequency => "Hz",
+            Self::Acceleration => "mm/s^2",
+            Self::Viscosity => "MPa·s",
+            Self::Temperature => "K",
+            Self::MolarVolume => "mm^3/mol",
+            Self::Concentration => "mol/mm^3",
+            Self::Angle => "rad",
+            Self::Ratio => "",
+        }
+    }
+
+    /// A quantity of this dimension as written in a file, its number left out: a number in a hint would be another material's.
+    pub fn blank(self) -> String {
+        let example = self.example().trim_matches('"');
+        match example.split_once(' ') {
+            Some((_, unit)) if self != Self::Ratio => format!("\"… {unit}\""),
+            _ => "…".to_owned(),
+        }
+    }
+
+    /// An example of a well-formed quantity, for hints.
+    pub fn example(self) -> &'static str {
+        match self {
+            Self::Length => "\"2 mm\"",
+            Self::Area => "\"20 mm^2\"",
+            Self::Force => "\"1.5 N\"",
+            Self::Stress => "\"1 MPa\"",
+            Self::Density => "\"1020 kg/m^3\"",
+            Self::Mass => "\"5 g\"",
+            Self::Time => "\"10 s\"",
+            Self::Frequency => "\"2 Hz\"",
+            Self::Acceleration => "\"9.81 m/s^2\"",
+            Self::Viscosity => "\"50 Pa·s\"",
+            Self::Temperature => "\"298.15 K\"",
+            Self::MolarVolume => "\"18.07 cm^3/mol\"",
+            Self::Concentration => "\"20 mol/m^3\"",
+            Self::Angle => "\"30 deg\"",
+            Self::Ratio => "0.5 or \"50 %\"",
+        }
+    }
+}
+
+/// Why a text is not a quantity of the wanted dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub enum QuantityFault {
+    /// The text does not begin with a finite decimal number.
+    NotANumber,
+    /// The number has a comma.
+    DecimalComma,
+    /// A number without a unit.
+    MissingUnit,
+    /// A unit that is not in the table.
+    UnknownUnit(String),
+    /// A magnitude outside the possible range of this dimension.
+    OutOfRange(Dimension),
+    /// A unit of another dimension.
+    WrongDimension {
+        /// The unit as written.
+        unit: String,
+        /// What that unit measures.
+        found: Dimension,
+    },
+}
+
+impl std::error::Error for QuantityFault {}
+
+impl fmt::Display for QuantityFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotANumber => write!(f, "does not begin with a finite number"),
+            Self::DecimalComma => write!(f, "has a number with a comma"),
+            Self::MissingUnit => write!(f, "has no unit"),
+            Self::UnknownUnit(unit) => write!(f, "has the unknown unit `{unit}`"),
+            Self::OutOfRange(dimension) => {
+                let ([least, most], unit) = (dimension.range(), dimension.internal_unit());
+                let (name, space) = (dimension.name(), if unit.is_empty() { "" } else { " " });
+                write!(
+                    f,
+                    "is not a possible {name}: its absolute value must be zero or lie between {least:e} and {most:e}{space}{unit}"
+                )
+            }
+            Self::WrongDimension { unit, found } => {
+                write!(f, "has the unit `{unit}`, which measures {}", found.name())
+            }
+        }
+    }
+}
+
+/// The minus sign that is not the hyphen of the keyboard.
+const MINUS: char = '\u{2212}';
+
+/// Reads text such as `"15 cm"` and returns its value in the internal unit of `dimension`.
+///
+/// # Errors
+/// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension, or when the quantity is out of the possible range.
+pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
+    // A minus sign as word processors write it.
+    let text = &text.trim().replace(MINUS, "-");
+    let split = number_length(text);
+    let number: f64 = text[..split]
+        .parse()
+        .map_err(|_| QuantityFault::NotANumber)?;
+    if !number.is_finite() {
+        return Err(QuantityFault::NotANumber);
+    }
+    let unit = text[split..].trim();
+    if unit.starts_with(',') {
+        return Err(QuantityFault::DecimalComma);
+    }
+    if unit.is_empty() {
+        return match dimension {
+            Dimension::Ratio => admitted(number, dimension),
+            _ => Err(QuantityFault::MissingUnit),
+        };
+    }
+    let normalised = normalised(unit);
+    if CELSIUS.contains(&&*normalised) {
+        return match dimension {
+            Dimension::Temperature => admitted(number + ICE_POINT, dimension),
+            _ => Err(QuantityFault::WrongDimension {
+                unit: unit.to_owned(),
+                found: Dimension::Temperature,
+            }),
+        };
+    }
+    match UNITS.iter().find(|(symbol, ..)| *symbol == normalised) {
+        Some((_, found, factor)) if *found == dimension => admitted(number * factor, dimension),
+        Some((_, found, _)) => Err(QuantityFault::WrongDimension {
+            unit: unit.to_owned(),
+            found: *found,
+        }),
+        None => Err(QuantityFault::UnknownUnit(unit.to_owned())),
+    }
+}
+
+/// A unit in the table's notation: powers as `^3`, which may be written `³` or, behind a letter, `3`.
+fn normalised(unit: &str) -> String {
+    let mut text = String::new();
+    for letter in unit.chars() {
+        match letter {
+            '²' => text += "^2",
+            '³' => text += "^3",
+            'μ' => text.push('µ'),
+            '*' => text.push('·'),
+            '2' | '3' if text.ends_with(char::is_alphabetic) => {
+                text.push('^');
+                text.push(letter);
+            }
+            other => text.push(other),
+        }
+    }
+    text
+}
+
+fn admitted(value: f64, dimension: Dimension) -> Result<f64, QuantityFault> {
+    let admitted = dimension.admitted(value);
+    admitted.ok_or(QuantityFault::OutOfRange(dimension))
+}
+
+/// The factor from a unit by its name alone, such as `"kPa"`, to the internal unit of `dimension`; a ratio may be
+/// written as `-`.
+///
+/// # Errors
+/// A [`QuantityFault`] when the unit is missing, unknown or of another dimension, or when its zero differs from that of K (°C).
+pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
+    match (dimension, unit) {
+        (_, offset) if CELSIUS.contains(&offset) => {
+            Err(QuantityFault::UnknownUnit(offset.to_owned()))
+        }
+        (Dimension::Ratio, "-" | "–" | "1" | "mm/mm" | "m/m" | "in/in") => Ok(1.0),
+        _ => parse(&format!("1 {unit}"), dimension),
+    }
+}
+
+/// Whether a unit is known for any dimension.
+pub fn is_known(unit: &str) -> bool {
+    let found = parse(&format!("1 {unit}"), Dimension::Length);
+    !matches!(found, Err(QuantityFault::UnknownUnit(_)))
+}
+
+/// Length in bytes of the decimal number at the beginning of `text`.
+pub fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut end = 0;
+    while end < bytes.len() {
+        let exponent_sign = end > 0 && matches!(bytes[end - 1], b'e' | b'E');
+        let exponent = matches!(bytes[end], b'e' | b'E')
+            && bytes
+                .get(end + 1)
+                .is_some_and(|next| next.is_ascii_digit() || b"+-".contains(next));
+        let sign = matches!(bytes[end], b'+' | b'-') && (end == 0 || exponent_sign);
+        if !(bytes[end].is_ascii_digit() || bytes[end] == b'.' || sign || exponent) {
+            break;
+        }
+        end += 1;
+    }
+    end
+}
+
+#[cfg(test)]
+mod tests;

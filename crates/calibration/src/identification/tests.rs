@@ -1,0 +1,269 @@
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::*;
+use crate::document::{Statements, Table};
+
+mod recordings;
+
+const PLACES: [f64; 9] = [-13.0, -10.0, -7.0, -4.0, -1.0, 2.0, 5.0, 8.0, 11.0];
+
+fn settings(forms: [Form; 2]) -> IdentificationSettings {
+    IdentificationSettings {
+        forms,
+        ..IdentificationSettings::default()
+    }
+}
+
+/// All trials are in `gelbench validate spring-identification`.
+#[test]
+fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
+    let good = (5001..5011).filter(|seed| {
+        let sample = Sample {
+            seed: *seed,
+            ..Sample::default()
+        };
+        let found = identify(
+            &sample.recording(),
+            IdentificationSettings::default(),
+            &|_| (),
+        )
+        .unwrap();
+        let within = |function: &Function, x: f64, truth: f64| {
+            let [low, high] = function.band(x);
+            (low..=high).contains(&truth)
+        };
+        PLACES.iter().all(|x| {
+            within(&found.stiffness, *x, Sample::stiffness(*x))
+                && within(&found.damping, *x, Sample::damping(*x))
+        })
+    });
+    let good = good.count();
+    assert!(good >= 9, "{good} of 10");
+}
+
+#[test]
+fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
+    let exact = Sample::default().exact();
+    let found = identify(&exact, IdentificationSettings::default(), &|_| ()).unwrap();
+    for x in PLACES {
+        let [k, d] = [&found.stiffness, &found.damping].map(|function| function.at(x).value);
+        assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
+        assert!((d / Sample::damping(x) - 1.0).abs() < 5e-3, "{x}: {d}");
+    }
+    assert!(found.verdict.is_sound(), "{:?}", found.verdict);
+}
+
+/// A massless spring and dashpot that a machine moves: f = K x + D ẋ.
+fn machine(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Recording {
+    let mut recording = Recording::default();
+    for i in 0..600 {
+        let t = 0.01 * f64::from(i);
+        let (slow, fast) = (2.0 * t, 5.1 * t);
+        let x = 5.0 + 3.0 * slow.sin() + 1.5 * fast.sin();
+        let v = 6.0 * slow.cos() + 7.65 * fast.cos();
+        recording.times.push(t);
+        recording.extension.push(x);
+        recording.force.push(stiffness(x) * x + damping(v) * v);
+    }
+    recording
+}
+
+#[test]
+fn constants_and_polynomials_come_back_with_their_coefficients() {
+    let recording = machine(|x| 0.2 + 0.01 * x, |_| 0.05);
+    let found = identify(
+        &recording,
+        settings([Form::Polynomial(1), Form::Constant]),
+        &|_| (),
+    )
+    .unwrap();
+    let [k, d] = [&found.stiffness, &found.damping].map(Function::powers);
+    for (estimate, truth) in [(k[0], 0.2), (k[1], 0.01), (d[0], 0.05)] {
+        assert!((estimate.value / truth - 1.0).abs() < 1e-5, "{estimate:?}");
+        assert!(estimate.standard_error < 1e-4 * truth);
+    }
+    let text = law_text(&found, &recording, "a.csv");
+    assert!(
+        text.contains("coefficients = [\"0.2 N/mm\", \"0.01 N/mm\"]"),
+        "{text}"
+    );
+    assert!(
+        text.contains("kind = \"constant\"\nvalue = \"0.05 N·s/mm\""),
+        "{text}"
+    );
+    let specimen = Recording {
+        length: Some(50.0),
+        area: Some(10.0),
+        ..recording
+    };
+    let text = law_text(&found, &specimen, "a.csv");
+    assert!(
+        text.contains("coefficients = [\"1.0 MPa\", \"2.5 MPa\"]"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_dashpot_may_depend_on_the_rate() {
+    let damping = |v: f64| 0.05 / (1.0 + (v / 10.0).powi(2));
+    let recording = machine(|_| 0.3, damping);
+    let found = IdentificationSettings {
+        argument: Argument::Rate,
+        ..settings([Form::Constant, Form::SPLINE])
+    };
+    let found = identify(&recording, found, &|_| ()).unwrap();
+    for v in [-10.0, -5.0, 3.0, 9.0] {
+        let d = found.damping.at(v).value;
+        assert!((d / damping(v) - 1.0).abs() < 5e-3, "{v}: {d}");
+    }
+    let text = law_text(&found, &recording, "a.csv");
+    assert!(
+        text.contains("of = \"stretch rate\"\nkind = \"table\"\nat = ["),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_shape_is_kept_against_the_data() {
+    let recording = Sample::default().recording();
+    let rise = |shape: Shape| {
+        let wanted = IdentificationSettings {
+            shapes: [Shape::Free, shape],
+            ..IdentificationSettings::default()
+        };
+        let found = identify(&recording, wanted, &|_| ()).unwrap();
+        let places = found.damping.places(200);
+        let values: Vec<f64> = places.iter().map(|x| found.damping.at(*x).value).collect();
+        let size = values.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        let rises = values.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0));
+        rises.sum::<f64>() / size
+    };
+    assert!(rise(Shape::Free) > 0.3);
+    assert!(rise(Shape::Decreasing) < 1e-3);
+    let wanted = IdentificationSettings {
+        shapes: [Shape::Increasing; 2],
+        ..settings([Form::Constant, Form::SPLINE])
+    };
+    let told = identify(&recording, wanted, &|_| ())
+        .unwrap_err()
+        .to_string();
+    assert!(told.contains("only splines"), "{told}");
+}
+
+#[test]
+fn what_does_not_fit_or_is_not_determined_is_told() {
+    let sample = Sample::default();
+    let wrong = Recording {
+        mass: 3e-4,
+        ..sample.recording()
+    };
+    let found = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
+    let reasons = found.verdict.reasons.join("; ");
+    assert!(
+        !found.is_explained() && reasons.contains("times the noise"),
+        "{reasons}"
+    );
+    let right = identify(
+        &sample.recording(),
+        IdentificationSettings::default(),
+        &|_| (),
+    )
+    .unwrap();
+    assert!(
+        right.warnings.is_empty() && right.verdict.is_sound(),
+        "{:?}",
+        right.verdict
+    );
+    // A gap that the splines cannot bridge: the noise is taken for ten times what it is.
+    let mut gap = sample.recording();
+    let rows = gap.times.len();
+    for signal in [&mut gap.times, &mut gap.extension, &mut gap.force] {
+        let mut row = 0..rows;
+        signal.retain(|_| {
+            row.next()
+                .is_some_and(|row| !(rows / 4..5 * rows / 8).contains(&row))
+        });
+    }
+    let found = identify(&gap, IdentificationSettings::default(), &|_| ()).unwrap();
+    let doubts = found.verdict.doubts.join("; ");
+    assert!(doubts.contains("no rows between"), "{doubts}");
+    // A ramp: every extension has one speed, and K x + D v cannot be told apart by free splines.
+    let mut ramp = machine(|_| 0.2, |_| 0.05);
+    for (i, x) in ramp.extension.iter_mut().enumerate() {
+        *x = 1.0 + 0.01 * i as f64;
+        ramp.force[i] = 0.2 * *x + 0.05;
+    }
+    let told = identify(&ramp, IdentificationSettings::default(), &|_| ())
+        .map(|_| ())
+        .unwrap_err();
+    assert_eq!(told.exit_code(), 2);
+    assert!(
+        told.to_string()
+            .contains("does not determine K(·) and D(·)"),
+        "{told}"
+    );
+}
+
+#[test]
+fn the_recording_that_comes_along_is_the_one_of_its_seed() {
+    let text = include_str!("../../../../examples/spring_dashpot.csv");
+    assert_eq!(text, Sample::default().csv());
+    let table = Table::parse("spring_dashpot.csv", text).unwrap();
+    let recording = Recording::of_table(&table, &Statements::new()).unwrap();
+    assert!((recording.mass - 2e-4).abs() < 1e-12 && recording.length == Some(50.0));
+}
+
+/// Instants that are missing here and there leave a motion that is determined.
+#[test]
+fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one() {
+    for seed in 1..7 {
+        let whole = Sample {
+            seed,
+            ..Sample::default()
+        };
+        let whole = whole.recording();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let kept: Vec<usize> = (0..whole.times.len())
+            .filter(|_| random.random_range(0..3) > 0)
+            .collect();
+        let of = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let part = Recording {
+            times: of(&whole.times),
+            extension: of(&whole.extension),
+            force: of(&whole.force),
+            ..whole.clone()
+        };
+        let found = identify(&part, IdentificationSettings::default(), &|_| ()).unwrap();
+        assert!(found.misfit < 1.2, "{seed}: {}", found.misfit);
+        for x in PLACES {
+            let k = found.stiffness.at(x).value;
+            assert!(
+                (k / Sample::stiffness(x) - 1.0).abs() < 0.1,
+                "{seed} {x}: {k}"
+            );
+        }
+    }
+}
+
+/// The way by polynomials, which is taken where the direct one does not converge, leads to the same functions.
+#[test]
+fn from_the_motion_of_polynomials_the_functions_are_the_same() {
+    let recording = Sample::default().recording();
+    let smooth = |signal: &[f64], degree| smooth(&recording.times, signal, degree).unwrap();
+    let signals = (smooth(&recording.extension, 5), smooth(&recording.force, 3));
+    let settings = IdentificationSettings::default();
+    let (joint, start) = begin(&recording, settings, &signals).unwrap();
+    let squares = |fit: &Fit| joint.sum_of_squares(&fit.state);
+    let (direct, _) = nearest_fit(&joint, start.clone(), &|_| ()).unwrap();
+    let simple = joint.with_polynomials();
+    let mut first = Fit::new(&simple, simple.state(start.motion));
+    first.improve(&|_| ()).unwrap();
+    let mut fit = Fit::new(&joint, joint.state(first.state.motion));
+    fit.improve(&|_| ()).unwrap();
+    let ratio = squares(&fit) / squares(&direct);
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+    let apart = (&fit.state.functions - &direct.state.functions).amax();
+    assert!(apart < 1e-3 * direct.state.functions.amax(), "{apart}");
+}

@@ -1,0 +1,235 @@
+//! Whether one spring with one dashpot explains a recording, and what else makes their functions doubtful.
+
+use super::band::Function;
+use super::basis::Form;
+use super::corners::corners;
+use super::recording::Recording;
+use super::resolution::exceeds_resolution;
+use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
+use super::spikes::{bridged, spikes};
+use super::suspects::{Suspected, description};
+use super::types::{FittedMotion, Identification, RecordingVerdict};
+use crate::estimation::Answer;
+use crate::units::number;
+
+/// A longest interval is a gap if it leaves the motion less than this share of the parts that both signals ask for, ...
+const FEW: f64 = 0.5;
+
+/// ... or if it is as long as so many usual intervals and as such a part of the duration.
+const INTERVALS: f64 = 20.0;
+const PART: f64 = 0.05;
+
+/// Places of a function at which its sign is looked at.
+const PLACES: usize = 41;
+
+/// The warning about a gap in the rows: a spline has only as many parts as the gap allows, and features that these miss are taken for noise.
+fn gap(recording: &Recording, [wanted, bridged]: [usize; 2]) -> Option<String> {
+    let (times, usual) = (&recording.times, recording.interval());
+    let length = |pair: &[f64]| pair[1] - pair[0];
+    let longest = times
+        .windows(2)
+        .max_by(|a, b| length(a).total_cmp(&length(b)))?;
+    let duration = times.last()? - times.first()?;
+    let is_few = (bridged as f64) < FEW * wanted as f64;
+    (is_few || length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
+        format!(
+            "there are no rows between {} and {} s: details of the motion there may be lost and counted as noise; identify the parts before and \
+             after the gap separately",
+            longest[0], longest[1]
+        )
+    })
+}
+
+/// Fewest corners that count: a single one is a jerk, or chance.
+const FEWEST_CORNERS: usize = 4;
+
+/// Rows of a recording that no smooth motion has.
+pub struct Faults {
+    /// The number of corners of the motion.
+    corners: usize,
+    /// The instants with spikes, of the extension and of the force.
+    spikes: [Vec<usize>; 2],
+}
+
+impl Faults {
+    /// Of a recording.
+    pub fn of(recording: &Recording) -> Self {
+        let Recording {
+            times,
+            extension,
+            force,
+            ..
+        } = recording;
+        let spikes = [extension, force].map(|values| spikes(times, values));
+        Self {
+            corners: corners(&bridged(times, extension, &spikes[0])).len(),
+            spikes,
+        }
+    }
+
+    /// Whether a smooth motion may be fitted.
+    pub fn are_few(&self) -> bool {
+        self.corners < FEWEST_CORNERS && self.spikes[0].is_empty()
+    }
+
+    fn doubts(&self, times: &[f64]) -> Vec<String> {
+        let corners = (self.corners >= FEWEST_CORNERS).then(|| {
+            format!(
+                "the motion has {} corners, as where a machine reverses at a constant rate: the fitted smooth motion cannot follow them, so that \
+                 intervals and bands are not valid; use sinusoidal motion, or identify the parts between corners separately",
+                self.corners
+            )
+        });
+        let spikes = ["extension", "force"].into_iter().zip(&self.spikes);
+        let spikes = spikes.filter_map(|(signal, at)| {
+            let first = times[*at.first()?];
+            Some(format!(
+                "the {signal} has {} spikes, the first at {} s: single values that are far from both neighbours bias the functions, and neither the \
+                 misfit nor intervals tell of it; remove these rows",
+                at.len(),
+                number(first)
+            ))
+        });
+        corners.into_iter().chain(spikes).collect()
+    }
+}
+
+/// Whether a motion is a steady vibration, which passes every extension at one speed forward and at one backward: among instants of like
+/// extension ẋ scatters by less than this share of its variance.
+fn is_steady(motion: &FittedMotion) -> bool {
+    const GROUPS: usize = 20;
+    const SHARE: f64 = 0.1;
+    let scatter = |group: &[[f64; 2]]| {
+        let mean = group.iter().map(|[_, v]| v).sum::<f64>() / group.len() as f64;
+        group.iter().map(|[_, v]| (v - mean).powi(2)).sum::<f64>()
+    };
+    let [mut within, mut all] = [0.0; 2];
+    for forward in [true, false] {
+        let pairs = motion.extension.iter().zip(&motion.rate);
+        let one_way = pairs.filter(|(_, rate)| (**rate > 0.0) == forward);
+        let mut one_way: Vec<[f64; 2]> = one_way.map(|(x, v)| [*x, *v]).collect();
+        one_way.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let groups = one_way.chunks(one_way.len().div_ceil(GROUPS).max(1));
+        within += groups.map(scatter).sum::<f64>();
+        all += scatter(&one_way);
+    }
+    within < SHARE * all
+}
+
+/// Functions that are surely negative somewhere, which none of a passive body is.
+fn negative(found: &Identification) -> Vec<String> {
+    let mut doubts = Vec::new();
+    for (name, _, function) in found.functions() {
+        let is_negative = function
+            .places(PLACES)
+            .into_iter()
+            .map(|x| function.at(x).interval[1] < 0.0);
+        let count = is_negative.filter(|is_negative| *is_negative).count();
+        if count == PLACES {
+            doubts.push(format!(
+                "{name}(·) is negative: reverse the sign of the force or of the extension"
+            ));
+        } else if count > 0 {
+            doubts.push(format!(
+                "{name}(·) is negative somewhere: impossible for a passive spring or dashpot"
+            ));
+        }
+    }
+    doubts
+}
+
+/// What a recording does not say of a body, and no fault of it.
+pub fn notes(found: &Identification, recording: &Recording) -> Vec<String> {
+    let is_undetermined = |function: &Function| {
+        function
+            .places(PLACES)
+            .into_iter()
+            .all(|x| function.at(x).interval[0] <= 0.0 && function.at(x).interval[1] >= 0.0)
+    };
+    let functions = found.functions().into_iter();
+    let undetermined = functions.filter(|(_, _, function)| is_undetermined(function));
+    let undetermined = undetermined
+        .map(|(name, ..)| format!("the recording does not distinguish {name}(·) from zero"));
+    let mass = (recording.mass == 0.0).then(|| "no mass is stated: inertia is left out".to_owned());
+    undetermined.chain(mass).collect()
+}
+
+/// What a verdict follows from, beside the functions that were identified.
+pub struct Evidence<'a> {
+    pub recording: &'a Recording,
+    /// The splines of extension and force.
+    pub signals: &'a (SignalSpline, SignalSpline),
+    pub faults: &'a Faults,
+    /// What the recording surely indicates, the surest first.
+    pub suspects: &'a [Suspected],
+}
+
+impl Evidence<'_> {
+    /// The verdict on the recording of some functions.
+    pub fn verdict(&self, found: &Identification) -> RecordingVerdict {
+        let (reason, doubt) = match self.excess(found) {
+            Some(excess) if found.misfit > MOST_MISFIT => (Some(excess), None),
+            excess => (None, excess),
+        };
+        let reasons: Vec<String> = description(self.suspects)
+            .into_iter()
+            .chain(reason)
+            .collect();
+        let doubts = match reasons.is_empty() {
+            true => doubt.into_iter().chain(self.doubts(found)).collect(),
+            false => self.faults.doubts(&self.recording.times),
+        };
+        RecordingVerdict {
+            answer: match reasons.is_empty() {
+                true => Answer::Explained,
+                false => Answer::NotExplained,
+            },
+            reasons,
+            doubts,
+        }
+    }
+
+    /// Residuals that are larger than the noise, and large enough to be measured.
+    fn excess(&self, found: &Identification) -> Option<String> {
+        let errors = (found.misfit - 1.0) / (2.0 / found.freedom).sqrt();
+        let (measured, fitted) = (self.recording, &found.motion);
+        let is_measurable = exceeds_resolution(&measured.extension, &fitted.extension)
+            || exceeds_resolution(&measured.force, &fitted.force);
+        (errors > 4.0 && is_measurable).then(|| {
+            format!(
+                "the residuals of force and motion are {:.2} times the noise: the mass, the length at rest or the forms are wrong, the noise is \
+                 correlated, or there is more than one spring and one dashpot",
+                found.misfit.sqrt()
+            )
+        })
+    }
+
+    fn doubts(&self, found: &Identification) -> Vec<String> {
+        let (recording, (extension, force)) = (self.recording, self.signals);
+        let mut doubts = self.faults.doubts(&recording.times);
+        if extension.coarse || force.coarse {
+            doubts.push(
+                "the motion is sampled too coarsely to distinguish it from its noise".to_owned(),
+            );
+        }
+        let by_splines = |form: &Form| matches!(form, Form::Spline(_));
+        if found.settings.forms.iter().any(by_splines) && is_steady(&found.motion) {
+            doubts.push(
+                "the motion is a steady vibration, which passes every extension at one speed: it says little of D(·) between its ends, and with \
+                 noise of 5 % bands include the true functions in about half of such recordings; drive the spring with several frequencies, or \
+                 take constants or polynomials"
+                    .to_owned(),
+            );
+        }
+        let parts = [
+            wanted_parts(extension, force),
+            bridged_parts(&recording.times),
+        ];
+        doubts.extend(gap(recording, parts));
+        doubts.extend(negative(found));
+        doubts
+    }
+}
+
+/// A misfit above this is larger than the noise: what a spring and a dashpot leave of the recording.
+const MOST_MISFIT: f64 = 2.0;

@@ -1,0 +1,10 @@
+//! Laws from tests, and springs and dashpots from recordings.
+#![warn(missing_docs)]
+#![forbid(unsafe_code)]
+
+pub mod calibration;
+pub mod identification;
+
+use gelbench_base::{document, error, statistics, units};
+use gelbench_estimation::estimation;
+use gelbench_mechanics::{material, solve};

@@ -1,0 +1,313 @@
+//! The motion of the loaded edges of a specimen, in as few numbers as their conditions allow.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::DMatrix;
+
+use super::edge_displacements::{Combination, EdgeDisplacements};
+use crate::estimation::given::{EdgeCondition, Segment};
+use crate::estimation::regression::Roughness;
+use crate::mesh::Mesh;
+use crate::statistics::{BSpline, Ends};
+
+/// Most spans of a spline along one edge; half as many more where they become shorter towards both ends.
+const MOST_SPANS: usize = 12;
+
+/// Markers' spacings in a span.
+const SPACINGS: f64 = 1.5;
+
+/// A coefficient of a spline along one axis: a parameter, or an unknown of the field that another part moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Coefficient {
+    Parameter(usize),
+    Unknown(usize),
+}
+
+/// The coefficient that moves an unknown of the field.
+type Movers = BTreeMap<usize, Coefficient>;
+
+#[derive(Clone, Debug)]
+enum Part {
+    Known {
+        nodes: Vec<usize>,
+        displacement: [Option<f64>; 2],
+    },
+    /// Translation in mm and angle in rad about the centre begin at parameter `first`.
+    Rigid {
+        nodes: Vec<usize>,
+        centre: [f64; 2],
+        first: usize,
+    },
+    Smooth {
+        name: String,
+        spline: BSpline,
+        /// Along one axis and the other.
+        coefficients: [Vec<Coefficient>; 2],
+        /// The nodes that the edge moves, with their places on 0…1.
+        nodes: Vec<(usize, f64)>,
+    },
+}
+
+/// The displacements of all edges that are not free, as a function u_B(p) of parameters p in mm and rad.
+#[derive(Clone, Debug)]
+pub struct EdgeMotion {
+    places: Vec<[f64; 2]>,
+    parts: Vec<Part>,
+    parameters: usize,
+}
+
+impl EdgeMotion {
+    /// The motion of segments under one condition each. Where segments meet, known displacements take precedence over
+    /// rigid ones and these over unknown ones; at the nodes `singular` displacements may be singular, as beside a
+    /// clamp. `spacing` is the distance of the markers in mm.
+    pub fn new(
+        mesh: &Mesh,
+        segments: &[(&Segment, EdgeCondition)],
+        singular: &BTreeSet<usize>,
+        spacing: f64,
+    ) -> Self {
+        let mut motion = Self {
+            places: mesh.nodes.clone(),
+            parts: Vec::new(),
+            parameters: 0,
+        };
+        let mut moved = Movers::new();
+        for (segment, condition) in segments {
+            if let EdgeCondition::Known(displacement) = condition {
+                motion.known(segment, *displacement, &mut moved);
+            }
+        }
+        let rigid =
+            |(_, condition): &&(&Segment, EdgeCondition)| *condition == EdgeCondition::Rigid;
+        let mut rigid: Vec<_> = segments.iter().filter(rigid).map(|pair| pair.0).collect();
+        while let Some(first) = rigid.first().copied() {
+            // All sides with one name are one body.
+            let is_one = |other: &&Segment| {
+                std::ptr::eq(*other, first)
+                    || (first.condition.is_some() && other.condition == first.condition)
+            };
+            let (body, others): (Vec<&Segment>, _) = rigid.into_iter().partition(is_one);
+            motion.rigid(&body, &mut moved);
+            rigid = others;
+        }
+        for (segment, condition) in segments {
+            if *condition == EdgeCondition::Unknown {
+                let singular = segment.ends().map(|node| singular.contains(&node));
+                motion.smooth(segment, singular, spacing, &mut moved);
+            }
+        }
+        motion
+    }
+
+    fn known(&mut self, segment: &Segment, displacement: [Option<f64>; 2], moved: &mut Movers) {
+        for axis in [0, 1]
+            .into_iter()
+            .filter(|axis| displacement[*axis].is_some())
+        {
+            hold(&segment.nodes, axis, moved);
+        }
+        self.parts.push(Part::Known {
+            nodes: segment.nodes.clone(),
+            displacement,
+        });
+    }
+
+    fn rigid(&mut self, sides: &[&Segment], moved: &mut Movers) {
+        let all = sides.iter().flat_map(|side| &side.nodes);
+        let nodes: Vec<usize> = match sides {
+            [one] => one.nodes.clone(),
+            _ => all.copied().collect::<BTreeSet<_>>().into_iter().collect(),
+        };
+        [0, 1]
+            .into_iter()
+            .for_each(|axis| hold(&nodes, axis, moved));
+        let centre = [0, 1].map(|axis| {
+            let places = nodes.iter().map(|node| self.places[*node][axis]);
+            places.sum::<f64>() / nodes.len() as f64
+        });
+        let first = self.take(3);
+        self.parts.push(Part::Rigid {
+            nodes,
+            centre,
+            first,
+        });
+    }
+
+    /// A smooth edge, whose displacement may be singular at its ends.
+    fn smooth(&mut self, segment: &Segment, singular: [bool; 2], spacing: f64, moved: &mut Movers) {
+        let length = segment.length();
+        let edges = segment.nodes.len() - 1;
+        let spans = (length / (SPACINGS * spacing)).round() as usize;
+        // Spans that become shorter towards an end are longer elsewhere.
+        let more = 1.0 + singular.map(f64::from).iter().sum::<f64>() / 4.0;
+        let spans = spans.clamp(1, MOST_SPANS) as f64 * more;
+        let spans = (spans.round() as usize).min(edges);
+        let spline = BSpline::new([0.0, 1.0], spans, 3, Ends::Clamped).graded(singular);
+        let coefficients = [0, 1].map(|axis| {
+            let [first, last] = segment.ends().map(|node| 2 * node + axis);
+            let mut end = |motion: &mut Self, unknown: usize| {
+                let own = || Coefficient::Parameter(motion.take(1));
+                *moved.entry(unknown).or_insert_with(own)
+            };
+            let mut coefficients = vec![end(self, first)];
+            for _ in 1..spline.count() - 1 {
+                coefficients.push(Coefficient::Parameter(self.take(1)));
+            }
+            coefficients.push(end(self, last));
+            coefficients
+        });
+        let along = segment.nodes.iter().zip(&segment.places);
+        let nodes = along.map(|(node, place)| (*node, place / length));
+        self.parts.push(Part::Smooth {
+            name: segment.name.clone(),
+            spline,
+            coefficients,
+            nodes: nodes.collect(),
+        });
+    }
+
+    fn take(&mut self, count: usize) -> usize {
+        self.parameters += count;
+        self.parameters - count
+    }
+
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.parameters
+    }
+
+    /// The displacements at parameters p.
+    pub fn at(&self, p: &[f64]) -> EdgeDisplacements {
+        let mut unknowns: BTreeMap<usize, Combination> = BTreeMap::new();
+        for part in &self.parts {
+            match part {
+                Part::Known {
+                    nodes,
+                    displacement,
+                } => impose_known(&mut unknowns, nodes, *displacement),
+                Part::Rigid {
+                    nodes,
+                    centre,
+                    first,
+                } => self.impose_rigid(&mut unknowns, nodes, *centre, *first, p),
+                Part::Smooth {
+                    spline,
+                    coefficients,
+                    nodes,
+                    ..
+                } => {
+                    for axis in [0, 1] {
+                        let q = combinations(&unknowns, &coefficients[axis], p);
+                        for (node, place) in nodes {
+                            unknowns.entry(2 * node + axis).or_insert_with(|| {
+                                Combination::sum(&q, spline.derivatives(*place, 0))
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        EdgeDisplacements { unknowns }
+    }
+
+    fn impose_rigid(
+        &self,
+        unknowns: &mut BTreeMap<usize, Combination>,
+        nodes: &[usize],
+        centre: [f64; 2],
+        first: usize,
+        p: &[f64],
+    ) {
+        let (sine, cosine) = p[first + 2].sin_cos();
+        for node in nodes {
+            let [x, y] = [0, 1].map(|axis| self.places[*node][axis] - centre[axis]);
+            let turned = [cosine * x - sine * y - x, sine * x + cosine * y - y];
+            let slope = [-sine * x - cosine * y, cosine * x - sine * y];
+            for axis in [0, 1] {
+                let moved = Combination {
+                    value: p[first + axis] + turned[axis],
+                    slopes: vec![(first + axis, 1.0), (first + 2, slope[axis])],
+                };
+                unknowns.entry(2 * node + axis).or_insert(moved);
+            }
+        }
+    }
+
+    /// The roughness of all smooth edges at parameters p, along one axis after the other.
+    pub fn roughness(&self, p: &[f64]) -> Vec<Roughness> {
+        let imposed = self.at(p);
+        let mut all = Vec::new();
+        for part in &self.parts {
+            let Part::Smooth {
+                name,
+                spline,
+                coefficients,
+                ..
+            } = part
+            else {
+                continue;
+            };
+            for axis in [0, 1] {
+                let q = combinations(&imposed.unknowns, &coefficients[axis], p);
+                let rows = spline.roughness();
+                let rows: Vec<_> = rows
+                    .map(|row| Combination::sum(&q, row.into_iter()))
+                    .collect();
+                let mut slopes = DMatrix::zeros(rows.len(), self.parameters);
+                for (row, combination) in rows.iter().enumerate() {
+                    for (index, slope) in &combination.slopes {
+                        slopes[(row, *index)] += slope;
+                    }
+                }
+                all.push(Roughness {
+                    edge: name.clone(),
+                    axis,
+                    values: rows.iter().map(|row| row.value).collect(),
+                    slopes,
+                    rank: spline.count() - 2,
+                });
+            }
+        }
+        all
+    }
+}
+
+/// Records that nodes are moved along an axis by whatever came first.
+fn hold(nodes: &[usize], axis: usize, moved: &mut Movers) {
+    for unknown in nodes.iter().map(|node| 2 * node + axis) {
+        moved
+            .entry(unknown)
+            .or_insert(Coefficient::Unknown(unknown));
+    }
+}
+
+fn impose_known(
+    unknowns: &mut BTreeMap<usize, Combination>,
+    nodes: &[usize],
+    displacement: [Option<f64>; 2],
+) {
+    for (axis, value) in displacement.into_iter().enumerate() {
+        let Some(value) = value else { continue };
+        for node in nodes {
+            let slopes = Vec::new();
+            let known = Combination { value, slopes };
+            unknowns.entry(2 * node + axis).or_insert(known);
+        }
+    }
+}
+
+/// The coefficients of a spline along one axis.
+fn combinations(
+    unknowns: &BTreeMap<usize, Combination>,
+    coefficients: &[Coefficient],
+    p: &[f64],
+) -> Vec<Combination> {
+    let combination = |coefficient: &Coefficient| match coefficient {
+        Coefficient::Parameter(index) => Combination::parameter(*index, p),
+        Coefficient::Unknown(unknown) => unknowns[unknown].clone(),
+    };
+    coefficients.iter().map(combination).collect()
+}
+
+#[cfg(test)]
+mod tests;

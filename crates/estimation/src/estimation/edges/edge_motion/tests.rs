@@ -1,0 +1,90 @@
+//! Edges under all conditions.
+
+use super::*;
+use crate::estimation::given::segments;
+use crate::mesh::CellShape;
+
+fn motion(conditions: [EdgeCondition; 4]) -> (Mesh, EdgeMotion) {
+    let mesh = Mesh::plate([6.0, 4.0], [6, 4], CellShape::Quad9);
+    let names = ["left", "bottom", "right", "top"];
+    let parts = segments(&mesh, &names).unwrap();
+    let pairs: Vec<_> = parts
+        .iter()
+        .map(|part| (part, conditions[part.condition.unwrap()]))
+        .collect();
+    let corners = parts.iter().flat_map(Segment::ends).collect();
+    let motion = EdgeMotion::new(&mesh, &pairs, &corners, 0.5);
+    (mesh, motion)
+}
+
+const ALL: [EdgeCondition; 4] = [
+    EdgeCondition::Rigid,
+    EdgeCondition::Unknown,
+    EdgeCondition::Known([Some(0.3), Some(-0.2)]),
+    EdgeCondition::Unknown,
+];
+
+#[test]
+fn slopes_are_those_of_the_displacements() {
+    let (mesh, motion) = motion(ALL);
+    let count = 2 * mesh.nodes.len();
+    let p: Vec<f64> = (0..motion.parameters())
+        .map(|i| 0.3 * (1.7 * i as f64).sin())
+        .collect();
+    let motions = motion.at(&p).motions(p.len(), count);
+    let rough = motion.roughness(&p);
+    for index in 0..p.len() {
+        let at = |step: f64| {
+            let mut moved = p.clone();
+            moved[index] += step;
+            let mut field = vec![0.0; count];
+            motion.at(&moved).write(&mut field);
+            (field, motion.roughness(&moved))
+        };
+        let ((up, rough_up), (down, rough_down)) = (at(1e-5), at(-1e-5));
+        for unknown in 0..count {
+            let slope = (up[unknown] - down[unknown]) / 2e-5;
+            assert!((slope - motions[index][unknown]).abs() < 1e-9);
+        }
+        for ((rough, up), down) in rough.iter().zip(rough_up).zip(rough_down) {
+            for row in 0..rough.values.len() {
+                let slope = (up.values[row] - down.values[row]) / 2e-5;
+                assert!((slope - rough.slopes[(row, index)]).abs() < 1e-6);
+            }
+        }
+    }
+}
+
+#[test]
+fn neighbouring_edges_move_their_corner_together() {
+    let (mesh, motion) = motion([EdgeCondition::Unknown; 4]);
+    // Four edges of 8 spans, or 5, with ends in common.
+    let p = vec![0.7; motion.parameters()];
+    let mut field = vec![0.0; 2 * mesh.nodes.len()];
+    motion.at(&p).write(&mut field);
+    for edge in mesh.boundary() {
+        assert!(
+            edge.iter()
+                .all(|node| (field[2 * node] - 0.7).abs() < 1e-12)
+        );
+    }
+    let (_, mixed) = self::motion(ALL);
+    assert_eq!(motion.parameters() % 2, 0);
+    assert!(mixed.parameters() < motion.parameters());
+}
+
+#[test]
+fn a_rigid_edge_keeps_its_length() {
+    let (mesh, motion) = motion([
+        EdgeCondition::Rigid,
+        EdgeCondition::Free,
+        EdgeCondition::Free,
+        EdgeCondition::Free,
+    ]);
+    let mut field = vec![0.0; 2 * mesh.nodes.len()];
+    motion.at(&[1.0, 2.0, 1.3]).write(&mut field);
+    let nodes = &mesh.groups()["left"].nodes;
+    let place = |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + field[2 * node + axis]);
+    let (a, b) = (place(nodes[0]), place(nodes[nodes.len() - 1]));
+    assert!(((a[0] - b[0]).hypot(a[1] - b[1]) - 4.0).abs() < 1e-12);
+}

@@ -1,0 +1,137 @@
+//! The equations, the measured forces and the law linearised about a field.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::body_force::BodyForce;
+use crate::error::Error;
+use crate::estimation::equations::{Equations, Place, solve};
+use crate::estimation::given::MeasuredForce;
+use crate::problem::corner_forces::Share;
+use crate::solve::Assembly;
+use crate::solve::vector::dot;
+
+/// The equations and the observations linearised about a place.
+pub struct Linear {
+    /// −K⁻¹ F.
+    pub still: Vec<f64>,
+    /// ∂u/∂p of one parameter after the other.
+    pub sensitivities: Vec<Vec<f64>>,
+    /// H ∂u/∂p.
+    pub design: DMatrix<f64>,
+    /// The derivatives of the measured forces by p, and what is measured more than there, over the deviations.
+    pub force_rows: (DMatrix<f64>, DVector<f64>),
+}
+
+impl Equations<'_> {
+    /// The equations and the observations about a place.
+    pub(in crate::estimation) fn linearise(&mut self, place: &Place) -> Result<Linear, Error> {
+        let (mesh, field) = (self.task.specimen.mesh, &place.field);
+        let describe = |cell: usize| mesh.describe_cell(cell);
+        let residual =
+            self.with_potential(|newton, potential| newton.tangent.at(potential, field, &describe));
+        let residual = residual.map_err(solve)?;
+        let motions = self.motion.at(&place.parameters);
+        let motions = motions.motions(self.motion.parameters(), field.len());
+        let slopes = self.law_slopes(&place.parameters, field)?;
+        let mut forces = vec![residual.clone()];
+        for motion in &motions {
+            let mut force = vec![0.0; field.len()];
+            let added = Assembly::add_product(&self.energy, field, motion, &mut force);
+            added.map_err(|fault| self.inverted(fault))?;
+            forces.push(force);
+        }
+        forces.extend(slopes.iter().cloned());
+        let body = self.body.iter().flat_map(BodyForce::columns);
+        forces.extend(body.map(|column| column.iter().map(|force| -force).collect()));
+        let mut changes = self.newton.tangent.changes(&forces).map_err(solve)?;
+        let mut sensitivities = changes.split_off(1);
+        for (sensitivity, motion) in sensitivities.iter_mut().zip(motions) {
+            sensitivity
+                .iter_mut()
+                .zip(motion)
+                .for_each(|(s, m)| *s += m);
+        }
+        let still = changes.remove(0);
+        let interpolation = &self.task.observations.interpolation;
+        let columns = sensitivities
+            .iter()
+            .flat_map(|column| interpolation.multiply(column));
+        let design = DMatrix::from_iterator(interpolation.len(), sensitivities.len(), columns);
+        let force_rows = self.force_rows(field, &residual, &still, &sensitivities, &slopes)?;
+        Ok(Linear {
+            still,
+            sensitivities,
+            design,
+            force_rows,
+        })
+    }
+
+    /// The measured forces, linearised.
+    fn force_rows(
+        &self,
+        field: &[f64],
+        residual: &[f64],
+        still: &[f64],
+        sensitivities: &[Vec<f64>],
+        slopes: &[Vec<f64>],
+    ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
+        let measured = self.task.knowledge.measured_forces();
+        let mut rows = DMatrix::zeros(measured.len(), sensitivities.len());
+        let mut values = DVector::zeros(measured.len());
+        for (row, measured) in measured.iter().enumerate() {
+            let MeasuredForce {
+                edge,
+                axis,
+                force,
+                standard_deviation,
+                ..
+            } = measured;
+            let own = self.bodies.iter().filter(|body| body.name == *edge);
+            let shares: Vec<Share> = own.flat_map(|body| &body.shares[*axis]).copied().collect();
+            let grip = self.grip(&shares, *axis, field)?;
+            let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
+            values[row] = (force - there) / standard_deviation;
+            let slopes = grip.slopes(sensitivities, self.motion.parameters(), slopes);
+            for (column, slope) in slopes.into_iter().enumerate() {
+                rows[(row, column)] = slope / standard_deviation;
+            }
+        }
+        Ok((rows, values))
+    }
+
+    /// The force of some reactions along an axis as a function of the field.
+    pub fn grip(&self, shares: &[Share], axis: usize, field: &[f64]) -> Result<Grip, Error> {
+        let mut marks = vec![0.0; field.len()];
+        for (node, factor) in shares {
+            marks[2 * node + axis] += factor;
+        }
+        self.newton
+            .free()
+            .iter()
+            .for_each(|unknown| marks[*unknown] = 0.0);
+        let mut pull = vec![0.0; field.len()];
+        let added = Assembly::add_product(&self.energy, field, &marks, &mut pull);
+        added.map_err(|fault| self.inverted(fault))?;
+        Ok(Grip { marks, pull })
+    }
+}
+
+/// The force g·∂Π/∂u of a grip.
+pub struct Grip {
+    /// g: the factors of the reactions at the grip's held unknowns.
+    pub marks: Vec<f64>,
+    /// g·K.
+    pub pull: Vec<f64>,
+}
+
+impl Grip {
+    /// Its derivatives by p; those from `first` on change the law too, by ∂F/∂θ in `law`.
+    pub fn slopes(&self, sensitivities: &[Vec<f64>], first: usize, law: &[Vec<f64>]) -> Vec<f64> {
+        let columns = sensitivities.iter();
+        let mut slopes: Vec<f64> = columns.map(|column| dot(&self.pull, column)).collect();
+        for (slope, own) in slopes[first..].iter_mut().zip(law) {
+            *slope += dot(&self.marks, own);
+        }
+        slopes
+    }
+}

@@ -1,0 +1,311 @@
+//! The search for the parameters on which all frames agree.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::direction::{Direction, LOOSE, VAGUE, directions, inverse};
+use super::found::{Step, Told};
+use super::frame::{Judged, State};
+use crate::error::{Error, SolveFault};
+use crate::estimation::equations::solve;
+use crate::estimation::given::RegressedLaw;
+
+/// Steps allowed.
+const MOST_STEPS: usize = 40;
+
+/// Steps after which smoothness and noise of the frames are fixed, so that the misfit has a minimum.
+const JOINT_VARIANCE_STEPS: usize = 4;
+
+/// Length of a step in standard errors that is negligible.
+const CLOSE: f64 = 0.02;
+
+/// The largest change of a parameter in one step, relative to its scale, and to the distance to the end of its bound.
+const WITHIN: f64 = 0.5;
+
+/// The shortest share of a step.
+const SHORTEST: f64 = 1.0 / 64.0;
+
+/// All frames and the law.
+pub struct Descent<'a> {
+    pub frames: Vec<&'a Judged<'a>>,
+    pub law: RegressedLaw,
+    /// The scale of every parameter, once the determined combinations are known; before, it follows the search.
+    scales: Option<Vec<f64>>,
+}
+
+/// The state of the search.
+#[derive(Clone)]
+pub struct Course {
+    pub values: Vec<f64>,
+    pub states: Vec<State>,
+    pub steps: usize,
+    /// Why it ended before the least misfit: frames have no equilibrium farther on.
+    pub ended: Option<String>,
+}
+
+impl Course {
+    /// First values only.
+    pub fn of_start(values: Vec<f64>) -> Self {
+        Self {
+            values,
+            states: Vec::new(),
+            steps: 0,
+            ended: None,
+        }
+    }
+
+    /// Σ Sₖ.
+    pub fn information(&self) -> DMatrix<f64> {
+        let count = self.values.len();
+        let own = self.states.iter().map(|state| &state.information);
+        own.fold(DMatrix::zeros(count, count), |sum, own| sum + own)
+    }
+
+    fn score(&self) -> Step {
+        let own = self.states.iter().map(|state| &state.score);
+        own.fold(DVector::zeros(self.values.len()), |sum, own| sum + own)
+    }
+
+    /// The length √(δᵀ Σ Sₖ δ) of a step in standard errors.
+    fn standard_errors(&self, step: &Step) -> f64 {
+        step.dot(&(self.information() * step)).max(0.0).sqrt()
+    }
+
+    /// Σ Qₖ.
+    pub fn misfit(&self) -> f64 {
+        self.states.iter().map(|state| state.misfit).sum()
+    }
+}
+
+impl<'a> Descent<'a> {
+    /// The number of measured forces.
+    pub fn measured(&self) -> f64 {
+        let measured = self.frames.iter().map(|frame| frame.measured().len());
+        measured.sum::<usize>() as f64
+    }
+
+    /// The search over frames, with a law that begins at its first values.
+    pub fn new(frames: Vec<&'a Judged<'a>>, law: &RegressedLaw) -> Self {
+        Self {
+            frames,
+            law: law.clone(),
+            scales: None,
+        }
+    }
+
+    /// Finds the parameters, and their scales: first all that the data determine at all, then, where some
+    /// combinations are vague, the others alone, with the vague ones at their first values.
+    ///
+    /// # Errors
+    /// As [`Self::descend`].
+    pub fn find(&mut self, told: Told) -> Result<(Course, Vec<f64>), Error> {
+        self.scale()?;
+        let start = self.law.start();
+        let found = self.descend(Course::of_start(start.clone()), None, told);
+        let values = found.as_ref().map_or(&start, |found| &found.values);
+        let scales = self.scales_at(values);
+        self.scales = Some(scales.clone());
+        let states = match found {
+            Ok(found) => {
+                let all = directions(&found.information(), &scales);
+                if found.ended.is_some() || all.iter().all(Direction::is_determined) {
+                    return Ok((found, scales));
+                }
+                found.states
+            }
+            Err(_) => Vec::new(),
+        };
+        let begin = Course {
+            states,
+            ..Course::of_start(start)
+        };
+        Ok((self.descend(begin, None, told)?, scales))
+    }
+
+    /// Takes the initial stiffness from the measured forces, where the law can be scaled.
+    ///
+    /// # Errors
+    /// As the search of a frame.
+    fn scale(&mut self) -> Result<(), Error> {
+        let start = self.law.start();
+        let found: Result<Vec<_>, Error> = self
+            .frames
+            .par_iter()
+            .map(|frame| frame.foreign(&self.law, &start, None))
+            .collect();
+        let found = found?;
+        let forces = self.frames.iter().zip(&found);
+        let forces = forces.flat_map(|(frame, found)| frame.measured().iter().zip(&found.forces));
+        let [product, square] = forces.fold([0.0; 2], |[product, square], (measured, there)| {
+            let weight = measured.standard_deviation.powi(-2);
+            [
+                product + weight * measured.force * there,
+                square + weight * there * there,
+            ]
+        });
+        let factor = product / square;
+        if factor > 0.0 && factor.is_finite() {
+            let scaled = self.law.with_stress_times(factor);
+            self.law = scaled.unwrap_or(self.law.clone());
+        }
+        Ok(())
+    }
+
+    /// Descends to the least misfit, with one parameter that may be `held` fixed; from a course with states, smoothness and noise are fixed.
+    ///
+    /// # Errors
+    /// As the search of a frame at the first values; [`SolveFault::Stalled`] when [`MOST_STEPS`] do not reach it.
+    pub fn descend(&self, from: Course, held: Option<usize>, told: Told) -> Result<Course, Error> {
+        let warm = !from.states.is_empty();
+        let mut course = self.moved(&from, from.values.clone(), warm)?;
+        let mut length = f64::NAN;
+        for step in 1..=MOST_STEPS {
+            let settled = warm || step > JOINT_VARIANCE_STEPS;
+            let change = self.step(&course, held);
+            length = course.standard_errors(&change);
+            told(&format!(
+                "step {step}, change of {length:.1e} standard errors"
+            ));
+            if length <= CLOSE && settled {
+                course.steps = step;
+                return Ok(course);
+            }
+            match self.advance(&course, &change, settled, held) {
+                Ok(next) => course = next,
+                Err(fault) => {
+                    course.steps = step;
+                    course.ended = Some(fault.to_string());
+                    return Ok(course);
+                }
+            }
+        }
+        Err(solve(SolveFault::Stalled {
+            iterations: MOST_STEPS,
+            residual: length,
+            tolerance: CLOSE,
+        }))
+    }
+
+    /// The values on which all frames but some agree, beginning with those of all; `None` where no force remains.
+    ///
+    /// # Errors
+    /// As [`Self::descend`].
+    pub fn without(
+        &self,
+        course: &Course,
+        left_out: &Range<usize>,
+        told: Told,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let stays = |index: &usize| !left_out.contains(index);
+        let others: Vec<usize> = (0..self.frames.len()).filter(stays).collect();
+        let rest = Descent {
+            frames: others.iter().map(|index| self.frames[*index]).collect(),
+            law: self.law.clone(),
+            scales: self.scales.clone(),
+        };
+        if rest.frames.iter().all(|frame| frame.measured().is_empty()) {
+            return Ok(None);
+        }
+        let from = Course {
+            values: course.values.clone(),
+            states: others
+                .iter()
+                .map(|index| course.states[*index].clone())
+                .collect(),
+            ..Course::of_start(Vec::new())
+        };
+        let found = rest.descend(from, None, told)?;
+        Ok(Some(found.values))
+    }
+
+    /// All frames at other values.
+    fn moved(&self, course: &Course, values: Vec<f64>, settled: bool) -> Result<Course, Error> {
+        let states: Result<Vec<State>, Error> = self
+            .frames
+            .par_iter()
+            .enumerate()
+            .map(|(index, frame)| frame.at(&self.law, &values, course.states.get(index), settled))
+            .collect();
+        Ok(Course {
+            values,
+            states: states?,
+            steps: course.steps,
+            ended: None,
+        })
+    }
+
+    /// The step to the least misfit of the linearised frames, over the combinations that they determine.
+    fn step(&self, course: &Course, held: Option<usize>) -> Step {
+        let mut information = course.information();
+        let mut score = course.score();
+        if let Some(held) = held {
+            information.row_mut(held).fill(0.0);
+            information.column_mut(held).fill(0.0);
+            score[held] = 0.0;
+        }
+        let (scales, limit) = match &self.scales {
+            None => (self.scales_at(&course.values), LOOSE),
+            Some(scales) => (scales.clone(), VAGUE),
+        };
+        let mut step = inverse(&directions(&information, &scales), &scales, limit) * score;
+        let most = self.most(&course.values);
+        let share = step.iter().zip(&most).map(|(step, most)| step.abs() / most);
+        step /= share.fold(1.0, f64::max);
+        step
+    }
+
+    /// The largest change of each parameter.
+    fn most(&self, values: &[f64]) -> Vec<f64> {
+        let scales = self.scales_at(values);
+        let parameters = self.law.parameters().iter().zip(values).zip(scales);
+        let most = parameters.map(|((parameter, value), scale)| {
+            let [low, high] = parameter.bound.ends();
+            WITHIN * scale.min(value - low).min(high - value)
+        });
+        most.collect()
+    }
+
+    /// The scale of every parameter: the larger of its value and its first value.
+    fn scales_at(&self, values: &[f64]) -> Vec<f64> {
+        let first = self.law.start();
+        let pairs = values.iter().zip(&first);
+        pairs
+            .map(|(value, first)| value.abs().max(first.abs()))
+            .collect()
+    }
+
+    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise are fixed, reduces the misfit or
+    /// the next step. Where the model leaves large residuals, steps of the linearised frames end where the score vanishes, which
+    /// is close to the least misfit but not there: near it the misfit rises with steps that become shorter.
+    fn advance(
+        &self,
+        course: &Course,
+        change: &Step,
+        settled: bool,
+        held: Option<usize>,
+    ) -> Result<Course, Error> {
+        // The part of the misfit that is due to rounding and to the searches of the frames.
+        const ROUGH: f64 = 1e-3;
+        let length = course.standard_errors(change);
+        let mut share = 1.0;
+        loop {
+            let values = course.values.iter().zip(change.iter());
+            let values = values
+                .map(|(value, change)| value + share * change)
+                .collect();
+            let next = self.moved(course, values, settled);
+            let worse = |next: &Course| {
+                settled
+                    && next.misfit() > course.misfit() + ROUGH
+                    && next.standard_errors(&self.step(next, held)) >= length
+            };
+            match next {
+                Ok(next) if !worse(&next) || share <= SHORTEST => return Ok(next),
+                Err(fault) if share <= SHORTEST => return Err(fault),
+                _ => share *= 0.5,
+            }
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Possible defects of the equations, as the small changes of the field that they would cause.
+//!
+//! ```text
+//! ∂u/∂c = K⁻¹ f,   fᵢ = ∫ Nᵢ φ dA (a force),   −∫ φ P ∇Nᵢ dV (a stiffness that varies),   −∫ P* ∇Nᵢ dV (another law's P*)
+//! ```
+//!
+//! and likewise possible defects of the picture: its scale ([`crate::estimation::uncertainty`]).
+
+use nalgebra::DMatrix;
+
+use crate::error::Error;
+use crate::estimation::equations::nodal_areas;
+use crate::estimation::given::Edge;
+use crate::estimation::outcome::Alternative;
+use crate::estimation::search::NearestField;
+use crate::estimation::uncertainty::MeshError;
+use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
+use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
+
+/// An alternative with the displacements of the markers due to its parameters: two rows per marker.
+pub type Column = (Alternative, DMatrix<f64>);
+
+/// A change that is no alternative to the equations, because it is known to be possible.
+pub struct Granted {
+    /// The displacements of the markers due to its parameters: two rows per marker.
+    pub design: DMatrix<f64>,
+    /// The standard deviation of its parameters; `None` where they may have any value.
+    pub deviation: Option<f64>,
+}
+
+impl NearestField<'_> {
+    /// The alternatives of forces, stiffness, law, picture and mesh, with all edges as they are.
+    pub(super) fn alternatives(&mut self, own: Option<&MeshError>) -> Result<Vec<Column>, Error> {
+        let mut all = Vec::new();
+        if self.equations.body.is_none() {
+            all.push((Alternative::BodyForce, self.smooth_forces()));
+        }
+        all.push((Alternative::Stiffness, self.varied_stiffness()));
+        all.push((Alternative::Law, self.other_laws()));
+        all.push((Alternative::Direction, self.directions()));
+        all.push((Alternative::Volume, self.volume_change()));
+        let mut columns: Vec<Column> = Vec::new();
+        for (alternative, forces) in all {
+            columns.push((alternative, self.marker_changes(&forces)?));
+        }
+        if self.equations.task.knowledge.scale_deviation == 0.0 {
+            columns.push((Alternative::Scale, self.magnification()));
+        }
+        if let Some(own) = own {
+            let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
+            columns.push((Alternative::Mesh, error));
+        }
+        Ok(columns)
+    }
+
+    /// The changes that what is known admits: a picture of another scale, and free edges up to the gap away from those of the mesh.
+    pub(super) fn granted(&mut self, edges: &[Edge]) -> Result<Vec<Granted>, Error> {
+        let knowledge = self.equations.task.knowledge;
+        let stated = knowledge.scale_deviation > 0.0;
+        let scale = stated.then(|| Granted {
+            design: self.magnification(),
+            deviation: None,
+        });
+        let mut all: Vec<Granted> = scale.into_iter().collect();
+        if let Some(gap) = knowledge.edge_gap {
+            let strips = self.strips(edges);
+            let designs = self.marker_changes(&strips)?;
+            all.extend((0..designs.ncols()).map(|column| Granted {
+                design: designs.columns(column, 1).into_owned(),
+                // As probably anywhere up to the gap farther out.
+                deviation: Some(gap / 3.0_f64.sqrt()),
+            }));
+        }
+        Ok(all)
+    }
+
+    /// Forces along x and along y with smooth densities.
+    fn smooth_forces(&self) -> Vec<Vec<f64>> {
+        let mesh = self.equations.task.specimen.mesh;
+        let (areas, whole) = (nodal_areas(mesh), mesh.bounding_box());
+        let mut forces = vec![vec![0.0; self.field.len()]; 12];
+        for (node, place) in mesh.nodes.iter().enumerate() {
+            for (shape, value) in shapes(*place, whole).into_iter().enumerate() {
+                for axis in [0, 1] {
+                    forces[6 * axis + shape][2 * node + axis] = areas[node] * value;
+                }
+            }
+        }
+        forces
+    }
+
+    fn varied_stiffness(&self) -> Vec<Vec<f64>> {
+        let law = &self.equations.law;
+        let whole = self.equations.task.specimen.mesh.bounding_box();
+        self.stresses(5, &|place, kinematics| {
+            let stress = law.stress(kinematics).1;
+            let shapes = shapes(place, whole);
+            shapes[1..].iter().map(|shape| stress * *shape).collect()
+        })
+    }
+
+    fn other_laws(&self) -> Vec<Vec<f64>> {
+        let laws: [Box<dyn HyperelasticLaw>; 4] = [
+            Box::new(NeoHooke { c10: 1.0 }),
+            Box::new(MooneyRivlin { c10: 0.0, c01: 1.0 }),
+            Box::new(Yeoh {
+                coefficients: [0.0, 1.0, 0.0],
+            }),
+            Box::new(Yeoh {
+                coefficients: [0.0, 0.0, 1.0],
+            }),
+        ];
+        self.stresses(4, &|_, kinematics| {
+            laws.iter().map(|law| law.stress(kinematics).1).collect()
+        })
+    }
+
+    /// Fibres along x and y, and shear between them: F S with one component of S = E each.
+    fn directions(&self) -> Vec<Vec<f64>> {
+        self.stresses(3, &|_, kinematics| {
+            let f = kinematics.deformation_gradient;
+            let [xx, xy, yy] = kinematics.twice_green_lagrange.map(|change| change / 2.0);
+            vec![
+                PlaneTensor::new(f[0] * xx, 0.0, f[2] * xx, 0.0),
+                PlaneTensor::new(0.0, f[1] * yy, 0.0, f[3] * yy),
+                PlaneTensor::new(f[1] * xy, f[0] * xy, f[3] * xy, f[2] * xy),
+            ]
+        })
+    }
+
+    /// ½ (ln J)².
+    fn volume_change(&self) -> Vec<Vec<f64>> {
+        self.stresses(1, &|_, kinematics| {
+            let area = kinematics.area_ratio();
+            vec![cofactor(&kinematics.deformation_gradient) * (area.ln() / area)]
+        })
+    }
+
+    /// ∫ P* ∇N dV of several stresses.
+    fn stresses(
+        &self,
+        count: usize,
+        stresses: &dyn Fn([f64; 2], &Kinematics) -> Vec<PlaneTensor>,
+    ) -> Vec<Vec<f64>> {
+        let mesh = self.equations.task.specimen.mesh;
+        let mut forces = vec![vec![0.0; self.field.len()]; count];
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell(cell);
+            let own: Vec<f64> = nodes
+                .iter()
+                .flat_map(|node| [self.field[2 * node], self.field[2 * node + 1]])
+                .collect();
+            let centre = mesh.place(cell, mesh.shape(cell).centre());
+            for point in self.equations.energy.cell_points(cell) {
+                let Ok(kinematics) = Kinematics::new(&point.gradient(&own)) else {
+                    continue;
+                };
+                let all = stresses(centre, &kinematics).into_iter();
+                for (stress, force) in all.zip(&mut forces) {
+                    let mut added = vec![0.0; own.len()];
+                    point.add_force(&stress, &mut added);
+                    for (pair, node) in added.chunks_exact(2).zip(nodes) {
+                        force[2 * node] += pair[0];
+                        force[2 * node + 1] += pair[1];
+                    }
+                }
+            }
+        }
+        forces
+    }
+}
+
+/// 1, x, y, x², xy, y² of a place, from −1 to 1 between the lower left and the upper right corner of the specimen.
+fn shapes(place: [f64; 2], [low, high]: [[f64; 2]; 2]) -> [f64; 6] {
+    let [x, y] = [0, 1].map(|axis| {
+        let size = (high[axis] - low[axis]).max(f64::MIN_POSITIVE);
+        2.0 * (place[axis] - low[axis]) / size - 1.0
+    });
+    [1.0, x, y, x * x, x * y, y * y]
+}

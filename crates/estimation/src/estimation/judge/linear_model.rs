@@ -1,0 +1,214 @@
+//! Linear models of the sound markers, and how much better one fits than another under noise that may correlate.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::alternatives::{Column, Granted};
+use super::rows::Rows;
+use crate::estimation::outcome::{Alternative, Trial};
+use crate::estimation::search::{NearestField, Scored};
+use crate::estimation::uncertainty::MeshError;
+use crate::statistics::{
+    CorrelatedNoise, CorrelatedRegression, WhiteRegression, Whitening, f_tail,
+};
+
+/// Evidence from which on noise counts as correlated: white noise has as much in one of four hundred cases.
+const EVIDENCE: f64 = 12.0;
+
+/// Twice the mesh's own error, squared.
+const MESH: f64 = 4.0;
+
+/// A linear model of the sound markers.
+pub struct Model {
+    design: DMatrix<f64>,
+    residual: DVector<f64>,
+    held: DMatrix<f64>,
+    slope: DVector<f64>,
+}
+
+/// The noise by which alternatives are tested.
+pub struct Reference {
+    whitening: Option<Whitening>,
+    variance: f64,
+    /// Independent values.
+    values: f64,
+    /// Variance due to the mesh's own error.
+    mesh: f64,
+}
+
+impl Model {
+    /// That of a search, about its field.
+    pub fn of_search(rows: &Rows, found: &NearestField) -> Self {
+        Self {
+            design: rows.scaled(&found.linear.design),
+            residual: rows.residual.clone(),
+            held: found.fit.held.clone(),
+            slope: found.slope(&found.linear.design, &found.fit.residual, &found.variances),
+        }
+    }
+
+    /// That of one regression with other conditions.
+    pub fn of_score(rows: &Rows, found: &NearestField, scored: &Scored) -> Self {
+        let left = DMatrix::from_column_slice(
+            scored.fit.residual.len(),
+            1,
+            scored.fit.residual.as_slice(),
+        );
+        Self {
+            design: rows.scaled(&scored.linear.design),
+            residual: rows.scaled(&left).column(0).into_owned(),
+            held: scored.fit.held.clone(),
+            slope: found.slope(
+                &scored.linear.design,
+                &scored.fit.residual,
+                &scored.variances,
+            ),
+        }
+    }
+
+    /// The model with further columns without penalty.
+    pub fn with<'a>(&self, rows: &Rows, more: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Self {
+        self.extended(rows, more.into_iter().map(|design| (design, None)))
+    }
+
+    /// The model with changes that are known to be possible.
+    pub fn granting(&self, rows: &Rows, granted: &[Granted]) -> Self {
+        let more = granted.iter();
+        self.extended(rows, more.map(|change| (&change.design, change.deviation)))
+    }
+
+    /// The model with further columns, each of unit mean square, and the standard deviations of their parameters where known.
+    fn extended<'a>(
+        &self,
+        rows: &Rows,
+        more: impl Iterator<Item = (&'a DMatrix<f64>, Option<f64>)>,
+    ) -> Self {
+        let mut columns: Vec<DVector<f64>> = Vec::new();
+        let mut information: Vec<f64> = Vec::new();
+        for (design, deviation) in more {
+            let scaled = rows.scaled(design);
+            for column in scaled.column_iter() {
+                let length = column.norm();
+                if length > 0.0 && length.is_finite() {
+                    let scale = (column.len() as f64).sqrt() / length;
+                    columns.push(column * scale);
+                    information.push(deviation.map_or(0.0, |own| (scale / own).powi(2)));
+                }
+            }
+        }
+        let (own, all) = (self.design.ncols(), self.design.ncols() + columns.len());
+        let mut design = self.design.clone().resize_horizontally(all, 0.0);
+        let mut held = self.held.clone().resize(all, all, 0.0);
+        for (index, (column, information)) in columns.iter().zip(information).enumerate() {
+            design.set_column(own + index, column);
+            held[(own + index, own + index)] = information;
+        }
+        Self {
+            design,
+            residual: self.residual.clone(),
+            held,
+            slope: self.slope.clone().resize_vertically(all, 0.0),
+        }
+    }
+
+    /// The correlations that the noise may have, where the data show one, the likeliest first.
+    pub fn noises(&self, rows: &Rows) -> Vec<CorrelatedNoise> {
+        let some = rows.clusters();
+        let entry = |row: usize| 2 * some.chosen[row / 2] + row % 2;
+        let count = 2 * some.chosen.len();
+        let columns = self.design.ncols();
+        let regression = CorrelatedRegression {
+            sites: &some.sites,
+            design: &DMatrix::from_fn(count, columns, |row, j| self.design[(entry(row), j)]),
+            residual: &DVector::from_fn(count, |row, _| self.residual[entry(row)]),
+            held: &self.held,
+            slope: &self.slope,
+        };
+        let longest = 0.5 * (rows.extent[0] * rows.extent[1]).sqrt();
+        let found = regression.plausible(rows.spacing, longest);
+        let shown = found.first().is_some_and(|one| one.evidence > EVIDENCE);
+        found.into_iter().take_while(|_| shown).collect()
+    }
+
+    /// The residuals of the markers in mm, after an ordinary regression.
+    pub fn plain_left(&self, rows: &Rows, found: &NearestField) -> f64 {
+        let white = WhiteRegression::new(&self.design, &self.residual, None);
+        let left = white.left(&self.held, &self.slope, 1.0);
+        let count = 2.0 * rows.chosen.len() as f64;
+        left.map_or(f64::NAN, |(square, _)| {
+            (square / count).sqrt() * found.deviation()
+        })
+    }
+}
+
+impl Reference {
+    /// The noise that remains with all alternatives in the equations.
+    pub fn new(
+        rows: &Rows,
+        noise: Option<&CorrelatedNoise>,
+        base: &Model,
+        all: Option<&Model>,
+        columns: &[Column],
+        own: Option<&MeshError>,
+    ) -> Self {
+        let most = all.unwrap_or(base);
+        let flexible = || most.with(rows, columns.iter().map(|(_, design)| design));
+        let noise = noise.and_then(|_| flexible().noises(rows).into_iter().next());
+        let correlation = noise.as_ref().map(|noise| noise.correlation);
+        let count = rows.chosen.len() as f64;
+        let mesh = own.map_or(0.0, |own| {
+            let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
+            MESH * rows.scaled(&error).norm_squared() / (2.0 * count)
+        });
+        Self {
+            whitening: correlation
+                .as_ref()
+                .map(|one| Whitening::new(&rows.sites, one)),
+            variance: noise.as_ref().map_or(1.0, |noise| noise.variance),
+            values: 2.0 * correlation.map_or(count, |one| one.independent(rows.sites.places())),
+            mesh,
+        }
+    }
+
+    /// The factor of one further column that fits best beside the equations.
+    pub fn factor(&self, rows: &Rows, base: &Model, design: &DMatrix<f64>) -> Option<f64> {
+        let model = base.with(rows, [design]);
+        let last = model.design.ncols().checked_sub(1)?;
+        let white = WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
+        let best = white.best(&model.held, &model.slope, self.variance)?;
+        // Columns are added with a length of their own.
+        let own = rows.scaled(design);
+        Some(best[last] * model.design.column(last).norm() / own.norm())
+    }
+
+    /// The reduction of the misfit of the equations by a model.
+    pub fn test(&self, alternative: Alternative, base: &Model, model: &Model) -> Trial {
+        let left = |model: &Model| {
+            let white =
+                WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
+            white.left(&model.held, &model.slope, self.variance)
+        };
+        let (Some((before, few)), Some((after, many))) = (left(base), left(model)) else {
+            return Trial::nothing(alternative);
+        };
+        let count = model.residual.len() as f64;
+        let more = (many - few).max(1.0);
+        let variance = after / (count - many).max(1.0) + self.mesh;
+        let gain = (before - after).max(0.0) / variance;
+        Trial {
+            probability: f_tail([more, (self.values - many).max(3.0)], gain / more),
+            gain: gain - 2.0 * more,
+            ..Trial::nothing(alternative)
+        }
+    }
+}
+
+impl Trial {
+    fn nothing(alternative: Alternative) -> Self {
+        Self {
+            alternative,
+            left: f64::NAN,
+            probability: 1.0,
+            gain: 0.0,
+        }
+    }
+}

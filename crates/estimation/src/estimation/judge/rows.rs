@@ -1,0 +1,137 @@
+//! The rows of sound markers in the last regression, over the noise.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::estimation::regression::{Fit, VarianceComponents, squares};
+use crate::estimation::search::NearestField;
+use crate::estimation::uncertainty::MeshError;
+use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
+
+/// Fewer markers carry no information on each other.
+const FEWEST: usize = 30;
+
+/// Rows of sound markers: trusted by at least one half, and not outliers.
+pub struct Rows {
+    /// Numbers of the markers among those on the mesh.
+    pub chosen: Vec<usize>,
+    /// Their places.
+    pub sites: Sites,
+    /// √(w ω)/s of each, s the noise's standard deviation.
+    scales: Vec<f64>,
+    /// r √(w ω)/s, of variance one where the noise is white.
+    pub residual: DVector<f64>,
+    /// Difference of the largest and the smallest coordinates, in mm.
+    pub extent: [f64; 2],
+    /// √(area of the box over the number of markers), in mm.
+    pub spacing: f64,
+}
+
+/// Some of the sound markers.
+pub struct Clusters {
+    /// Their numbers among the sound ones.
+    pub chosen: Vec<usize>,
+    /// Their places.
+    pub sites: Sites,
+}
+
+impl Rows {
+    /// The rows; `None` where there are few, or where the residuals are no more than the mesh's own error and the rounding of numbers.
+    pub fn new(found: &NearestField, sound: &[f64], own: Option<&MeshError>) -> Option<Self> {
+        let observations = found.observations();
+        let count = observations.places.len();
+        let mut chosen: Vec<usize> = (0..count).filter(|row| sound[*row] > 0.0).collect();
+        // Where most are outliers, sound markers cannot be distinguished.
+        if 2 * chosen.len() < count {
+            chosen = (0..count).collect();
+        }
+        if chosen.len() < FEWEST || leaves_nothing(found, &chosen, own) {
+            return None;
+        }
+        let scale = |marker: &usize| {
+            let trust = match sound[*marker] > 0.0 {
+                true => sound[*marker],
+                false => 1.0,
+            };
+            let weights = [0, 1].map(|axis| observations.weights[2 * marker + axis]);
+            weights.map(|weight| (weight * trust / found.variances.sound).sqrt())
+        };
+        let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
+        let left = |row: usize| scales[row] * found.fit.residual[2 * chosen[row / 2] + row % 2];
+        let places: Vec<[f64; 2]> = chosen.iter().map(|row| observations.places[*row]).collect();
+        let extent = [0, 1].map(|axis| {
+            let [low, high] = extremes(places.iter().map(|place| place[axis]));
+            (high - low).max(f64::MIN_POSITIVE)
+        });
+        Some(Self {
+            residual: DVector::from_fn(2 * chosen.len(), |row, _| left(row)),
+            sites: Sites::new(places),
+            spacing: (extent[0] * extent[1] / chosen.len() as f64).sqrt(),
+            extent,
+            chosen,
+            scales,
+        })
+    }
+
+    /// At most some thousands of them, in clusters that show short and long distances alike.
+    pub fn clusters(&self) -> Clusters {
+        const MOST: usize = 3000;
+        const TOGETHER: usize = 30;
+        let places = self.sites.places();
+        if places.len() <= MOST {
+            return Clusters {
+                chosen: (0..places.len()).collect(),
+                sites: self.sites.clone(),
+            };
+        }
+        let around = nearest(places, TOGETHER - 1);
+        let first = (0..places.len()).step_by(places.len() * TOGETHER / MOST);
+        let mut chosen: Vec<usize> = first
+            .flat_map(|index| around[index].iter().copied().chain([index]))
+            .collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        Clusters {
+            sites: Sites::new(chosen.iter().map(|index| places[*index]).collect()),
+            chosen,
+        }
+    }
+
+    /// Rows of these markers out of a matrix with two rows for each marker on the mesh, over the noise.
+    pub fn scaled(&self, design: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(2 * self.chosen.len(), design.ncols(), |row, column| {
+            self.scales[row] * design[(2 * self.chosen[row / 2] + row % 2, column)]
+        })
+    }
+}
+
+/// The trust of every marker on the mesh in a fit; zero for markers that are trusted by less than one half, or off by
+/// more than normal noise would be in one of a thousand.
+///
+/// For a fit with released edges it distinguishes gross errors from markers that a wrong condition leaves far off.
+pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> Vec<f64> {
+    const TRUSTED: f64 = 0.5;
+    const FALSE_ALARMS: f64 = 1e-3;
+    let limit = chi_squared_limit(2.0, FALSE_ALARMS);
+    let rows = squares(&fit.residual, weights).zip(&variances.trust);
+    let trust = |(square, trust): (f64, &f64)| match *trust >= TRUSTED
+        && square / variances.sound <= limit
+    {
+        true => *trust,
+        false => 0.0,
+    };
+    rows.map(trust).collect()
+}
+
+/// Whether the residuals are no more than twice the mesh's own error, or a millionth of the displacement.
+fn leaves_nothing(found: &NearestField, rows: &[usize], own: Option<&MeshError>) -> bool {
+    const ROUNDING: f64 = 1e-6;
+    let sum = |values: &dyn Fn(usize) -> f64| -> f64 {
+        let entries = rows.iter().flat_map(|row| [2 * row, 2 * row + 1]);
+        entries.map(|entry| values(entry).powi(2)).sum()
+    };
+    let observations = found.observations();
+    let left = sum(&|entry| found.fit.residual[entry]);
+    let moved = sum(&|entry| observations.displacements[entry / 2][entry % 2]);
+    let mesh = own.map_or(0.0, |own| sum(&|entry| own.markers[entry]));
+    left <= (4.0 * mesh).max(ROUNDING * ROUNDING * moved)
+}

@@ -1,0 +1,216 @@
+//! The errors of a field due to parameters that the equations take as known: those of the law, as far as its card records their
+//! uncertainty, and the distances of free edges ([`super::unknown_places`]).
+//!
+//! ```text
+//! sₖ = ∂u/∂cₖ = −K⁻¹ ∂F/∂cₖ
+//! M Dₖ = −AᵀWHsₖ/v − Gᵀ∂f/∂cₖ/σ                  what the regression makes of it, as it does not know c
+//!
+//! Cov(p, c) = [C + DΣDᵀ, DΣ; ΣDᵀ, Σ],   ∂u/∂(p, c) = [S, s]
+//! ```
+//!
+//! with A, W, v, G, M of [`crate::estimation::regression`], Σ the covariance of c, and f the measured forces. The field remains
+//! the one with the parameters as they are given: they are considered, but not estimated (Schmidt), so that data with little information on
+//! them do not move the field.
+//!
+//! # References
+//! S. F. Schmidt, Adv. Control Syst. 3, 293 (1966), doi:10.1016/B978-1-4831-6716-9.50011-4
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::Error;
+use crate::estimation::equations::solve;
+use crate::estimation::given::Edge;
+use crate::estimation::search::NearestField;
+use crate::problem::corner_forces::Share;
+use crate::solve::vector::dot;
+
+/// Parameters that are considered: those of the law, then the distances of edges.
+pub struct Considered {
+    /// ∂F/∂cₖ of the law's parameters.
+    slopes: Vec<Vec<f64>>,
+    /// sₖ.
+    changes: Vec<Vec<f64>>,
+    /// D.
+    answers: DMatrix<f64>,
+    /// Σ.
+    squares: DMatrix<f64>,
+}
+
+impl NearestField<'_> {
+    /// The parameters that are considered; must be called before the covariance includes the noise found, because it has to be M⁻¹.
+    pub(in crate::estimation) fn considered(
+        &mut self,
+        edges: &[Edge],
+    ) -> Result<Considered, Error> {
+        let law = self.equations.task.knowledge.uncertain_law();
+        let neighbours = law.map_or(Vec::new(), |law| law.neighbours());
+        let slopes = self.equations.slopes_between(neighbours, &self.field)?;
+        let (strips, of_places) = self.unknown_places(edges);
+        let (own, all) = (slopes.len(), slopes.len() + strips.len());
+        let mut squares = DMatrix::zeros(all, all);
+        if let Some(law) = law {
+            squares
+                .view_mut((0, 0), (own, own))
+                .copy_from(law.covariance());
+        }
+        squares
+            .view_mut((own, own), (strips.len(), strips.len()))
+            .copy_from(&of_places);
+        let forces = [slopes.clone(), strips].concat();
+        let tangent = &mut self.equations.newton.tangent;
+        let changes = tangent.changes(&forces).map_err(solve)?;
+        let mut answers = DMatrix::zeros(self.fit.covariance.nrows(), all);
+        for (index, (change, force)) in changes.iter().zip(&forces).enumerate() {
+            let target = self.target(change, force)?;
+            answers.set_column(index, &(&self.fit.covariance * target));
+        }
+        Ok(Considered {
+            slopes,
+            changes,
+            answers,
+            squares,
+        })
+    }
+
+    /// −AᵀWHs/v − Gᵀ∂f/∂c/σ of one parameter.
+    fn target(&self, change: &[f64], force: &[f64]) -> Result<DVector<f64>, Error> {
+        let observations = self.observations();
+        let at_markers = observations.interpolation.multiply(change);
+        let equations = &self.equations;
+        let mut target = equations.target_of(&at_markers, &self.linear, &self.variances);
+        let measured = equations.task.knowledge.measured_forces().iter();
+        for (row, measured) in measured.enumerate() {
+            let own = equations.bodies.iter();
+            let own = own.filter(|body| body.name == measured.edge);
+            let shares: Vec<Share> = own
+                .flat_map(|body| &body.shares[measured.axis])
+                .copied()
+                .collect();
+            let grip = equations.grip(&shares, measured.axis, &self.field)?;
+            let off = dot(&grip.pull, change) + dot(&grip.marks, force);
+            let slopes = self.linear.force_rows.0.row(row).transpose();
+            target -= slopes * (off / measured.standard_deviation);
+        }
+        Ok(target)
+    }
+
+    /// The standard errors of the bodies' forces along x and y in N due to the law's parameters; nothing where none is considered.
+    pub(in crate::estimation) fn law_deviations(
+        &self,
+        considered: &Considered,
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        let own = considered.slopes.len();
+        if own == 0 {
+            return Ok(Vec::new());
+        }
+        let squares = considered.squares.view((0, 0), (own, own));
+        let along = |body: usize, axis: usize| -> Result<f64, Error> {
+            let (grip, row) = self.grip_of(body, axis, &[])?;
+            let slope = |index: usize, _| {
+                let direct = dot(&grip.marks, &considered.slopes[index])
+                    + dot(&grip.pull, &considered.changes[index]);
+                direct + dot(&row, considered.answers.column(index).as_slice())
+            };
+            let slopes = DVector::from_fn(own, slope);
+            Ok(slopes.dot(&(squares * &slopes)).max(0.0).sqrt())
+        };
+        let bodies = 0..self.equations.bodies.len();
+        bodies
+            .map(|body| Ok([along(body, 0)?, along(body, 1)?]))
+            .collect()
+    }
+
+    /// Appends the parameters to those of the field.
+    pub(in crate::estimation) fn consider(&mut self, considered: Considered) {
+        let Considered {
+            changes,
+            answers,
+            squares,
+            ..
+        } = considered;
+        let (own, more) = (answers.nrows(), answers.ncols());
+        let across = &answers * &squares;
+        let mut whole = DMatrix::zeros(own + more, own + more);
+        whole
+            .view_mut((0, 0), (own, own))
+            .copy_from(&(&self.fit.covariance + &across * answers.transpose()));
+        whole.view_mut((0, own), (own, more)).copy_from(&across);
+        whole
+            .view_mut((own, 0), (more, own))
+            .copy_from(&across.transpose());
+        whole.view_mut((own, own), (more, more)).copy_from(&squares);
+        self.fit.covariance = whole;
+        self.linear.sensitivities.extend(changes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::estimation::tests::{Truth, specimen, with_grips};
+    use crate::estimation::{
+        EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, UncertainLaw, estimate,
+    };
+    use crate::material::Card;
+    use crate::mesh::{CellShape, Mesh};
+
+    /// The card of the plate's material with a recorded deviation of 3 %.
+    fn recorded() -> Option<UncertainLaw> {
+        let text = Card::load("neo-hooke", Path::new(".")).unwrap().text
+            + "[fit]\ndata = [\"own.csv\"]\nweighting = \"absolute\"\nstarts = 1\n\
+               parameters = [\"c10\"]\nstandard_deviations = [0.0015]\ncorrelations = []\n";
+        UncertainLaw::of_card(&Card::parse("own", "own.toml", &text).unwrap())
+    }
+
+    #[test]
+    fn intervals_hold_what_the_card_records_of_its_stiffness_unless_a_force_is_measured() {
+        let (truth, mesh) = (
+            Truth::new(),
+            Mesh::plate([60.0, 30.0], [10, 6], CellShape::Quad9),
+        );
+        let of = |uncertain_law: Option<UncertainLaw>, forces: Vec<MeasuredForce>| {
+            let knowledge = Knowledge {
+                uncertain_law,
+                forces,
+                ..with_grips(EdgeCondition::Rigid)
+            };
+            estimate(&specimen(&mesh), &truth.markers(0.1, 1), &knowledge).unwrap()
+        };
+        let right = |found: &FieldEstimate| {
+            let index = found.forces.iter().position(|own| own.edge == "right");
+            (index.unwrap(), found.forces[index.unwrap()].force[0])
+        };
+        let [plain, uncertain] = [of(None, Vec::new()), of(recorded(), Vec::new())];
+        let ((_, before), (index, after)) = (right(&plain), right(&uncertain));
+        assert!(plain.is_given_the_law && plain.law_deviations.is_empty());
+        // The force is proportional to the only parameter.
+        let deviation = uncertain.law_deviations[index][0];
+        assert!(
+            (deviation / (0.03 * after.value) - 1.0).abs() < 1e-3,
+            "{deviation}"
+        );
+        let wide = before.standard_error.hypot(deviation);
+        assert!(before.value == after.value && (after.standard_error / wide - 1.0).abs() < 1e-9);
+        let stress = |found: &FieldEstimate| {
+            let middle = found.cells[found.cells.len() / 2];
+            (
+                middle.first_piola_kirchhoff_stress[0],
+                middle.stress_error[0],
+            )
+        };
+        let ((value, narrow), (_, wide)) = (stress(&plain), stress(&uncertain));
+        assert!(
+            (wide / narrow.hypot(0.03 * value) - 1.0).abs() < 1e-2,
+            "{narrow} {wide}"
+        );
+        let measured = MeasuredForce {
+            edge: "right".into(),
+            axis: 0,
+            force: truth.force,
+            standard_deviation: 0.001 * truth.force,
+            common_deviation: 0.0,
+        };
+        assert!(!of(recorded(), vec![measured]).is_given_the_law);
+    }
+}

@@ -1,0 +1,330 @@
+//! The mesh's own error in an estimated field, from the same equations on cells half as large.
+//!
+//! ```text
+//! d = u_{h/2}(p) − u_h(p)                      at the motion p of the edges that was found
+//! M δp = −AᵀWHd/v − Gᵀd_F/σ                    what the regression makes of d, as if it were in the data
+//! e = d + S δp                                                                            [mm]
+//! G = ∇u_{h/2} + ∇(S δp)                       in the middle of a cell                       [–]
+//! ```
+//!
+//! with A, W, v, G, M of [`crate::estimation::regression`], S = ∂u/∂p, d_F the same difference of the
+//! measured forces. The difference of two meshes is at least half of the coarser one's error where the order is one,
+//! as beside a singular corner, and more of it elsewhere: ± 1.96 e covers the error.
+
+use std::collections::BTreeSet;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use crate::estimation::edges::Body;
+use crate::estimation::equations::{BodyForce, Equations, Linear};
+use crate::estimation::given::{Edge, EdgeCondition};
+use crate::estimation::regression::VarianceComponents;
+use crate::estimation::search::NearestField;
+use crate::mesh::Mesh;
+use crate::problem::corner_forces::{Hold, Share, reaction_shares};
+use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::vector::dot;
+use crate::solve::{Newton, NewtonSettings, Sum};
+
+/// Meshes with more cells are not refined.
+pub const MOST_REFINED_CELLS: usize = 25_000;
+
+const SETTINGS: NewtonSettings = NewtonSettings {
+    tolerance: 1e-8,
+    max_iterations: 20,
+};
+
+/// The mesh's own error.
+#[derive(Clone, Debug)]
+pub struct MeshError {
+    /// e of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// δp.
+    pub parameters: DVector<f64>,
+    /// H e, two numbers per marker.
+    pub markers: Vec<f64>,
+    /// G₁₁, G₁₂, G₂₁, G₂₂ of cell after cell.
+    pub gradients: Vec<[f64; 4]>,
+    /// The error of the force of each body in N, in the order of the bodies.
+    pub forces: Vec<[f64; 2]>,
+}
+
+/// The difference of the refined mesh's solution at the same motion of the edges.
+pub struct MeshDifference {
+    fine: Fine,
+    /// H d, two numbers per marker.
+    pub markers: Vec<f64>,
+    /// The difference of the force of each body.
+    forces: Vec<[f64; 2]>,
+}
+
+/// The equilibrium on the refined mesh.
+struct Fine {
+    mesh: Mesh,
+    displacement: Vec<f64>,
+    residual: Vec<f64>,
+    /// The held unknowns of each edge along each axis.
+    held: Vec<[Vec<usize>; 2]>,
+}
+
+impl Fine {
+    /// The nodes and sides of the refined mesh that a body holds.
+    fn hold(&self, body: &Body) -> Hold {
+        let nodes = [0, 1].map(|axis| -> BTreeSet<usize> {
+            let own = body.edges.iter().flat_map(|edge| &self.held[*edge][axis]);
+            own.map(|unknown| unknown / 2).collect()
+        });
+        let whole: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
+        Hold {
+            rank: body.rank,
+            sides: Hold::sides(&self.mesh, &whole),
+            nodes,
+        }
+    }
+
+    /// ∇u_{h/2} in the middle of a cell of the mesh that was refined: for a quadrilateral the mean of its four parts, which meet there.
+    fn gradient_amid(&self, coarse: usize) -> [f64; 4] {
+        let first = 4 * coarse;
+        let shape = self.mesh.shape(first);
+        let at = |cell: usize, local| self.mesh.gradient_at(&self.displacement, cell, local);
+        if shape.is_triangle() {
+            return at(first + 3, shape.centre());
+        }
+        let parts = [0, 1, 2, 3].map(|part| at(first + part, shape.natural_nodes()[2]));
+        [0, 1, 2, 3].map(|component| parts.iter().map(|part| part[component] / 4.0).sum())
+    }
+}
+
+impl NearestField<'_> {
+    /// The difference of a solution on cells half as large; `None` where the mesh is too large to be refined, or the
+    /// refined one has no equilibrium.
+    pub fn mesh_difference(&self, edges: &[Edge]) -> Option<MeshDifference> {
+        let mesh = self.equations.task.specimen.mesh;
+        if mesh.cell_count() > MOST_REFINED_CELLS {
+            return None;
+        }
+        let fine = self.refined(mesh, edges)?;
+        let observations = self.equations.task.observations;
+        let nearby = observations.interpolation.multiply(&self.field);
+        let places = observations.places.iter();
+        let markers =
+            places.flat_map(|place| fine.mesh.displacement_at(&fine.displacement, *place));
+        Some(MeshDifference {
+            markers: markers.zip(nearby).map(|(a, b)| a - b).collect(),
+            forces: self.force_differences(&fine),
+            fine,
+        })
+    }
+
+    /// The mesh's own error, where the difference is known.
+    pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+        let mesh = self.equations.task.specimen.mesh;
+        let found = self.mesh_difference(edges)?;
+        let target = self
+            .equations
+            .mesh_target(&found, &self.linear, &self.variances);
+        let change = &self.fit.covariance * target;
+        let MeshDifference {
+            fine,
+            markers: at_markers,
+            forces,
+        } = found;
+        let there = fine.mesh.displacement_on(&fine.displacement, mesh);
+        let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
+        let along = |values: &[f64], slopes: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let whole = values.iter().enumerate();
+            whole.map(|(row, value)| value + slopes(row)).collect()
+        };
+        let columns = || self.linear.sensitivities.iter().zip(change.iter());
+        let adapted: Vec<f64> = (0..difference.len())
+            .map(|row| columns().map(|(column, change)| column[row] * change).sum())
+            .collect();
+        let gradient = |cell: usize| {
+            let after = mesh.gradient_at(&adapted, cell, mesh.shape(cell).centre());
+            let fine = fine.gradient_amid(cell);
+            [0, 1, 2, 3].map(|component| fine[component] + after[component])
+        };
+        let moved = &self.linear.design * &change;
+        Some(MeshError {
+            displacement: along(&difference, &|row| adapted[row]),
+            gradients: (0..mesh.cell_count())
+                .into_par_iter()
+                .map(gradient)
+                .collect(),
+            markers: along(&at_markers, &|row| moved[row]),
+            forces,
+            parameters: change,
+        })
+    }
+
+    /// The same edges and law on cells half as large.
+    fn refined(&self, mesh: &Mesh, edges: &[Edge]) -> Option<Fine> {
+        let fine = mesh.refined();
+        let mut coarse = vec![true; self.field.len()];
+        for unknown in self.equations.newton.free() {
+            coarse[*unknown] = false;
+        }
+        let held: Vec<_> = edges
+            .iter()
+            .map(|edge| held_unknowns(mesh, &fine, edge, &coarse))
+            .collect();
+        let mut fixed = vec![false; 2 * fine.nodes.len()];
+        for unknown in held.iter().flatten().flatten() {
+            fixed[*unknown] = true;
+        }
+        let thickness = self.equations.task.specimen.thickness;
+        let energy = SheetEnergy::of_mesh(self.equations.law.clone(), &fine, thickness);
+        let forces = match &self.equations.body {
+            Some(_) => BodyForce::new(&fine, &fixed).forces(self.body_coefficients(), fixed.len()),
+            None => vec![0.0; fixed.len()],
+        };
+        let pushed = Sum::with_forces(&energy, &forces);
+        let mut displacement = mesh.displacement_on(&self.field, &fine);
+        let mut residual = vec![0.0; displacement.len()];
+        let describe = |cell: usize| fine.describe_cell(cell);
+        let solved = Newton::new(&pushed, &fixed).and_then(|mut newton| {
+            newton.solve(
+                &pushed,
+                &mut displacement,
+                &mut residual,
+                SETTINGS,
+                &describe,
+            )
+        });
+        solved.ok()?;
+        Some(Fine {
+            mesh: fine,
+            displacement,
+            residual,
+            held,
+        })
+    }
+
+    fn body_coefficients(&self) -> &[f64] {
+        let count = self
+            .equations
+            .body
+            .as_ref()
+            .map_or(0, |body| body.columns().len());
+        &self.parameters[self.parameters.len() - count..]
+    }
+
+    /// d_F of each body.
+    fn force_differences(&self, fine: &Fine) -> Vec<[f64; 2]> {
+        let reactions = self.reactions();
+        let bodies = &self.equations.bodies;
+        let holds: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
+        let holds: Vec<&Hold> = holds.iter().collect();
+        let shares = reaction_shares(&fine.mesh, &holds).into_iter().zip(bodies);
+        let difference = |(shares, own): ([Vec<Share>; 2], &Body)| {
+            let there = Body {
+                shares,
+                ..own.clone()
+            };
+            let (before, after) = (own.force(&reactions), there.force(&fine.residual));
+            [0, 1].map(|axis| after[axis] - before[axis])
+        };
+        shares.map(difference).collect()
+    }
+}
+
+impl Equations<'_> {
+    /// −AᵀWHd/v − Gᵀd_F/σ.
+    pub fn mesh_target(
+        &self,
+        difference: &MeshDifference,
+        linear: &Linear,
+        variances: &VarianceComponents,
+    ) -> DVector<f64> {
+        let mut target = self.target_of(&difference.markers, linear, variances);
+        let measured = self.task.knowledge.measured_forces().iter().enumerate();
+        for (row, measured) in measured {
+            let own = self.bodies.iter().zip(&difference.forces);
+            let own = own.filter(|(body, _)| body.name == measured.edge);
+            let off: f64 = own.map(|(_, force)| force[measured.axis]).sum();
+            let slopes = linear.force_rows.0.row(row).transpose();
+            target -= slopes * (off / measured.standard_deviation);
+        }
+        target
+    }
+
+    /// −AᵀWd/v of displacements d at the markers.
+    pub fn target_of(
+        &self,
+        displacements: &[f64],
+        linear: &Linear,
+        variances: &VarianceComponents,
+    ) -> DVector<f64> {
+        let weights = &self.task.observations.weights;
+        let weighted = displacements.iter().enumerate();
+        let weighted =
+            weighted.map(|(row, d)| -variances.weight(weights, row) * d / variances.variance);
+        let weighted = DVector::from_iterator(displacements.len(), weighted);
+        linear.design.tr_mul(&weighted)
+    }
+}
+
+/// The unknowns of a refined mesh held by an edge: those between nodes of the edge whose unknowns are held.
+fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<usize>; 2] {
+    if edge.segment.inside {
+        return [0, 1].map(|axis| held_inside(mesh, fine, edge, axis, held));
+    }
+    let mut boundary: Vec<usize> = fine.boundary().iter().flatten().copied().collect();
+    boundary.sort_unstable();
+    boundary.dedup();
+    let pairs: Vec<[usize; 2]> = edge
+        .segment
+        .nodes
+        .windows(2)
+        .map(|pair| [pair[0], pair[1]])
+        .collect();
+    let on =
+        |node: usize, ends: [usize; 2]| is_near(fine.nodes[node], ends.map(|end| mesh.nodes[end]));
+    [0, 1].map(|axis| {
+        let both = |pair: &[usize; 2]| pair.iter().all(|node| held[2 * node + axis]);
+        let holds = |node: &&usize| pairs.iter().any(|pair| both(pair) && on(**node, *pair));
+        let nodes = boundary.iter().filter(holds);
+        match edge.condition {
+            EdgeCondition::Free => Vec::new(),
+            _ => nodes.map(|node| 2 * node + axis).collect(),
+        }
+    })
+}
+
+/// Whether a place lies on the straight line between two others, but for a tenth of its length.
+fn is_near(place: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
+    const NEAR: f64 = 0.1;
+    let side = [to[0] - from[0], to[1] - from[1]];
+    let square = dot(&side, &side);
+    let along = [place[0] - from[0], place[1] - from[1]];
+    let share = (dot(&along, &side) / square).clamp(0.0, 1.0);
+    let off = [0, 1].map(|axis| along[axis] - share * side[axis]);
+    dot(&off, &off) <= NEAR * NEAR * square
+}
+
+/// The unknowns of a refined mesh along an axis held by a pad on the sheet: those in cells and on sides of cells all of whose nodes are held.
+fn held_inside(mesh: &Mesh, fine: &Mesh, edge: &Edge, axis: usize, held: &[bool]) -> Vec<usize> {
+    let nodes = edge.segment.nodes.iter().copied();
+    let pad: BTreeSet<usize> = nodes.filter(|node| held[2 * node + axis]).collect();
+    let mut found = BTreeSet::new();
+    for coarse in 0..mesh.cell_count() {
+        let own = mesh.cell(coarse);
+        let parts = (4 * coarse..4 * coarse + 4).flat_map(|part| fine.cell(part));
+        let sides = mesh.shape(coarse).edges();
+        let sides = sides.iter().map(|side| [own[side[0]], own[side[1]]]);
+        let sides: Vec<_> = sides
+            .filter(|ends| ends.iter().all(|end| held[2 * end + axis]))
+            .collect();
+        let whole = own.iter().all(|node| held[2 * node + axis])
+            && own.iter().any(|node| pad.contains(node));
+        let on_side = |node: usize| {
+            let mut near = sides
+                .iter()
+                .filter(|ends| ends.iter().any(|end| pad.contains(end)));
+            near.any(|ends| is_near(fine.nodes[node], ends.map(|end| mesh.nodes[end])))
+        };
+        found.extend(parts.filter(|node| whole || on_side(**node)).copied());
+    }
+    found.into_iter().map(|node| 2 * node + axis).collect()
+}

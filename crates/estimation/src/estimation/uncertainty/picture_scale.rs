@@ -1,0 +1,189 @@
+//! The scale of the picture of the deformed specimen, which differs from that of the specimen at rest: a sheet that
+//! comes nearer to its camera by a thousandth of the distance appears to have grown by a thousandth.
+//!
+//! ```text
+//! d = H u + e q,   q = X + H u − c                e the relative error of the scale, c the middle of the markers
+//! M ∂p/∂e = AᵀWq/v
+//! Cov(p) = C + σₑ² (∂p/∂e)(∂p/∂e)ᵀ
+//! ```
+//!
+//! with A, W, v, M of [`crate::estimation::regression`]. A scale error resembles a uniform stretch, so that data which are explained do
+//! not show it.
+
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::estimation::equations::Equations;
+use crate::estimation::search::NearestField;
+use crate::solve::vector::dot;
+
+/// The changes due to an error of the scale, per relative error.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct ScaleChange {
+    /// The force of each body along x and y in N, in the order of the forces.
+    pub forces: Vec<[f64; 2]>,
+}
+
+impl Equations<'_> {
+    /// q of a field, two numbers per marker, in mm.
+    pub fn magnified(&self, field: &[f64]) -> Vec<f64> {
+        let observations = self.task.observations;
+        let moved = observations.interpolation.multiply(field);
+        let places = observations.places.iter().flatten();
+        let mut places: Vec<f64> = places.zip(moved).map(|(x, u)| x + u).collect();
+        let count = observations.places.len() as f64;
+        let middle = [0, 1].map(|axis| places.iter().skip(axis).step_by(2).sum::<f64>() / count);
+        let own = places.iter_mut().enumerate();
+        own.for_each(|(row, place)| *place -= middle[row % 2]);
+        places
+    }
+}
+
+impl NearestField<'_> {
+    /// q as a column.
+    pub(in crate::estimation) fn magnification(&self) -> DMatrix<f64> {
+        let column = self.equations.magnified(&self.field);
+        DMatrix::from_vec(column.len(), 1, column)
+    }
+
+    /// ∂p/∂e; must be called before the covariance includes the noise found, because it has to be M⁻¹.
+    pub(in crate::estimation) fn scale_answer(&self) -> DVector<f64> {
+        let column = self.equations.magnified(&self.field);
+        let target = self
+            .equations
+            .target_of(&column, &self.linear, &self.variances);
+        -(&self.fit.covariance * target)
+    }
+
+    /// The changes that follow from ∂p/∂e.
+    pub(in crate::estimation) fn scale_change(
+        &self,
+        answer: &DVector<f64>,
+    ) -> Result<ScaleChange, Error> {
+        let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
+        let along = |body: usize, axis: usize| -> Result<f64, Error> {
+            let (_, row) = self.grip_of(body, axis, &slopes)?;
+            Ok(dot(&row, answer.as_slice()))
+        };
+        let bodies = 0..self.equations.bodies.len();
+        let forces = bodies.map(|body| Ok([along(body, 0)?, along(body, 1)?]));
+        Ok(ScaleChange {
+            forces: forces.collect::<Result<_, Error>>()?,
+        })
+    }
+
+    /// Adds the variance of the scale to the covariance.
+    pub(in crate::estimation) fn take_scale(&mut self, answer: &DVector<f64>) {
+        let deviation = self.equations.task.knowledge.scale_deviation;
+        self.fit.covariance += answer * answer.transpose() * (deviation * deviation);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::estimation::tests::{SIZE, Truth, specimen, with_grips};
+    use crate::estimation::{
+        Alternative, Answer, EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, estimate,
+    };
+    use crate::markers::Marker;
+    use crate::mesh::{CellShape, Mesh};
+
+    const NOISE: f64 = 0.1;
+
+    /// The estimate of a plate in pictures that show it larger by a relative `error`.
+    fn seen(truth: &Truth, error: f64, deviation: f64, seed: u64) -> FieldEstimate {
+        let mut markers = truth.markers(NOISE, seed);
+        let moved = |marker: &Marker, axis: usize| {
+            let middle = 0.5 * SIZE[axis];
+            error * (marker.place[axis] + marker.displacement[axis] - middle)
+        };
+        for marker in &mut markers {
+            let by = [moved(marker, 0), moved(marker, 1)];
+            (0..2).for_each(|axis| marker.displacement[axis] += by[axis]);
+        }
+        let mesh = Mesh::plate(SIZE, [20, 10], CellShape::Quad9);
+        let knowledge = Knowledge {
+            scale_deviation: deviation,
+            ..with_grips(EdgeCondition::Rigid)
+        };
+        estimate(&specimen(&mesh), &markers, &knowledge).unwrap()
+    }
+
+    fn right(found: &FieldEstimate) -> usize {
+        let own = found.forces.iter().position(|own| own.edge == "right");
+        own.unwrap()
+    }
+
+    #[test]
+    fn the_change_that_is_told_is_that_of_a_larger_picture() {
+        let truth = Truth::new();
+        let [plain, larger] = [0.0, 1e-3].map(|error| seen(&truth, error, 0.0, 2));
+        let index = right(&plain);
+        let change = larger.forces[index].force[0].value - plain.forces[index].force[0].value;
+        let told = 1e-3 * plain.scale_change.forces[index][0];
+        assert!((change / told - 1.0).abs() < 0.05, "{change} {told}");
+    }
+
+    /// 0.3 %, as likely smaller as larger: most intervals miss the force where nothing is said of it.
+    #[test]
+    fn intervals_hold_a_scale_that_is_stated() {
+        let truth = Truth::new();
+        let held = |deviation: f64| {
+            let errors = [-3e-3, 3e-3].into_iter();
+            let cases = errors.flat_map(|error| (0..4).map(move |seed| (error, seed)));
+            let holds = cases.filter(|(error, seed)| {
+                let found = seen(&truth, *error, deviation, *seed);
+                let [low, high] = found.forces[right(&found)].force[0].interval;
+                low < truth.force && truth.force < high
+            });
+            holds.count()
+        };
+        let (without, with) = (held(0.0), held(3e-3));
+        assert!(without < 4 && with == 8, "{without} {with}");
+    }
+
+    /// A stated scale explains what it makes of the markers and of a measured force.
+    #[test]
+    fn a_scale_that_is_stated_and_there_is_explained() {
+        let truth = Truth::new();
+        let mut markers = truth.markers(0.01, 3);
+        for marker in &mut markers {
+            for axis in [0, 1] {
+                let place = marker.place[axis] + marker.displacement[axis];
+                marker.displacement[axis] += 5e-3 * (place - 0.5 * SIZE[axis]);
+            }
+        }
+        let mesh = Mesh::plate(SIZE, [20, 10], CellShape::Quad9);
+        let answer = |scale_deviation: f64| {
+            let measured = MeasuredForce {
+                edge: "right".into(),
+                axis: 0,
+                force: truth.force,
+                standard_deviation: 0.01 * truth.force,
+                common_deviation: 0.0,
+            };
+            let knowledge = Knowledge {
+                forces: vec![measured],
+                scale_deviation,
+                ..with_grips(EdgeCondition::Rigid)
+            };
+            let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            found.verdict.answer
+        };
+        assert_eq!(answer(0.0), Answer::NotExplained);
+        assert_ne!(answer(5e-3), Answer::NotExplained);
+    }
+
+    #[test]
+    fn a_scale_that_is_far_off_is_named() {
+        let found = seen(&Truth::new(), 0.05, 0.0, 1);
+        assert_eq!(found.verdict.answer, Answer::NotExplained);
+        assert_eq!(
+            found.verdict.trials[0].alternative,
+            Alternative::Scale,
+            "{:?}",
+            found.verdict.trials
+        );
+    }
+}

@@ -1,0 +1,117 @@
+//! Free edges where only the markers show the position of the specimen's edge, as considered parameters ([`super::considered`]).
+//!
+//! ```text
+//! sₖ = ∂u/∂dₖ                                    d the distance of edge k outside of the mesh's ([`super::moved_edges`])
+//! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each edge lies as probably anywhere from nothing to the gap g farther out
+//! ```
+
+use nalgebra::DMatrix;
+
+use crate::estimation::given::Edge;
+use crate::estimation::search::NearestField;
+
+impl NearestField<'_> {
+    /// The forces of the strips beside the free edges in N/mm, and Σ in mm²; nothing where the edges are known.
+    pub(super) fn unknown_places(&self, edges: &[Edge]) -> (Vec<Vec<f64>>, DMatrix<f64>) {
+        let Some(gap) = self.equations.task.knowledge.edge_gap else {
+            return (Vec::new(), DMatrix::zeros(0, 0));
+        };
+        let strips = self.strips(edges);
+        let square = |i, j| gap * gap / if i == j { 3.0 } else { 4.0 };
+        let squares = DMatrix::from_fn(strips.len(), strips.len(), square);
+        (strips, squares)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::estimation::tests::{SIZE, Truth, law, specimen, with_grips};
+    use crate::estimation::{Answer, EdgeCondition, FieldEstimate, Knowledge, estimate};
+    use crate::markers::Marker;
+    use crate::material::sheet::{Kinematics, PlaneTensor};
+    use crate::mesh::{CellShape, Mesh, Outline};
+
+    const GAP: f64 = 2.0;
+
+    /// A mesh whose free edges lie farther in than those of the plate.
+    fn narrow([bottom, top]: [f64; 2]) -> Mesh {
+        let [length, width] = SIZE;
+        let (low, high) = (bottom, width - top);
+        let line = vec![[0.0, low], [length, low], [length, high], [0.0, high]];
+        let outline = Outline::of_lines(vec![line]).unwrap();
+        outline.mesh(2.0, CellShape::Triangle6)
+    }
+
+    /// The estimate by markers amid the plate.
+    fn found(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
+        let markers = truth.markers(0.3, seed).into_iter();
+        let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.place[1]);
+        let knowledge = Knowledge {
+            edge_gap: gap,
+            ..with_grips(EdgeCondition::Rigid)
+        };
+        let markers: Vec<Marker> = markers.filter(amid).collect();
+        estimate(&specimen(mesh), &markers, &knowledge).unwrap()
+    }
+
+    /// The share of the stresses P₁₁ beside the free edges that ± 1.96 standard errors hold.
+    fn held(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
+        const BESIDE: f64 = 8.0;
+        let (mut inside, mut all) = (0, 0);
+        for (cell, own) in found.cells.iter().enumerate() {
+            let place = mesh.place(cell, mesh.shape(cell).centre());
+            if (BESIDE..SIZE[1] - BESIDE).contains(&place[1]) {
+                continue;
+            }
+            let (there, local) = truth.mesh.locate(place);
+            let gradient = truth.mesh.gradient_at(truth.field(), there, local);
+            let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
+            let off = own.first_piola_kirchhoff_stress[0] - law().stress(&kinematics).1[0];
+            inside += u32::from(off.abs() <= 1.96 * own.stress_error[0]);
+            all += 1;
+        }
+        f64::from(inside) / f64::from(all)
+    }
+
+    #[test]
+    fn errors_of_stress_hold_edges_that_lie_anywhere_up_to_the_gap() {
+        let truth = Truth::new();
+        for off in [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [2.0, 0.0]] {
+            let mesh = narrow(off);
+            let share = |gap: Option<f64>| {
+                let of_seed = |seed| {
+                    let found = found(&truth, &mesh, gap, seed);
+                    assert_ne!(found.verdict.answer, Answer::NotExplained);
+                    held(&truth, &mesh, &found)
+                };
+                (0..4).map(of_seed).sum::<f64>() / 4.0
+            };
+            let (known, unknown) = (share(None), share(Some(GAP)));
+            assert!(unknown > 0.93, "{off:?}: {unknown}");
+            // Else there is nothing to hold.
+            assert!(off != [2.0, 2.0] || known < 0.8, "{off:?}: {known}");
+        }
+    }
+
+    /// The field is that through the edges of the mesh, and so is the force.
+    #[test]
+    fn values_stay_and_only_errors_grow() {
+        let (truth, mesh) = (Truth::new(), narrow([1.0, 1.0]));
+        let [plain, considered] = [None, Some(GAP)].map(|gap| found(&truth, &mesh, gap, 1));
+        assert_eq!(plain.displacement, considered.displacement);
+        let errors = plain
+            .displacement_error
+            .iter()
+            .zip(&considered.displacement_error);
+        assert!(errors.into_iter().all(|(a, b)| *b >= *a * (1.0 - 1e-9)));
+        for (a, b) in plain.cells.iter().zip(&considered.cells) {
+            assert!((0..4).all(|i| b.stress_error[i] >= a.stress_error[i] * (1.0 - 1e-9)));
+        }
+        let mean = |found: &FieldEstimate| {
+            let errors = found.cells.iter().map(|own| own.stress_error[0]);
+            errors.sum::<f64>() / found.cells.len() as f64
+        };
+        let growth = mean(&considered) / mean(&plain);
+        assert!((1.1..10.0).contains(&growth), "{growth}");
+    }
+}

@@ -1,0 +1,229 @@
+//! The laws and the shipped cards by name.
+
+use super::law::HyperelasticLaw;
+use super::marlow::{ExponentialCurve, TableCurve};
+use super::parameters::{CardEntries, Parameters, StrainMeasure, StressMeasure};
+use super::{
+    ArrudaBoyce, CompressibleNeoHooke, FungDemiray, Gent, HolzapfelGasserOgden, LinearElastic,
+    MooneyRivlin, NeoHooke, Network, Ogden, OgdenHill, Polynomial, SaintVenantKirchhoff,
+    VerondaWestmann, Yeoh,
+};
+
+/// A file of test data by its stem.
+macro_rules! data {
+    ($stem:literal) => {
+        (
+            concat!("data/", $stem, ".csv"),
+            include_str!(concat!("../../../../materials/data/", $stem, ".csv")),
+        )
+    };
+}
+
+/// A card by its name.
+macro_rules! card {
+    ($name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../../../materials/", $name, ".toml")),
+        )
+    };
+}
+
+/// A law by name.
+#[derive(Debug)]
+pub struct Law {
+    /// Its name on a card.
+    pub name: &'static str,
+    /// Its energy.
+    pub formula: &'static str,
+    /// Builds the law from the parameters of a card.
+    pub read: fn(&Parameters) -> Box<dyn HyperelasticLaw>,
+}
+
+impl Law {
+    /// The law with a name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        LAWS.iter().find(|law| law.name == name)
+    }
+
+    /// The law with parameter values in internal units, and the entries that it read.
+    pub fn with_values(
+        &self,
+        values: &[f64],
+        stress_measure: StressMeasure,
+        strain_measure: StrainMeasure,
+    ) -> (Box<dyn HyperelasticLaw>, CardEntries) {
+        let parameters = Parameters::of_values(values, stress_measure, strain_measure);
+        let law = (self.read)(&parameters);
+        (law, parameters.finish())
+    }
+}
+
+/// Every law.
+pub const LAWS: &[Law] = &[
+    Law {
+        name: "neo-hooke",
+        formula: "Ψ = C₁₀ (I₁ − 3)",
+        read: NeoHooke::from_card,
+    },
+    Law {
+        name: "mooney-rivlin",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3)",
+        read: MooneyRivlin::from_card,
+    },
+    Law {
+        name: "mooney-rivlin-3",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₁₁ (I₁ − 3)(I₂ − 3)",
+        read: Polynomial::from_card_3,
+    },
+    Law {
+        name: "mooney-rivlin-5",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₂₀ (I₁ − 3)² + C₁₁ (I₁ − 3)(I₂ − 3) + C₀₂ (I₂ − 3)²",
+        read: Polynomial::from_card_5,
+    },
+    Law {
+        name: "yeoh",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₂₀ (I₁ − 3)² + C₃₀ (I₁ − 3)³",
+        read: Yeoh::from_card,
+    },
+    Law {
+        name: "ogden-1",
+        formula: OGDEN,
+        read: Ogden::from_card::<1>,
+    },
+    Law {
+        name: "ogden-2",
+        formula: OGDEN,
+        read: Ogden::from_card::<2>,
+    },
+    Law {
+        name: "ogden-3",
+        formula: OGDEN,
+        read: Ogden::from_card::<3>,
+    },
+    Law {
+        name: "ogden-4",
+        formula: OGDEN,
+        read: Ogden::from_card::<4>,
+    },
+    Law {
+        name: "gent",
+        formula: "Ψ = −½ μ Jₘ ln(1 − (I₁ − 3)/Jₘ)",
+        read: Gent::from_card,
+    },
+    Law {
+        name: "arruda-boyce",
+        formula: "Ψ = μ Σ Cᵢ λₘ^(2 − 2i) (I₁ⁱ − 3ⁱ), five terms",
+        read: ArrudaBoyce::from_card,
+    },
+    Law {
+        name: "fung-demiray",
+        formula: "Ψ = μ/(2 b) (e^(b (I₁ − 3)) − 1)",
+        read: FungDemiray::from_card,
+    },
+    Law {
+        name: "veronda-westmann",
+        formula: "Ψ = C (e^(β (I₁ − 3)) − 1) − ½ C β (I₂ − 3)",
+        read: VerondaWestmann::from_card,
+    },
+    Law {
+        name: "marlow-exponential",
+        formula: "Ψ(I₁) from the tension curve A (e^(b ε) − 1)",
+        read: ExponentialCurve::from_card,
+    },
+    Law {
+        name: MARLOW_TABLE,
+        formula: "Ψ(I₁) from a measured tension curve",
+        read: TableCurve::from_card,
+    },
+    Law {
+        name: "holzapfel-gasser-ogden",
+        formula: "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
+        read: HolzapfelGasserOgden::from_card,
+    },
+    Law {
+        name: "neo-hooke-simo-pister",
+        formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/2 ln² J, Λ = 2μν/(1 − 2ν)",
+        read: CompressibleNeoHooke::<true>::from_card,
+    },
+    Law {
+        name: "neo-hooke-ciarlet",
+        formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/4 (J² − 1 − 2 ln J), Λ = 2μν/(1 − 2ν)",
+        read: CompressibleNeoHooke::<false>::from_card,
+    },
+    Law {
+        name: "blatz-ko",
+        formula: "W = μ/2 f (I₁ − 3 + (J^(−2β) − 1)/β) + μ/2 (1 − f) (I₂/J² − 3 + (J^(2β) − 1)/β), β = ν/(1 − 2ν)",
+        read: OgdenHill::blatz_ko_from_card,
+    },
+    Law {
+        name: "ogden-hill-1",
+        formula: OGDEN_HILL,
+        read: OgdenHill::from_card::<1>,
+    },
+    Law {
+        name: "ogden-hill-2",
+        formula: OGDEN_HILL,
+        read: OgdenHill::from_card::<2>,
+    },
+    Law {
+        name: "ogden-hill-3",
+        formula: OGDEN_HILL,
+        read: OgdenHill::from_card::<3>,
+    },
+    Law {
+        name: "saint-venant-kirchhoff",
+        formula: "W = Λ/2 (tr E)² + μ E : E, E = (FᵀF − 1)/2, Λ = 2μν/(1 − 2ν)",
+        read: SaintVenantKirchhoff::from_card,
+    },
+    Law {
+        name: "linear-elastic",
+        formula: "W = Λ/2 (tr ε)² + μ ε : ε, ε = (H + Hᵀ)/2, Λ = 2μν/(1 − 2ν)",
+        read: LinearElastic::from_card,
+    },
+    Law {
+        name: SWELLING,
+        formula: "W/φ = G₀/(2φ₀) (λ₁² + λ₂² + λ₃² − 3 − B ln J₀) + RT/V₁ ((Q − 1) ln(1 − 1/Q) + χ (1 − 1/Q) − Q ln a)",
+        read: Network::from_card,
+    },
+];
+
+const OGDEN_HILL: &str =
+    "W = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3 + (J^(−αᵢ βᵢ) − 1)/βᵢ), βᵢ = νᵢ/(1 − 2νᵢ)";
+
+const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)";
+
+/// The law of a swollen network, of which tests alone determine too little.
+pub const SWELLING: &str = "flory-rehner";
+
+/// The law that takes a measured curve as it is, without parameters to fit.
+pub const MARLOW_TABLE: &str = "marlow-table";
+
+/// The test data behind the shipped cards: path as the cards name it, and text.
+pub const DATA: &[(&str, &str)] = &[
+    data!("pva_10_uniaxial"),
+    data!("treloar_1944_uniaxial"),
+    data!("treloar_1944_planar"),
+    data!("treloar_1944_equibiaxial"),
+    data!("meunier_2008_uniaxial"),
+    data!("meunier_2008_planar"),
+    data!("meunier_2008_equibiaxial"),
+    data!("katashima_2012_equibiaxial"),
+    data!("katashima_2012_planar_direction1"),
+    data!("katashima_2012_planar_direction2"),
+    data!("katashima_2012_unequal-biaxial_direction1"),
+    data!("katashima_2012_unequal-biaxial_direction2"),
+];
+
+/// Every shipped card: its name and its text.
+pub const CARDS: &[(&str, &str)] = &[
+    card!("pva-10"),
+    card!("pva-10-cauchy"),
+    card!("pva-10-ogden-1"),
+    card!("pva-10-yeoh"),
+    card!("treloar-ogden-3"),
+    card!("meunier-yeoh"),
+    card!("katashima-ogden-2"),
+    card!("neo-hooke"),
+    card!("mooney-rivlin"),
+];

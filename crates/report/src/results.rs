@@ -1,0 +1,260 @@
+//! Results of a study or a case as data: requirements, quantities, tables, pictures, grids.
+//!
+//! Every kind of study returns the same [`Results`]. [`Results::report`] and [`Results::json`] present the same
+//! content in the same order; `output` draws and encodes it.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::document::stored::{self, StaticText, optional_static_text, static_text};
+use crate::error::Error;
+
+mod array;
+mod block;
+mod branches;
+mod chart;
+mod check;
+mod curves;
+mod drawing;
+mod fields;
+mod fit;
+mod grid;
+mod headline;
+mod identification;
+mod json;
+pub mod locking;
+mod material;
+pub mod models;
+mod picture_style;
+mod relaxation;
+mod report;
+mod series;
+mod sheet;
+mod sheet_arrays;
+mod sheet_figures;
+pub mod small_strain;
+mod softening;
+mod state;
+pub mod strained;
+mod stress_unit;
+mod stretches;
+mod surface;
+mod viscous_stress;
+mod work;
+pub mod wrinkling;
+
+pub use array::{Array, Components};
+pub use block::{Block, Content, Figure};
+pub use branches::{is_one_of_several, one_of_several};
+pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
+pub use check::{Check, Wanted, check_lines, requirements, verdict};
+pub use curves::{comparison_chart, material_chart};
+pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
+pub use fields::{Animation, FieldFigure, Frame, Panel, Values};
+pub use fit::{fit_json, fit_picture};
+pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
+pub use headline::{Gauge, Headline, LoadedSheet};
+pub use identification::{identification_json, identification_picture};
+pub use material::Material;
+pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
+pub use relaxation::card_curves;
+pub use report::{claims, pictures};
+pub use series::{Series, csv};
+pub use sheet::Sheet;
+pub use sheet_figures::{Deformed, SheetField, sheet_figures};
+pub use state::{LocalState, cell_states, nodal_states};
+pub use stretches::{BESIDE_CORNERS, Stretches};
+pub use surface::Surface;
+pub use viscous_stress::ViscousStress;
+pub use work::work_blocks;
+
+/// A claim of the publication, and the result found here.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Claim {
+    /// The publication's words, shortened.
+    #[serde(deserialize_with = "static_text")]
+    pub claim: StaticText,
+    /// The result found here.
+    pub reproduced: String,
+}
+
+/// A model that has no solution at some of its load factors.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct End {
+    /// The model, where it ended, and why.
+    pub message: String,
+    /// Advice on what to try.
+    #[serde(deserialize_with = "optional_static_text")]
+    pub advice: Option<StaticText>,
+    /// The exit code of a command that ends with it.
+    pub exit_code: u8,
+}
+
+impl From<&Error> for End {
+    fn from(error: &Error) -> Self {
+        Self {
+            message: error.to_string(),
+            advice: error.advice(),
+            exit_code: error.exit_code(),
+        }
+    }
+}
+
+/// Results at one stretch, load factor, instant or frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// The stretch, load factor, time in s or number of the frame.
+    pub at: f64,
+    /// The quantities of every model, by names with units; `null` where a model has no solution.
+    #[serde(with = "stored::json")]
+    pub models: Map<String, Value>,
+}
+
+/// Findings of a study or a case. Stored are those that the report of all cases has, not the fields and files of the case.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Requirements, with the values found.
+    pub checks: Vec<Check>,
+    /// Claims of the publication.
+    pub claims: Vec<Claim>,
+    /// The problem that was solved, for machines.
+    #[serde(with = "stored::json")]
+    pub problem: Map<String, Value>,
+    /// The material.
+    pub material: Option<Material>,
+    /// The parameter along which the steps run: `stretch`, `load factor`, `time` or `frame`.
+    #[serde(deserialize_with = "static_text")]
+    pub along: StaticText,
+    /// The quantities of all models, step by step.
+    pub steps: Vec<Step>,
+    /// Explanations and tables. Pictures that no block places come after the last block.
+    pub blocks: Vec<Block>,
+    /// Pictures.
+    pub figures: Vec<Figure>,
+    /// How the pictures are drawn.
+    #[serde(skip)]
+    pub style: PictureStyle,
+    /// Fields of the models.
+    #[serde(skip)]
+    pub grids: Vec<GridSeries>,
+    /// Fields for readers of the report, written to other files or to none.
+    #[serde(skip)]
+    pub explored: Vec<GridSeries>,
+    /// Tables and other files beside the report: name and content.
+    #[serde(skip)]
+    pub files: Vec<(String, Content)>,
+    /// Measured times: name and seconds.
+    pub times: Vec<(String, f64)>,
+    /// Warnings about the results, each in a sentence.
+    pub warnings: Vec<String>,
+    /// Doubts about the results: a study with a doubt has not passed.
+    pub doubts: Vec<String>,
+    /// Models that ended early.
+    pub ends: Vec<End>,
+    /// The worst balance of forces and moments of all boundary value problems that were solved, relative to the largest
+    /// force or moment; `None` where none was solved.
+    pub balance: Option<f64>,
+    /// The balance of every model, by its name.
+    #[serde(with = "stored::json")]
+    pub balances: Map<String, Value>,
+    /// What the study is computed for, at a glance: [`Headline::blocks`] of a sheet. Reports and terminals begin with it.
+    pub headline: Vec<Block>,
+    /// Further figures for a terminal: how far the models agree, or everything about measured fields.
+    pub summary: String,
+}
+
+impl Outcome {
+    /// Adds the early end of a model that the study requires to reach its last step: a requirement that is not met.
+    pub fn ended(&mut self, error: &Error) {
+        let end = End::from(error);
+        let advice = end
+            .advice
+            .map_or_else(String::new, |advice| format!(" ({advice})"));
+        self.checks
+            .push(Check::end(format!("{}{advice}", end.message)));
+        self.ends.push(end);
+    }
+
+    /// The warnings as paragraphs of a report.
+    pub fn warning_paragraphs(&self) -> impl Iterator<Item = Block> {
+        let warnings = self.warnings.iter();
+        warnings.map(|warning| Block::paragraph(format!("Warning: {warning}")))
+    }
+}
+
+/// The results of a study.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Results {
+    /// The study's name, from the name of its file.
+    pub name: String,
+    /// The study's title.
+    pub title: String,
+    /// The study's kind.
+    #[serde(deserialize_with = "static_text")]
+    pub kind: StaticText,
+    /// The study's text; empty where there is none.
+    pub text: String,
+    /// The keys that the study does not state, with the defaults used.
+    pub defaults: Vec<String>,
+    /// Warnings from reading the study.
+    pub read_warnings: Vec<String>,
+    /// The findings.
+    pub outcome: Outcome,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+impl Results {
+    /// Warnings from reading the study and from its results.
+    pub fn warnings(&self) -> impl Iterator<Item = &String> {
+        self.read_warnings.iter().chain(&self.outcome.warnings)
+    }
+
+    /// The headline for a terminal.
+    pub fn headline(&self) -> String {
+        let blocks: Vec<String> = self.outcome.headline.iter().map(Block::plain).collect();
+        blocks.join("\n")
+    }
+
+    /// What follows the headline on a terminal: how far the models agree, and the requirements unless the summary judges them.
+    pub fn agreement(&self) -> String {
+        let outcome = &self.outcome;
+        let mut text = outcome.summary.clone();
+        if outcome.summary.is_empty() || !outcome.headline.is_empty() {
+            text += &check_lines(outcome.checks.iter().map(|check| (None, check)));
+        }
+        text
+    }
+
+    /// Both, as the command prints them.
+    pub fn summary(&self) -> String {
+        let parts = [self.headline(), self.agreement()];
+        let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        parts.join("\n")
+    }
+
+    /// Whether all requirements are met, no model ended early, and there is no doubt.
+    pub fn passed(&self) -> bool {
+        let Outcome {
+            checks,
+            doubts,
+            ends,
+            ..
+        } = &self.outcome;
+        checks.iter().all(Check::passed) && doubts.is_empty() && ends.is_empty()
+    }
+}
+
+/// A value as `write` has it; a dash where there is none, or NaN.
+pub fn or_dash(value: Option<f64>, write: impl FnOnce(f64) -> String) -> String {
+    let value = value.filter(|value| !value.is_nan());
+    value.map_or("–".to_owned(), write)
+}
+
+/// A limit as a person would write it.
+pub fn limit(value: f64) -> String {
+    match value.abs() {
+        small if small > 0.0 && small < 1e-3 => format!("{value:e}"),
+        _ => value.to_string(),
+    }
+}

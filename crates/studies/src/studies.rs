@@ -1,0 +1,265 @@
+//! Studies that a user runs: plates, specimens, motions, fields of markers. Each kind has a module of its own.
+
+use std::path::{Path, PathBuf};
+
+use web_time::Instant;
+
+use crate::budget::Budget;
+use crate::document::{Document, Faults, Key, Section};
+use crate::error::{Diagnostic, Error};
+use crate::material::Card;
+use crate::results::{Outcome, Results};
+use crate::solve::{Attendance, Journal};
+
+pub mod card;
+pub mod markers;
+mod models;
+pub mod motion;
+pub mod other_files;
+pub mod pictures;
+pub mod plate;
+pub mod sections;
+pub mod specimen;
+
+pub use models::{ModelKind, OneModel};
+
+/// Reports the progress of a computation, and may keep its equilibria in a journal.
+#[derive(Clone, Copy)]
+pub struct Progress<'a> {
+    told: &'a dyn Fn(&str),
+    journal: Option<&'a dyn Journal>,
+}
+
+impl<'a> Progress<'a> {
+    /// Reports to `told`.
+    pub fn to(told: &'a dyn Fn(&str)) -> Self {
+        Self {
+            told,
+            journal: None,
+        }
+    }
+
+    /// Reports nothing.
+    pub fn silent() -> Self {
+        Self::to(&|_| ())
+    }
+
+    /// The same with a journal: a computation that was interrupted resumes from the equilibria in it.
+    pub fn kept_by(self, journal: &'a dyn Journal) -> Self {
+        Self {
+            journal: Some(journal),
+            ..self
+        }
+    }
+
+    /// Reports what is being done.
+    pub fn tell(&self, what: &str) {
+        (self.told)(what);
+    }
+
+    /// For a path that reports its load factors to `reached`.
+    pub fn along<'b>(&self, reached: &'b dyn Fn(f64)) -> Attendance<'b>
+    where
+        'a: 'b,
+    {
+        Attendance {
+            journal: self.journal,
+            ..Attendance::told(reached)
+        }
+    }
+}
+
+/// A study that has been read, ready to be computed.
+pub struct PreparedStudy {
+    name: String,
+    title: String,
+    kind: &'static str,
+    text: String,
+    defaults: Vec<String>,
+    computation: Computation,
+    /// Warnings, which do not stop the work.
+    pub warnings: Vec<Diagnostic>,
+    /// The folder that the study names for its results.
+    pub folder: Option<PathBuf>,
+    /// Whether the study asks for a report.
+    pub report: bool,
+    /// What the study computes, in words.
+    pub about: String,
+    /// The number of progress reports of its computation; zero where that is not known.
+    pub progress_steps: usize,
+}
+
+/// Faults are reported before anything is computed.
+const SOUND: &str = "a study without faults";
+
+/// The computation of a study.
+pub type Computation = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
+
+/// Reads the studies of a kind.
+pub type Prepare = fn(&Section, &Path) -> Computation;
+
+/// A kind of study, without the code that computes it.
+pub struct Kind {
+    /// The key `kind` of its studies.
+    pub name: &'static str,
+    /// The text of its built-in study, whose values are the defaults.
+    pub study: &'static str,
+    /// The path of that study.
+    pub file: &'static str,
+    /// Whether `--quick` leaves it out.
+    pub slow: bool,
+}
+
+/// Words before the card's title in the title of an untitled study, by kind; untitled studies of other kinds have the title of their built-in study.
+const UNTITLED: [(&str, &str); 2] = [("specimen", "Specimen"), ("motion", "Moving plate")];
+
+impl Kind {
+    /// Reads a study of this kind with `prepare`, within a budget.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault.
+    pub fn read(
+        &self,
+        prepare: Prepare,
+        file: &Path,
+        text: &str,
+        budget: Budget,
+    ) -> Result<PreparedStudy, Error> {
+        let read = self.read_with(file, text, budget, prepare)?;
+        Ok(PreparedStudy {
+            name: name(file),
+            title: read.title,
+            kind: self.name,
+            text: text.to_owned(),
+            defaults: read.defaults,
+            computation: read.made,
+            warnings: read.warnings,
+            folder: None,
+            report: true,
+            about: format!("a study of the kind {}", self.name),
+            progress_steps: 0,
+        })
+    }
+
+    /// The value that `read` returns for a study without faults.
+    fn load<T>(
+        &self,
+        file: &Path,
+        text: &str,
+        budget: Budget,
+        read: impl FnOnce(&Section, &Path) -> Option<T>,
+    ) -> Result<Loaded<T>, Error> {
+        let read = self.read_with(file, text, budget, read)?;
+        Ok(Loaded {
+            title: read.title,
+            made: read.made.expect(SOUND),
+            defaults: read.defaults,
+            warnings: read.warnings,
+        })
+    }
+
+    /// The keys that are looked up when a text is read.
+    pub fn keys(&self, prepare: Prepare, text: &str) -> Vec<Key> {
+        let faults = Faults::default();
+        let defaults = Document::parse(self.file, self.study, &faults);
+        let document = Document::parse("", text, &faults);
+        let root = document.root(Some(&defaults), &faults);
+        root.text("kind");
+        self.title(&root, text, Path::new("."));
+        drop(prepare(&root, Path::new(".")));
+        faults.keys()
+    }
+
+    /// The title of the study: for a specimen or a motion without a title, that of its material; for the others, that of their built-in study.
+    fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
+        let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.name) else {
+            return root.heading("title");
+        };
+        root.own_heading("title").unwrap_or_else(|| {
+            // Faults of the card are reported where the study is read.
+            let faults = Faults::default();
+            let defaults = Document::parse(self.file, self.study, &faults);
+            let document = Document::parse("", text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            let card = Card::load(&root.section("material").text("card"), folder);
+            card.map_or_else(|_| (*what).to_owned(), |card| card.title_of(what))
+        })
+    }
+
+    /// Reads a study of this kind with `read`.
+    fn read_with<T>(
+        &self,
+        file: &Path,
+        text: &str,
+        budget: Budget,
+        read: impl FnOnce(&Section, &Path) -> T,
+    ) -> Result<Loaded<T>, Error> {
+        let folder = file.parent().unwrap_or(Path::new("."));
+        let file = file.display().to_string();
+        let faults = Faults::within(budget);
+        let (title, made) = {
+            let defaults = Document::parse(self.file, self.study, &faults);
+            let document = Document::parse(&file, text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            root.text("kind");
+            let title = self.title(&root, text, folder);
+            let made = read(&root, folder);
+            root.unknown_keys();
+            (title, made)
+        };
+        let defaults = faults.defaults();
+        let warnings = faults.finish()?;
+        Ok(Loaded {
+            title,
+            made,
+            defaults,
+            warnings,
+        })
+    }
+}
+
+/// The name of a study: that of its file, without the extension.
+pub fn name(file: &Path) -> String {
+    let stem = file.file_stem();
+    stem.map_or_else(String::new, |stem| stem.to_string_lossy().into())
+}
+
+/// A study that was read.
+pub struct Loaded<T> {
+    /// Its title.
+    pub title: String,
+    /// The value that its reader returned.
+    pub made: T,
+    /// The keys that it does not state, with the defaults used.
+    pub defaults: Vec<String>,
+    /// Warnings.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl PreparedStudy {
+    /// Values of specimen, material and load that were used because the study does not state them, as `plate.length = "150 mm"`.
+    pub fn physical_defaults(&self) -> impl Iterator<Item = &str> {
+        const PHYSICAL: [&str; 3] = ["material.", "plate.", "load."];
+        let is_physical = |said: &&str| PHYSICAL.iter().any(|table| said.starts_with(table));
+        self.defaults.iter().map(String::as_str).filter(is_physical)
+    }
+
+    /// Computes the study.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when a model has no solution.
+    pub fn compute(self, progress: Progress) -> Result<Results, Error> {
+        let start = Instant::now();
+        let outcome = (self.computation)(progress)?;
+        Ok(Results {
+            name: self.name,
+            title: self.title,
+            kind: self.kind,
+            text: self.text,
+            defaults: self.defaults,
+            read_warnings: self.warnings.iter().map(ToString::to_string).collect(),
+            outcome,
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+}

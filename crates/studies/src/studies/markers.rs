@@ -1,0 +1,328 @@
+//! From files of measured displacements to a field that satisfies the physics.
+//!
+//! ```text
+//! FIELD ─markers─▶ frames ─────┐
+//! mesh, outline or markers ───┼─▶ MarkerStudy ─estimate─▶ one FieldEstimate per frame
+//! conditions.toml ────────────┘
+//! ```
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::error::{Diagnostic, Error};
+use crate::estimation::{
+    FieldEstimate, Knowledge, RegressedLaw, Specimen, UncertainLaw, estimate, name_parts, transfer,
+};
+use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
+use crate::material::softened_law::check_memory;
+use crate::material::{Card, HyperelasticLaw};
+use crate::mesh::Mesh;
+use crate::results::locking;
+
+mod alike;
+mod area;
+mod computed;
+mod conditions;
+mod doubts;
+mod edge_place;
+mod figures;
+mod force_signs;
+mod force_words;
+mod frame_agreement;
+mod gross_errors;
+pub mod joint;
+mod json;
+mod machine;
+mod mistakes;
+mod noise;
+mod of_frames;
+mod quantities;
+mod reading;
+mod refined;
+mod report;
+mod request;
+mod scale;
+mod specimen_file;
+mod specimen_mesh;
+mod tables;
+mod verdict;
+pub mod written;
+
+pub use alike::ComparedFrames;
+pub use area::Area;
+pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
+pub use machine::{ForceColumn, FrameForces};
+use of_frames::{OfFrame, once};
+pub use request::{MeshSource, Request};
+pub use specimen_file::SpecimenFile;
+use specimen_mesh::{SpecimenMesh, mesh};
+pub use verdict::worst as worst_answer;
+
+/// A field that was read, with all data for its correction.
+#[derive(Clone, Debug)]
+pub struct MarkerStudy {
+    /// The material.
+    pub card: Card,
+    /// Thickness at rest in mm.
+    pub thickness: f64,
+    /// The specimen's mesh.
+    pub mesh: Mesh,
+    /// Size of its cells in mm, where they were made.
+    pub cell_size: Option<f64>,
+    /// The origin of the mesh, in words.
+    pub mesh_origin: String,
+    /// The mesh that the field came on, where it is brought onto another one: then it is a computed field without
+    /// noise, see [`transfer`].
+    pub coarse: Option<Mesh>,
+    /// The markers on the mesh.
+    pub series: MarkerSeries,
+    /// How the files were understood.
+    pub understood: Understood,
+    /// What is known besides the displacements.
+    pub conditions: Conditions,
+    /// The law with parameters that are found with the field, if there are any.
+    pub regressed: Option<RegressedLaw>,
+    /// Warnings.
+    pub warnings: Vec<Diagnostic>,
+    /// Doubts about the figures of all frames.
+    pub doubts: Vec<Diagnostic>,
+    /// Where only the markers show the specimen's edge: how far outside of them it may lie, in mm. The intervals of forces include this.
+    pub unknown_gap: Option<f64>,
+}
+
+/// The warnings about a card on a mesh.
+fn of_material(card: &Card, mesh: &Mesh) -> impl Iterator<Item = Diagnostic> {
+    let left_out = card.viscosity.left_out();
+    let left_out = left_out.map(|told| {
+        Diagnostic::warning("", told)
+            .hint("use a card fitted to tests at the rate of this experiment")
+    });
+    too_stiff(&*card.law, mesh).into_iter().chain(left_out)
+}
+
+/// The warning about a mesh whose cells lock.
+fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
+    let reason = locking::reason(law).filter(|_| locking::locks(mesh))?;
+    let message = format!("{reason}: stresses are too large");
+    let hint = "use quadratic cells, such as `--cells triangle6`";
+    Some(Diagnostic::warning("", message).hint(hint))
+}
+
+impl MarkerStudy {
+    /// Reads everything.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the faults and their remedies.
+    pub fn prepare(request: Request) -> Result<Self, Error> {
+        let card = Card::load(&request.material, Path::new("."))?;
+        Self::prepare_with(card, request)
+    }
+
+    /// Reads everything but the material, which is that of a card such as [`Card::of_law`] makes.
+    ///
+    /// # Errors
+    /// As [`Self::prepare`].
+    pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
+        check_memory(&*card.law, "a correction of measured fields")?;
+        let mut field = read(&request.files, &request.reading)?;
+        let told = request
+            .conditions
+            .take_forces(request.forces.as_deref(), &field.series)?;
+        field.warnings.extend(told);
+        field.warnings.extend(card.changed_since_fit());
+        let SpecimenMesh {
+            mut mesh,
+            cell_size,
+            origin,
+            mut warnings,
+            mut doubts,
+            unknown_gap,
+        } = mesh(&request, &field)?;
+        name_parts(&mut mesh, request.conditions.edge_names());
+        area::name(&mut mesh, &request.conditions.areas)?;
+        request.conditions.suit(&mesh, &field.series)?;
+        let regressed = request.conditions.regressed_law(&card)?;
+        let coarse = match request.mesh {
+            MeshSource::File(..) => field.mesh,
+            _ => None,
+        };
+        let mut placed = place_on(&mesh, &field.series)?;
+        if let Some(coarse) = &coarse {
+            whole(coarse, &field.series)?;
+            // Interpolation needs all nodes.
+            placed.series = field.series;
+            placed.outside = 0;
+            warnings.extend(computed::told(&request.conditions));
+        }
+        force_signs::check(
+            request.conditions.forces_with_frames(&placed.series),
+            &mesh,
+            &*card.law,
+        )?;
+        if placed.outside > 0 {
+            let message = format!("markers outside the mesh: {}", placed.outside);
+            warnings.push(Diagnostic::warning("", message).hint("they are left out"));
+        }
+        warnings.extend(of_material(&card, &mesh));
+        let mut all = field.warnings;
+        doubts.extend(check_thickness(&mesh, request.thickness));
+        all.extend(warnings);
+        Ok(Self {
+            card,
+            thickness: request.thickness,
+            mesh,
+            cell_size,
+            mesh_origin: origin,
+            coarse,
+            series: placed.series,
+            understood: field.understood,
+            conditions: request.conditions,
+            regressed,
+            warnings: all,
+            doubts,
+            unknown_gap,
+        })
+    }
+
+    /// The law that an estimate has found, else that of the card.
+    pub fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
+        match &self.regressed {
+            Some(regressed) if !estimate.parameters.is_empty() => {
+                let values = estimate.parameters.iter().map(|(.., found)| found.value);
+                regressed.at(&values.collect::<Vec<_>>())
+            }
+            _ => Arc::clone(&self.card.law),
+        }
+    }
+
+    /// Estimates the field of every frame, and compares the residuals of each with those of the one before. Frames
+    /// that cannot be corrected are left out as by [`Self::leave_out`]; each is reported before it begins.
+    ///
+    /// # Errors
+    /// As [`estimate`], with the frame in its message, where none can be.
+    pub fn estimate(&mut self, told: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
+        let (mut compared, mut failed) = (ComparedFrames::default(), Vec::new());
+        for frame in &self.series.frames {
+            told(frame);
+            match self.estimate_frame(frame) {
+                Ok(found) => drop(compared.push(frame, found)),
+                Err(fault) => failed.push((frame.number, fault)),
+            }
+        }
+        let estimates = compared.into_estimates();
+        self.leave_out(failed)?;
+        Ok(estimates)
+    }
+
+    /// Leaves out the frames that could not be corrected, with a doubt for each kind of fault.
+    ///
+    /// # Errors
+    /// The first fault where no frame remains, or the mistake in the file that it follows from.
+    pub fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
+        if !failed.is_empty() && failed.len() == self.series.frames.len() {
+            let frames = self.series.frames.iter();
+            let most = frames.max_by(|a, b| a.motion().total_cmp(&b.motion()));
+            let mistake = most.and_then(|frame| self.mistake_without_solution(frame));
+            return Err(mistake.map_or_else(
+                || failed.swap_remove(0).1,
+                |mistake| Error::Input(vec![mistake]),
+            ));
+        }
+        let all = self.frame_numbers();
+        let faults = failed.into_iter().flat_map(|(number, fault)| {
+            self.series.frames.retain(|frame| frame.number != number);
+            faults(fault).map(move |(message, hint)| {
+                let named = format!("frame {number}: ");
+                let message = message.strip_prefix(&named).unwrap_or(&message);
+                OfFrame {
+                    frame: number,
+                    message: format!("{message}; the frame is left out"),
+                    hint,
+                }
+            })
+        });
+        let faults = faults.collect();
+        self.doubts.extend(once(&all, faults));
+        Ok(())
+    }
+
+    /// Estimates the field of a frame by itself.
+    ///
+    /// # Errors
+    /// As [`estimate`], with the frame in its message.
+    pub fn estimate_frame(&self, frame: &Frame) -> Result<FieldEstimate, Error> {
+        let specimen = Specimen {
+            mesh: &self.mesh,
+            law: Arc::clone(&self.card.law),
+            thickness: self.thickness,
+        };
+        let law = self.regressed.as_ref();
+        let knowledge = Knowledge {
+            edge_gap: self.unknown_gap,
+            uncertain_law: UncertainLaw::of_card(&self.card),
+            ..self.conditions.knowledge(frame.number, law)
+        };
+        let found = match &self.coarse {
+            None => self.weighted(&frame.markers, knowledge, &|knowledge| {
+                estimate(&specimen, &frame.markers, knowledge)
+            }),
+            Some(coarse) => {
+                let markers = frame.markers.iter();
+                let field: Vec<f64> = markers.flat_map(|marker| marker.displacement).collect();
+                transfer(&specimen, coarse, &field, &knowledge)
+            }
+        };
+        let found = found.map(|found| self.with_unknown_edge(found));
+        found.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
+    }
+}
+
+/// What is wrong with a frame that could not be corrected, and what to do.
+fn faults(error: Error) -> impl Iterator<Item = (String, String)> {
+    let faults = match error {
+        Error::Input(faults) => faults,
+        Error::Solve { fault, .. } => {
+            vec![Diagnostic::warning("", fault.to_string()).hint(fault.advice())]
+        }
+        other => vec![Diagnostic::warning("", other.to_string())],
+    };
+    faults
+        .into_iter()
+        .map(|fault| (fault.message, fault.hint.unwrap_or_default()))
+}
+
+/// An error with the frame in its message.
+fn of_one_frame(error: Error, number: usize, frames: usize) -> Error {
+    match error {
+        Error::Solve { model, fault, .. } => Error::Solve {
+            model,
+            step: format!("frame {number}"),
+            fault: fault.of_measured(),
+        },
+        Error::Input(faults) if frames > 1 => {
+            let named = |fault: Diagnostic| Diagnostic {
+                message: format!("frame {number}: {}", fault.message),
+                ..fault
+            };
+            Error::Input(faults.into_iter().map(named).collect())
+        }
+        other => other,
+    }
+}
+
+/// Whether a field has a displacement at every node of its mesh.
+fn whole(mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
+    let mut frames = series.frames.iter();
+    match frames.find(|frame| frame.markers.len() != mesh.nodes.len()) {
+        None => Ok(()),
+        Some(frame) => Err(Error::input(
+            format!(
+                "a field can be transferred to another mesh only if it is complete; frame {} lacks {} of {} nodes",
+                frame.number,
+                mesh.nodes.len() - frame.markers.len(),
+                mesh.nodes.len()
+            ),
+            "leave out --mesh to correct it as measured data on its own mesh",
+        )),
+    }
+}

@@ -1,0 +1,256 @@
+//! Whether what is left of the markers is alike from frame to frame, as a misfit is and the noise of single pictures is not.
+//!
+//! The noise of the picture at rest is common to all frames: where it is as large as that of the others, what is left of two
+//! frames correlates by ½. A correlation beyond 0.8 would take a picture at rest with twice their noise; beside a frame that is
+//! known to be not explained, ½ is enough to say that the misfit is the same.
+
+use std::collections::HashMap;
+
+use crate::estimation::{Answer, FieldEstimate, MarkerEstimate, Reason};
+use crate::markers::Frame;
+use crate::statistics::normal_tail;
+
+/// The largest correlation that is laid to the picture at rest: where both frames would be explained by themselves, and where one
+/// is not.
+const COMMON: [f64; 2] = [0.8, 0.5];
+
+/// The probability by noise below which what is left is too much alike.
+const LEVEL: f64 = 1e-4;
+
+/// Fewer independent values tell nothing.
+const FEWEST: f64 = 6.0;
+
+/// Estimates of frames one after the other, each compared with the one before.
+#[derive(Default)]
+pub struct ComparedFrames<'a> {
+    frames: Vec<&'a Frame>,
+    estimates: Vec<FieldEstimate>,
+}
+
+impl<'a> ComparedFrames<'a> {
+    /// Adds the estimate of the next frame; returns the one before, whose verdict is final now.
+    pub fn push(
+        &mut self,
+        frame: &'a Frame,
+        mut estimate: FieldEstimate,
+    ) -> Option<(&'a Frame, &FieldEstimate)> {
+        let before = self.frames.last().copied();
+        if let Some((before, last)) = before.zip(self.estimates.last_mut()) {
+            compare([before, frame], [last, &mut estimate]);
+        }
+        self.frames.push(frame);
+        self.estimates.push(estimate);
+        let settled = self.estimates.iter().rev().nth(1);
+        before.zip(settled)
+    }
+
+    /// The last frame and its estimate.
+    pub fn last(&self) -> Option<(&'a Frame, &FieldEstimate)> {
+        self.frames.last().copied().zip(self.estimates.last())
+    }
+
+    /// All estimates.
+    pub fn into_estimates(self) -> Vec<FieldEstimate> {
+        self.estimates
+    }
+}
+
+/// Two frames whose noise correlates between neighbours are not explained where what is left of them is alike.
+fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
+    let [before, after] = &estimates;
+    let (Some(of_a), Some(of_b)) = (before.verdict.correlation, after.verdict.correlation) else {
+        return;
+    };
+    // Both components of as many markers as are independent.
+    let values = 2.0 * of_a.independent.min(of_b.independent);
+    let correlation = correlation((frames[0], before), (frames[1], after));
+    let refuted = [before, after].map(|own| own.verdict.answer == Answer::NotExplained);
+    let common = COMMON[usize::from(refuted.contains(&true))];
+    if probability(correlation, common, values) >= LEVEL {
+        return;
+    }
+    for estimate in estimates {
+        let verdict = &mut estimate.verdict;
+        let told = verdict
+            .reasons
+            .iter()
+            .any(|reason| matches!(reason, Reason::Alike(_)));
+        if !told {
+            verdict.reasons.push(Reason::Alike(correlation));
+        }
+        verdict.answer = Answer::NotExplained;
+    }
+}
+
+/// How probable it is that so many independent pairs of numbers that correlate by no more than `common` have such a
+/// correlation: Fisher's transformation.
+fn probability(correlation: f64, common: f64, pairs: f64) -> f64 {
+    if pairs < FEWEST || correlation <= common {
+        return 1.0;
+    }
+    let excess = correlation.min(1.0 - f64::EPSILON).atanh() - common.atanh();
+    0.5 * normal_tail(excess * (pairs - 3.0).sqrt())
+}
+
+/// The correlation of what is left of the markers that are sound in both frames; zero where there is nothing.
+fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)) -> f64 {
+    let left: HashMap<usize, [f64; 2]> = sound(before).collect();
+    let pairs = sound(after).filter_map(|(number, b)| Some((*left.get(&number)?, b)));
+    let [product, of_a, of_b] = pairs.fold([0.0; 3], |[product, of_a, of_b], (a, b)| {
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        [product + dot(a, b), of_a + dot(a, a), of_b + dot(b, b)]
+    });
+    match of_a * of_b > 0.0 {
+        true => product / (of_a * of_b).sqrt(),
+        false => 0.0,
+    }
+}
+
+fn sound<'a>(
+    (frame, found): (&'a Frame, &'a FieldEstimate),
+) -> impl Iterator<Item = (usize, [f64; 2])> + 'a {
+    let known = |marker: &MarkerEstimate| (!marker.outlier).then_some(marker.residual);
+    let markers = frame.markers.iter().zip(&found.markers);
+    markers.filter_map(move |(marker, left)| Some((marker.number, left.as_ref().and_then(known)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::estimation::{NoiseCorrelation, Verdict};
+    use crate::markers::Marker;
+
+    const MARKERS: usize = 40;
+
+    fn frame(number: usize) -> Frame {
+        let marker = |number| Marker {
+            number,
+            place: [number as f64, 0.0],
+            displacement: [0.0; 2],
+            standard_deviation: None,
+        };
+        Frame {
+            number,
+            time: None,
+            markers: (0..MARKERS).map(marker).collect(),
+        }
+    }
+
+    /// A frame of which so much is left, with noise that correlates between neighbours.
+    fn estimated(left: &[[f64; 2]]) -> FieldEstimate {
+        let marker = |residual: &[f64; 2]| {
+            Some(MarkerEstimate {
+                residual: *residual,
+                standardised_residual: 1.0,
+                trust: 1.0,
+                outlier: false,
+            })
+        };
+        let correlation = Some(NoiseCorrelation {
+            length: 1.0,
+            share: 1.0,
+            independent: MARKERS as f64,
+            evidence: 30.0,
+        });
+        let verdict = Verdict {
+            answer: Answer::Correlated,
+            correlation,
+            ..Verdict::default()
+        };
+        let markers = left.iter().map(marker).collect();
+        FieldEstimate {
+            markers,
+            verdict,
+            ..FieldEstimate::default()
+        }
+    }
+
+    /// How many of 200 frames are not explained whose noise is that of a picture at rest, `rest` times as large as their
+    /// own, and that have `misfit` times a field in common with a first frame of such an answer.
+    fn told(rest: f64, misfit: f64, first: Answer) -> usize {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let frames = [frame(1), frame(2)];
+        let mut count = 0;
+        for _ in 0..200 {
+            let mut noise = |size: f64| -> Vec<[f64; 2]> {
+                let mut one = || {
+                    size * <StandardNormal as Distribution<f64>>::sample(
+                        &StandardNormal,
+                        &mut random,
+                    )
+                };
+                (0..MARKERS).map(|_| [one(), one()]).collect()
+            };
+            let (at_rest, common, own) = (noise(rest), noise(misfit), [noise(1.0), noise(1.0)]);
+            let left = own.map(|own| -> Vec<[f64; 2]> {
+                let all = own.iter().zip(&at_rest).zip(&common);
+                all.map(|((own, rest), common)| {
+                    [0, 1].map(|axis| own[axis] - rest[axis] + common[axis])
+                })
+                .collect()
+            });
+            let [mut before, mut after] = left.map(|left| estimated(&left));
+            before.verdict.answer = first;
+            compare(frames.each_ref(), [&mut before, &mut after]);
+            count += usize::from(!after.is_explained());
+        }
+        count
+    }
+
+    #[test]
+    fn noise_of_the_picture_at_rest_is_no_misfit_and_what_both_frames_have_in_common_is() {
+        let told = |rest, misfit| told(rest, misfit, Answer::Correlated);
+        assert_eq!([told(0.0, 0.0), told(1.0, 0.0), told(1.5, 0.0)], [0; 3]);
+        assert!(told(2.0, 0.0) <= 1, "{}", told(2.0, 0.0));
+        assert!(told(1.0, 6.0) >= 195, "{}", told(1.0, 6.0));
+    }
+
+    #[test]
+    fn beside_a_frame_that_is_not_explained_less_misfit_is_told_and_noise_is_none() {
+        let told = |rest, misfit| told(rest, misfit, Answer::NotExplained);
+        assert!(told(1.0, 0.0) <= 1, "{}", told(1.0, 0.0));
+        assert!(told(1.0, 3.0) >= 190, "{}", told(1.0, 3.0));
+    }
+
+    #[test]
+    fn a_frame_is_handed_on_when_the_one_after_it_is_known() {
+        let left: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
+        let frames = [frame(1), frame(2), frame(3)];
+        let mut compared = ComparedFrames::default();
+        for (index, frame) in frames.iter().enumerate() {
+            let settled = compared.push(frame, estimated(&left));
+            let settled = settled.map(|(before, found)| (before.number, found.is_explained()));
+            assert_eq!(settled, (index > 0).then_some((index, false)));
+        }
+        let (last, found) = compared.last().unwrap();
+        assert_eq!((last.number, found.is_explained()), (3, false));
+        assert_eq!(compared.into_estimates().len(), 3);
+    }
+
+    #[test]
+    fn few_values_white_noise_and_lost_markers_tell_nothing() {
+        let left: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
+        let alike = |change: &dyn Fn(&mut FieldEstimate)| {
+            let [mut before, mut after] = [estimated(&left), estimated(&left)];
+            change(&mut after);
+            compare([&frame(1), &frame(2)], [&mut before, &mut after]);
+            after.is_explained()
+        };
+        assert!(!alike(&|_| ()));
+        assert!(alike(&|found| found.verdict.correlation = None));
+        assert!(alike(&|found| found
+            .verdict
+            .correlation
+            .as_mut()
+            .unwrap()
+            .independent = 2.0));
+        assert!(alike(&|found| found
+            .markers
+            .iter_mut()
+            .for_each(|marker| *marker = None)));
+    }
+}

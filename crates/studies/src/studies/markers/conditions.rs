@@ -1,0 +1,400 @@
+//! What is known of a specimen besides its displacements: a file, completed by the command line. `default.toml` shows its keys.
+
+use std::path::Path;
+
+use super::area::Area;
+use super::machine::{self, ForceColumn, FrameForces};
+use super::specimen_file::{self, SpecimenFile};
+use crate::document::{Bound, Document, Faults, Key, Section};
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::estimation::{
+    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
+};
+use crate::markers::{Frame, MarkerSeries};
+use crate::material::Card;
+use crate::mesh::Mesh;
+use crate::studies::sections;
+use crate::units::Dimension;
+
+/// An edge by its name, with what is known of it.
+pub type EdgesByName = Vec<(String, EdgeCondition)>;
+
+/// What is known besides the displacements.
+#[derive(Clone, Debug, Default)]
+pub struct Conditions {
+    /// Heading of the report; empty where it is not given.
+    pub title: String,
+    /// The edges.
+    pub edges: EdgesByName,
+    /// Pads on the sheet by their names.
+    pub areas: Vec<(String, Area)>,
+    /// Standard deviation of each component of the displacement in mm.
+    pub noise: Option<f64>,
+    /// How markers that are far off are weighted; where nothing is said, by Tukey's weights if some are farther off than noise
+    /// can be.
+    pub robust: Option<Robust>,
+    /// Whether equilibrium holds exactly.
+    pub physics: Physics,
+    /// What is assumed of outer edges that are not named.
+    pub unnamed: Unnamed,
+    /// Measured forces, with the frame where it is said.
+    pub forces: FrameForces,
+    /// Whether fields do not know the measured forces, but are only compared with them.
+    pub forces_are_checks: bool,
+    /// Columns of a testing machine's table with forces.
+    pub force_columns: Vec<ForceColumn>,
+    /// Parameters of the law that are found with the field.
+    pub fit: Vec<String>,
+    /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
+    pub edge_gap: Option<f64>,
+    /// Relative standard deviation of the scale of the pictures.
+    pub scale_deviation: f64,
+    /// The specimen itself, where the file holds it.
+    pub specimen: Option<SpecimenFile>,
+}
+
+/// The file that `gelbench new --kind markers` writes.
+pub const TEMPLATE: &str = include_str!("default.toml");
+
+/// A measured force; without a standard deviation it has one of 1 %.
+pub fn measured_force(
+    edge: &str,
+    axis: usize,
+    force: f64,
+    deviation: Option<f64>,
+) -> MeasuredForce {
+    MeasuredForce {
+        edge: edge.to_owned(),
+        axis,
+        force,
+        standard_deviation: deviation.unwrap_or(FORCE_CLASS * force.abs()),
+        common_deviation: deviation.map_or(FORCE_CLASS, |_| 0.0),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Free,
+    Known,
+    Rigid,
+    Unknown,
+}
+
+const KINDS: [(&str, Kind); 4] = [
+    ("free", Kind::Free),
+    ("known", Kind::Known),
+    ("rigid", Kind::Rigid),
+    ("unknown", Kind::Unknown),
+];
+
+impl Conditions {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with all of its faults.
+    pub fn of_file(path: &Path) -> Result<Self, Error> {
+        Self::parse(&path.display().to_string(), &sections::read_text(path)?)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// As [`Self::of_file`].
+    pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
+        let faults = Faults::default();
+        let document = Document::parse(file, text, &faults);
+        let conditions = read(&document.root(None, &faults));
+        drop(document);
+        faults.finish()?;
+        Ok(conditions)
+    }
+
+    /// The edges of which something is known.
+    pub(super) fn edge_names(&self) -> impl Iterator<Item = &str> {
+        self.edges.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Whether the mesh has the edges that are named, each once.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every name that is wrong.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), Error> {
+        let known: Vec<&str> = mesh.groups().keys().map(String::as_str).collect();
+        let mut faults = Vec::new();
+        for (index, (name, _)) in self.edges.iter().enumerate() {
+            if !known.contains(&&**name) {
+                let hint = suggestion(name, &known, "its edges:");
+                let fault = Diagnostic::error("", format!("the mesh has no edge `{name}`"));
+                faults.push(fault.hint(hint));
+            }
+            if self.edges[..index].iter().any(|(other, _)| other == name) {
+                let fault = Diagnostic::error("", format!("the edge `{name}` has two conditions"));
+                faults.push(fault.hint("name it once"));
+            }
+        }
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(Error::Input(faults)),
+        }
+    }
+
+    /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with what does not.
+    pub fn suit(&mut self, mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
+        let is_kept =
+            |frame: &Option<usize>| frame.is_none_or(|own| !series.at_rest.contains(&own));
+        self.forces.retain(|(frame, _)| is_kept(frame));
+        self.check(mesh)?;
+        self.check_frames(series)
+    }
+
+    /// Whether the frames have the forces that are given: one frame each, the only one where none is said.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the first force that belongs to no frame.
+    fn check_frames(&self, series: &MarkerSeries) -> Result<(), Error> {
+        let frames = &series.frames;
+        let numbers = || frames.iter().map(|frame| frame.number);
+        for (frame, force) in &self.forces {
+            let known = match frame {
+                None => frames.len() == 1,
+                Some(number) => numbers().any(|known| known == *number),
+            };
+            if !known {
+                let all: Vec<_> = numbers().map(|number| number.to_string()).collect();
+                let (edge, last) = (&force.edge, all.last().cloned().unwrap_or_default());
+                let fault = match frame {
+                    None => format!(
+                        "there are {} frames, but the force on `{edge}` does not state in which it was measured",
+                        all.len()
+                    ),
+                    Some(number) => format!(
+                        "there is no frame {number}, in which the force on `{edge}` is stated to be measured"
+                    ),
+                };
+                let hint = format!(
+                    "state it in the file of --study, with `frame = {last}` under [[force]], or correct one frame alone; frames: {}",
+                    all.join(", ")
+                );
+                return Err(Error::input(fault, hint));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the forces of a testing machine's table; returns what deserves attention.
+    ///
+    /// # Errors
+    /// As [`machine::forces`]; [`Error::Input`] when columns are named and there is no table.
+    pub(super) fn take_forces(
+        &mut self,
+        table: Option<&Path>,
+        series: &MarkerSeries,
+    ) -> Result<Vec<Diagnostic>, Error> {
+        match (table, self.force_columns.first()) {
+            (None, None) => Ok(Vec::new()),
+            (None, Some(first)) => Err(Error::input(
+                format!(
+                    "the force on `{}` is to be read from the column `{}`, but no table is given",
+                    first.edge, first.column
+                ),
+                "name the testing machine's table with --forces FILE",
+            )),
+            (Some(path), _) => {
+                let (forces, told) = machine::forces(path, &self.force_columns, series)?;
+                self.forces.extend(forces);
+                Ok(told)
+            }
+        }
+    }
+
+    /// Every measured force with its frame.
+    pub fn forces_with_frames<'a>(
+        &'a self,
+        series: &'a MarkerSeries,
+    ) -> impl Iterator<Item = (&'a MeasuredForce, &'a Frame)> {
+        let forces = self.forces.iter();
+        forces.filter_map(|(number, force)| {
+            let mut frames = series.frames.iter();
+            let frame = frames.find(|frame| number.is_none_or(|number| number == frame.number))?;
+            Some((force, frame))
+        })
+    }
+
+    /// The law with parameters to be found, if there are any.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the card has no such parameters.
+    pub fn regressed_law(&self, card: &Card) -> Result<Option<RegressedLaw>, Error> {
+        let keys: Vec<&str> = self.fit.iter().map(String::as_str).collect();
+        let regressed = (!keys.is_empty()).then(|| RegressedLaw::of_card(card, &keys));
+        regressed
+            .transpose()
+            .map_err(|fault| Error::Input(vec![fault]))
+    }
+
+    /// What the estimate of a frame takes; a law is regressed in frames with a force.
+    pub fn knowledge(&self, frame: usize, law: Option<&RegressedLaw>) -> Knowledge {
+        let own = self.forces.iter();
+        let own = own.filter(|(of, _)| of.is_none_or(|number| number == frame));
+        let forces: Vec<_> = own.map(|(_, force)| force.clone()).collect();
+        Knowledge {
+            edges: self.edges.clone(),
+            scale_deviation: self.scale_deviation,
+            unnamed: self.unnamed,
+            noise: self.noise,
+            robust: self.robust.unwrap_or_default(),
+            physics: self.physics,
+            law: law
+                .filter(|_| !forces.is_empty() || self.forces.is_empty())
+                .cloned(),
+            forces,
+            forces_are_checks: self.forces_are_checks,
+            ..Knowledge::default()
+        }
+    }
+}
+
+/// The keys that are asked for when a text is read.
+pub fn keys(text: &str) -> Vec<Key> {
+    let faults = Faults::default();
+    let document = Document::parse("", text, &faults);
+    read(&document.root(None, &faults));
+    drop(document);
+    faults.keys()
+}
+
+fn read(root: &Section) -> Conditions {
+    let mut conditions = Conditions::default();
+    if root.has("title") {
+        conditions.title = root.heading("title");
+    }
+    if root.has("noise") {
+        conditions.noise = Some(root.quantity("noise", Dimension::Length, Bound::Positive));
+    }
+    if root.has("edge_gap") {
+        conditions.edge_gap =
+            Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
+    }
+    if root.has("scale_error") {
+        let bound = Bound::Within(0.0, 0.5);
+        conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, bound);
+    }
+    if root.has("robust") {
+        conditions.robust = root.choice("robust", &Robust::NAMES);
+    }
+    if root.has("physics") {
+        conditions.physics = root.choice("physics", &Physics::NAMES).unwrap_or_default();
+    }
+    if root.has("unnamed") {
+        conditions.unnamed = root.choice("unnamed", &Unnamed::NAMES).unwrap_or_default();
+    }
+    if root.has("fit") {
+        conditions.fit = root.texts("fit");
+    }
+    if root.has("specimen") {
+        conditions.specimen = Some(specimen_file::read(&root.section("specimen")));
+    }
+    if root.has("force") {
+        for section in &root.tables("force") {
+            match section.has("column") && !section.has("force") {
+                true => conditions.force_columns.push(force_column(section)),
+                false => conditions.forces.push(force(section)),
+            }
+        }
+    }
+    if root.has("edges") {
+        for section in root.tables("edges") {
+            let names = section.texts("names");
+            let condition = condition(&section);
+            if section.has("area") {
+                let area = area(&section, &names);
+                conditions.areas.extend(area);
+            }
+            conditions
+                .edges
+                .extend(names.into_iter().map(|name| (name, condition)));
+            section.unknown_keys();
+        }
+    }
+    root.unknown_keys();
+    conditions
+}
+
+/// The area of a pad, and the only name that it has.
+fn area(section: &Section, names: &[String]) -> Option<(String, Area)> {
+    let lengths = section.quantities("area", Dimension::Length, Bound::Any);
+    let area = Area::of(&lengths);
+    let hint = "write x and y of the lower left and of the upper right corner, or x, y and the radius of a disc";
+    match (area, names) {
+        (Some(area), [name]) => return Some((name.clone(), area)),
+        (None, _) => section.fault("area", "must be a rectangle or a disc", hint),
+        _ => section.fault(
+            "names",
+            "must be one name where there is an area",
+            "give each pad a section of its own",
+        ),
+    }
+    None
+}
+
+/// A force that stands in a column of a testing machine's table.
+fn force_column(section: &Section) -> ForceColumn {
+    let (edge, axis) = edge_and_axis(section);
+    let has = section.has("standard_deviation");
+    let found = ForceColumn {
+        edge,
+        axis,
+        column: section.text("column"),
+        standard_deviation: has.then(|| deviation(section)),
+    };
+    section.unknown_keys();
+    found
+}
+
+fn edge_and_axis(section: &Section) -> (String, usize) {
+    let edge = section.text("edge");
+    let axis = section.choice("axis", &[("x", 0), ("y", 1)]);
+    (edge, axis.unwrap_or(0))
+}
+
+fn deviation(section: &Section) -> f64 {
+    section.quantity("standard_deviation", Dimension::Force, Bound::Positive)
+}
+
+fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
+    let (edge, axis) = edge_and_axis(section);
+    if section.has("column") {
+        section.text("column");
+        let hint = "leave out the column, or the force";
+        section.fault("column", "must not be given together with a force", hint);
+    }
+    let force = section.quantity("force", Dimension::Force, Bound::Any);
+    let has = |key| section.has(key);
+    let deviation = has("standard_deviation").then(|| deviation(section));
+    let frame = has("frame").then(|| section.count("frame", 0, usize::MAX >> 1));
+    section.unknown_keys();
+    (frame, measured_force(&edge, axis, force, deviation))
+}
+
+fn condition(section: &Section) -> EdgeCondition {
+    let along = |key: &'static str| {
+        let has = section.has(key);
+        has.then(|| section.quantity(key, Dimension::Length, Bound::Any))
+    };
+    match section.choice("condition", &KINDS) {
+        Some(Kind::Known) => {
+            let displacement = [along("ux"), along("uy")];
+            if displacement == [None, None] {
+                let hint = "add ux = \"5 mm\", uy = \"0 mm\", or one of them";
+                section.fault("condition", "`known` needs a displacement", hint);
+            }
+            EdgeCondition::Known(displacement)
+        }
+        Some(Kind::Rigid) => EdgeCondition::Rigid,
+        Some(Kind::Unknown) => EdgeCondition::Unknown,
+        Some(Kind::Free) | None => EdgeCondition::Free,
+    }
+}

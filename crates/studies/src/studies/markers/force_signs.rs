@@ -1,0 +1,71 @@
+//! Whether measured forces point the way in which the markers say that the specimen is strained.
+
+use crate::error::{Diagnostic, Error};
+use crate::estimation::MeasuredForce;
+use crate::markers::Frame;
+use crate::material::HyperelasticLaw;
+use crate::material::sheet::{Kinematics, PlaneTensor};
+use crate::mesh::Mesh;
+
+/// Components of the mean stress that are smaller than this part of the largest say nothing.
+const CLEAR: f64 = 0.5;
+
+/// Refuses forces with the sign of a push where the mean strain of their frame pulls, or the other way round: the mean stress of the
+/// markers' best linear field has a component along the force that is clearly the largest, and acts on an edge that lies
+/// clearly on one side of the specimen along that axis.
+///
+/// # Errors
+/// [`Error::Input`] with every such force.
+pub fn check<'a>(
+    forces: impl IntoIterator<Item = (&'a MeasuredForce, &'a Frame)>,
+    mesh: &Mesh,
+    law: &dyn HyperelasticLaw,
+) -> Result<(), Error> {
+    let contradicts = |(force, frame): (&MeasuredForce, &Frame)| {
+        let expected = expected_sign(force, frame, mesh, law)?;
+        (expected * force.force < 0.0).then(|| told(force, expected))
+    };
+    let faults: Vec<Diagnostic> = forces.into_iter().filter_map(contradicts).collect();
+    match faults.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Input(faults)),
+    }
+}
+
+fn told(force: &MeasuredForce, expected: f64) -> Diagnostic {
+    let (edge, axis) = (&force.edge, ["x", "y"][force.axis]);
+    let (size, sign) = (force.force.abs(), if expected < 0.0 { "-" } else { "" });
+    let message = format!(
+        "the force on `{edge}` is {} N along {axis}, but the markers show that the grip acts on the specimen towards {}{axis}",
+        force.force,
+        if expected < 0.0 { "-" } else { "+" },
+    );
+    let hint = format!(
+        "a force is positive along the axis: write {sign}{size} N; if the sign is intended, the displacements have the reversed sign, or their axes or the name of the edge are wrong"
+    );
+    Diagnostic::error("", message).hint(hint)
+}
+
+/// The sign of the force of a grip on its edge; `None` where the markers do not say it clearly.
+fn expected_sign(
+    force: &MeasuredForce,
+    frame: &Frame,
+    mesh: &Mesh,
+    law: &dyn HyperelasticLaw,
+) -> Option<f64> {
+    let axis = force.axis;
+    let nodes = &mesh.groups().get(&force.edge)?.nodes;
+    let mean = nodes
+        .iter()
+        .map(|node| mesh.nodes[*node][axis])
+        .sum::<f64>()
+        / nodes.len() as f64;
+    let [low, high] = mesh.bounding_box();
+    let side = (2.0 * mean - low[axis] - high[axis]) / (high[axis] - low[axis]);
+    let h = frame.mean_gradient()?;
+    let kinematics = Kinematics::new(&PlaneTensor::new(h.m11, h.m12, h.m21, h.m22)).ok()?;
+    let (_, stress) = law.stress(&kinematics);
+    let along = stress[3 * axis];
+    let clear = side.abs() > 0.9 && along.abs() > CLEAR * stress.amax() && along != 0.0;
+    clear.then(|| along.signum() * side.signum())
+}

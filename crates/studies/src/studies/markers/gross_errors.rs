@@ -1,0 +1,200 @@
+//! The weights of markers where nothing is said of them: all alike, unless some are farther off than noise can be.
+//!
+//! ```text
+//! m e^(−d²/2) < 10⁻³      d: the largest standardised residual of m markers
+//! ```
+//!
+//! is a marker that noise makes in less than one of a thousand frames. Many gross errors hide each other: then the median of all d is far
+//! below that of noise. A marker like that is a gross error as long as there are few, or as they lie scattered among the others: many
+//! that lie together are a misfit of the equations, which must not be weighted away. Nor may they make up the noise by which this
+//! misfit is judged: with a noise that is large enough any law fits.
+
+use super::MarkerStudy;
+use super::report::{outliers, used};
+use crate::error::Error;
+use crate::estimation::{Answer, FieldEstimate, Knowledge, Reason, Robust};
+use crate::markers::Marker;
+use crate::statistics::{nearest, robust_deviation};
+
+/// The largest share of gross errors among markers, wherever they lie; and where they are scattered.
+const MOST: f64 = 0.1;
+const MOST_SCATTERED: f64 = 0.45;
+
+/// The scatter by the median over that by squares below which many markers may be gross errors, and are: 1 of normal noise, 0.8 of Laplace's.
+const IN_DOUBT: f64 = 0.75;
+const HIDDEN: f64 = 0.5;
+
+/// Neighbours of a marker among which others like it are counted.
+const AROUND: usize = 4;
+
+/// Probability by noise below which a marker is a gross error.
+const CHANCE: f64 = 1e-3;
+
+impl MarkerStudy {
+    /// The estimate with the weights that are said, else with Tukey's where there are gross errors; these may also keep an estimate
+    /// without such weights from being found.
+    pub(super) fn weighted(
+        &self,
+        markers: &[Marker],
+        knowledge: Knowledge,
+        solve: &dyn Fn(&Knowledge) -> Result<FieldEstimate, Error>,
+    ) -> Result<FieldEstimate, Error> {
+        let found = solve(&knowledge);
+        let in_doubt = match &found {
+            Ok(found) => has_gross_errors(found) || scatter_by_median(found) < IN_DOUBT,
+            Err(fault) => matches!(fault, Error::Solve { .. }),
+        };
+        if self.conditions.robust.is_some() || !in_doubt {
+            return found.map(|found| judged_beside(found, None));
+        }
+        let robust = Knowledge {
+            robust: Robust::Tukey,
+            ..knowledge
+        };
+        match solve(&robust).ok().filter(has_gross_errors) {
+            Some(without) if !has_many(&without) || are_scattered(markers, &without) => Ok(without),
+            without => found.map(|found| judged_beside(found, without)),
+        }
+    }
+
+    /// What is said of gross errors that were found without being asked for.
+    pub(super) fn of_gross_errors(&self, estimate: &FieldEstimate) -> Option<String> {
+        (self.conditions.robust.is_none() && estimate.robust == Robust::Tukey).then(|| {
+            format!(
+                "{} of {} markers are outliers, some farther off than noise can explain: Tukey's weights reduce the weight of a marker the farther it is off \
+                 (robust = \"no\" gives all markers full weight)",
+                outliers(estimate),
+                used(estimate)
+            )
+        })
+    }
+}
+
+/// An estimate with full weights for all markers, beside that without gross errors where there are many that lie together: what the
+/// sound markers contradict is not explained, and gross errors that make up the noise leave nothing to judge.
+fn judged_beside(mut found: FieldEstimate, without: Option<FieldEstimate>) -> FieldEstimate {
+    let noise = found.noise;
+    let in_doubt = without.is_some() || has_hidden(&found);
+    let verdict = &mut found.verdict;
+    if verdict.answer == Answer::NotExplained || !in_doubt {
+        return found;
+    }
+    match without.map(|own| own.verdict) {
+        Some(own) if own.answer == Answer::NotExplained => *verdict = own,
+        _ => {
+            verdict.answer = Answer::Undecided;
+            verdict.reasons.push(Reason::GrossErrors(noise));
+        }
+    }
+    found
+}
+
+fn has_gross_errors(estimate: &FieldEstimate) -> bool {
+    let distances = estimate.markers.iter().flatten();
+    let largest = distances.map(|marker| marker.standardised_residual);
+    let largest = largest.fold(0.0, f64::max);
+    used(estimate) as f64 * (-0.5 * largest * largest).exp() < CHANCE
+}
+
+/// The scatter of the standardised residuals by their median, over that of noise.
+fn scatter_by_median(estimate: &FieldEstimate) -> f64 {
+    let markers = estimate.markers.iter().flatten();
+    robust_deviation(markers.map(|marker| marker.standardised_residual))
+}
+
+/// Fewer degrees of freedom tell nothing of the shape of noise.
+const FEWEST: f64 = 20.0;
+
+/// Noise below this share of the largest displacement is that of the numbers: of a computed field.
+const ROUNDING: f64 = 1e-6;
+
+/// Whether gross errors are so many that they make up the noise of an estimate that gives all markers their weight.
+fn has_hidden(estimate: &FieldEstimate) -> bool {
+    let displacement = estimate.displacement.iter();
+    let largest = displacement.fold(0.0, |most: f64, u| most.max(u.abs()));
+    estimate.robust == Robust::No
+        && estimate.degrees_of_freedom >= FEWEST
+        && estimate.noise > ROUNDING * largest
+        && scatter_by_median(estimate) < HIDDEN
+}
+
+/// Whether outliers lie among the others as by chance: of the neighbours of one as many are outliers as of all markers, within three
+/// standard deviations.
+fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
+    let pairs = markers.iter().zip(&estimate.markers);
+    let used: Vec<_> = pairs
+        .filter_map(|(marker, own)| Some((marker.place, own.as_ref()?.outlier)))
+        .collect();
+    let places: Vec<[f64; 2]> = used.iter().map(|(place, _)| *place).collect();
+    let around = nearest(&places, AROUND);
+    let outliers = (0..used.len()).filter(|index| used[*index].1);
+    let (mut count, mut alike, mut neighbours) = (0.0, 0.0, 0.0);
+    for own in outliers {
+        count += 1.0;
+        neighbours += around[own].len() as f64;
+        alike += around[own].iter().filter(|other| used[**other].1).count() as f64;
+    }
+    let share = count / used.len() as f64;
+    // Each pair is counted from both ends.
+    let deviation = (2.0 * share * (1.0 - share) / neighbours).sqrt();
+    share < MOST_SCATTERED && alike / neighbours < share + 3.0 * deviation
+}
+
+/// Whether there are more outliers than gross errors can be.
+pub(super) fn has_many(estimate: &FieldEstimate) -> bool {
+    outliers(estimate) as f64 > MOST * used(estimate) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimation::{MarkerEstimate, Verdict};
+
+    /// An estimate with an answer and markers of which a tenth is so many times as far off as the others.
+    fn estimated(answer: Answer, far: f64) -> FieldEstimate {
+        let marker = |index: usize| {
+            let near = 1.0 / (0.9 + 0.1 * far * far).sqrt();
+            let standardised_residual = if index.is_multiple_of(10) {
+                far * near
+            } else {
+                near
+            };
+            Some(MarkerEstimate {
+                residual: [standardised_residual, 0.0],
+                standardised_residual,
+                trust: 1.0,
+                outlier: false,
+            })
+        };
+        FieldEstimate {
+            markers: (0..100).map(marker).collect(),
+            displacement: vec![10.0, 0.0],
+            noise: 1.0,
+            degrees_of_freedom: 190.0,
+            verdict: Verdict {
+                answer,
+                ..Verdict::default()
+            },
+            ..FieldEstimate::default()
+        }
+    }
+
+    #[test]
+    fn noise_that_is_made_up_by_gross_errors_explains_nothing() {
+        let judged = |far: f64, without: Option<Answer>| {
+            let without = without.map(|answer| estimated(answer, 1.0));
+            judged_beside(estimated(Answer::Correlated, far), without)
+        };
+        // Noise alone, and noise of which a tenth of the markers makes up nearly all.
+        assert_eq!(judged(1.2, None).verdict.answer, Answer::Correlated);
+        let hidden = judged(20.0, None);
+        assert_eq!(hidden.verdict.answer, Answer::Undecided);
+        assert!(!hidden.is_explained() && !hidden.has_intervals());
+        assert!(hidden.verdict.reasons[0].words().contains("gross errors"));
+        // What the sound markers contradict is not explained, what they cannot is undecided.
+        let refuted = judged(1.2, Some(Answer::NotExplained));
+        assert_eq!(refuted.verdict.answer, Answer::NotExplained);
+        let undecided = judged(1.2, Some(Answer::Explained));
+        assert_eq!(undecided.verdict.answer, Answer::Undecided);
+    }
+}

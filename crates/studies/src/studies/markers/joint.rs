@@ -1,0 +1,208 @@
+//! Parameters of laws from all frames of one or more specimens together.
+//!
+//! ```text
+//! specimens ─▶ JointStudy ─estimate─▶ one JointEstimate per law, the first one's card ─▶ every specimen corrected with it
+//! ```
+
+use std::path::Path;
+
+use super::{Conditions, MarkerStudy};
+use crate::error::{Diagnostic, Error};
+use crate::estimation::{
+    FieldEstimate, JointEstimate, JointFrame, JointSettings, Knowledge, RegressedLaw, Robust, Told,
+    check_joint_frames, estimate_jointly,
+};
+use crate::material::Card;
+
+mod card;
+mod report;
+mod results;
+
+pub use results::{KIND, results, undetermined};
+
+/// A specimen and its name.
+pub type NamedSpecimen = (String, MarkerStudy);
+
+/// Specimens and laws.
+#[derive(Debug)]
+pub struct JointStudy {
+    /// The specimens; the law of each is that of its card, whose parameters are to be found.
+    pub specimens: Vec<NamedSpecimen>,
+    /// The laws: the first one is that of the results, the others are compared with it.
+    pub cards: Vec<Card>,
+    /// The parameters of the first law that are found; for all other laws all of them are.
+    pub fit: Vec<String>,
+    /// How they are found.
+    pub settings: JointSettings,
+}
+
+/// A law and its result.
+#[derive(Debug)]
+pub struct JudgedLaw {
+    /// The card with its first values.
+    pub card: usize,
+    /// The estimate, or why there is none.
+    pub found: Result<JointEstimate, Error>,
+}
+
+/// The results of all laws.
+#[derive(Debug)]
+pub struct JointResults {
+    /// The first law.
+    pub estimate: JointEstimate,
+    /// Its card with the values found.
+    pub card: Card,
+    /// The other laws.
+    pub others: Vec<JudgedLaw>,
+}
+
+/// A specimen that was corrected with the law found.
+#[derive(Debug)]
+pub struct CorrectedSpecimen {
+    /// Its name.
+    pub name: String,
+    /// The specimen with the card that was found.
+    pub study: MarkerStudy,
+    /// Its frames.
+    pub estimates: Vec<FieldEstimate>,
+    /// The number of doubts about their figures.
+    pub doubts: usize,
+}
+
+impl JointStudy {
+    /// Checks that the specimens can be distinguished, and that the laws have their parameters.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the faults.
+    pub fn check(&self) -> Result<(), Error> {
+        let mut names: Vec<&str> = self.specimens.iter().map(|(name, _)| &**name).collect();
+        names.sort_unstable();
+        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(Error::input(
+                format!("two specimens have the name `{}`", pair[0]),
+                "give each a `name` of its own under [specimen]",
+            ));
+        }
+        if let Some((name, _)) = self.specimens.iter().find(|(_, own)| own.coarse.is_some()) {
+            return Err(Error::input(
+                format!(
+                    "the field of `{name}` is transferred to another mesh, and then has no noise that could weight it"
+                ),
+                "leave out its mesh",
+            ));
+        }
+        for index in 0..self.cards.len() {
+            self.law(index)?;
+        }
+        check_joint_frames(&self.frames())
+    }
+
+    /// Finds the parameters of all laws.
+    ///
+    /// # Errors
+    /// As [`estimate_jointly`] for the first law.
+    pub fn estimate(&self, told: Told) -> Result<JointResults, Error> {
+        let frames = self.frames();
+        let of = |index: usize| {
+            let name = &self.cards[index].name;
+            let settings = JointSettings {
+                profiles: index == 0 && self.settings.profiles,
+                ..self.settings
+            };
+            let law = self.law(index)?;
+            estimate_jointly(&frames, &law, &settings, &|what| {
+                told(&format!("{name}: {what}"))
+            })
+        };
+        let estimate = of(0)?;
+        let others = 1..self.cards.len();
+        Ok(JointResults {
+            card: card::with_values(&self.cards[0], &estimate, &self.told_specimens())?,
+            others: others
+                .map(|card| JudgedLaw {
+                    card,
+                    found: of(card),
+                })
+                .collect(),
+            estimate,
+        })
+    }
+
+    fn law(&self, index: usize) -> Result<RegressedLaw, Error> {
+        let all = ["all".to_owned()];
+        let keys = match index {
+            0 => &self.fit[..],
+            _ => &all,
+        };
+        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+        let law = RegressedLaw::of_card(&self.cards[index], &keys);
+        law.map_err(|fault| Error::Input(vec![fault]))
+    }
+
+    fn frames(&self) -> Vec<JointFrame<'_>> {
+        let studies = self.specimens.iter().map(|(_, study)| study);
+        studies.flat_map(MarkerStudy::joint_frames).collect()
+    }
+
+    /// The specimens in words.
+    fn told_specimens(&self) -> String {
+        let of = |(name, study): &NamedSpecimen| match study.series.frames.len() {
+            1 => format!("{name} (1 frame)"),
+            count => format!("{name} ({count} frames)"),
+        };
+        self.specimens.iter().map(of).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl MarkerStudy {
+    fn joint_frames(&self) -> Vec<JointFrame<'_>> {
+        let frames = self.series.frames.iter();
+        frames
+            .map(|frame| JointFrame {
+                mesh: &self.mesh,
+                thickness: self.thickness,
+                markers: &frame.markers,
+                knowledge: Knowledge {
+                    robust: self.conditions.robust.unwrap_or(Robust::Tukey),
+                    ..self.conditions.knowledge(frame.number, None)
+                },
+            })
+            .collect()
+    }
+
+    /// The same with another card, whose law stays as it is and is compared with the forces.
+    #[must_use]
+    pub fn with_card(&self, card: &Card) -> Self {
+        let mut other = Self {
+            card: card.clone(),
+            regressed: None,
+            ..self.clone()
+        };
+        other.conditions.fit.clear();
+        other.conditions.forces_are_checks = true;
+        other.warnings.push(given_the_law());
+        other
+    }
+}
+
+/// The uncertainties included in the intervals of a field whose law was found with other fields.
+pub fn given_the_law() -> Diagnostic {
+    let message = "intervals of displacements, stresses and forces apply to the estimated parameter values: the uncertainty of the parameters is not included";
+    Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to those of forces and stresses")
+}
+
+impl Conditions {
+    /// Refuses what belongs to a specimen's file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the file names a specimen.
+    pub fn without_specimen(self, path: &Path) -> Result<Self, Error> {
+        match &self.specimen {
+            None => Ok(self),
+            Some(_) => Err(Error::Input(vec![
+                Diagnostic::error("", format!("{} has a [specimen]", path.display()))
+                    .hint("name the file with --specimen, or leave out that section"),
+            ])),
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! Forces of a testing machine's table beside the frames.
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+
+use crate::document::{Table, column_named};
+use crate::error::{Diagnostic, Error};
+use crate::estimation::{FORCE_CLASS, MeasuredForce};
+use crate::markers::{Frame, MarkerSeries, columns};
+use crate::solve::vector::largest;
+use crate::units::{self, Dimension};
+
+/// A column of a testing machine's table and the force that it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceColumn {
+    /// The group on which the grip acts.
+    pub edge: String,
+    /// 0 along x, 1 along y.
+    pub axis: usize,
+    /// Its name; one that begins with `-` stands for the negative force.
+    pub column: String,
+    /// In N; 1 % of the largest force of the column where it is not given.
+    pub standard_deviation: Option<f64>,
+}
+
+/// Measured forces, each with its frame where that is said.
+pub type FrameForces = Vec<(Option<usize>, MeasuredForce)>;
+
+/// What the rows of a table are matched by, one value a row.
+enum Match {
+    /// The row of each frame.
+    Frames(HashMap<u64, usize>),
+    /// In s, ascending.
+    Times(Vec<f64>),
+}
+
+/// The forces of all frames of a series, and a word about frames without one.
+///
+/// # Errors
+/// [`Error::Input`] with the place in the file and what to do, where columns are missing or rows cannot be matched.
+pub fn forces(
+    path: &Path,
+    wanted: &[ForceColumn],
+    series: &MarkerSeries,
+) -> Result<(FrameForces, Vec<Diagnostic>), Error> {
+    let table = Table::read(path, Table::HINT)?;
+    if wanted.is_empty() {
+        let heads: Vec<String> = table.columns.iter().map(|column| column.head()).collect();
+        let hint = "name edge, axis and column, as in --force-column \"right x Load\", or `column` under [[force]] in the file of --study";
+        let message = format!(
+            "no column of this table is chosen as a force; it has {}",
+            heads.join(", ")
+        );
+        return Err(table.refuse_columns(message, hint));
+    }
+    let rows = matching(&table)?;
+    let mut found = Vec::new();
+    let mut without = BTreeSet::new();
+    for one in wanted {
+        let name = one.column.trim_start_matches('-').trim();
+        let column = column_named(&table, name).map_err(|fault| Error::Input(vec![fault]))?;
+        table.check_numbers([column], "every row needs a force")?;
+        let factor = newtons(&table, column)?
+            * if one.column.starts_with('-') {
+                -1.0
+            } else {
+                1.0
+            };
+        let forces: Vec<f64> = table
+            .rows
+            .iter()
+            .map(|(row, _)| factor * row[column])
+            .collect();
+        let stated = one.standard_deviation;
+        let deviation = stated.unwrap_or_else(|| FORCE_CLASS * largest(&forces));
+        for frame in &series.frames {
+            match rows.at(&table, frame, &forces)? {
+                Some(force) => {
+                    let force = MeasuredForce {
+                        edge: one.edge.clone(),
+                        axis: one.axis,
+                        force,
+                        standard_deviation: deviation,
+                        common_deviation: stated.map_or(FORCE_CLASS, |_| 0.0),
+                    };
+                    found.push((Some(frame.number), force));
+                }
+                None => {
+                    without.insert(frame.number);
+                }
+            }
+        }
+    }
+    if found.is_empty() {
+        let hint = "number the frames identically in both files, or give the time in both";
+        return Err(table.refuse_columns("no row belongs to a frame of the field", hint));
+    }
+    let names: Vec<String> = without.iter().map(usize::to_string).collect();
+    let word = (!without.is_empty()).then(|| {
+        let message = format!(
+            "{} has no force for the frames {}",
+            path.display(),
+            names.join(", ")
+        );
+        Diagnostic::warning("", message).hint("they are corrected without one")
+    });
+    Ok((found, word.into_iter().collect()))
+}
+
+/// The factor from a column's unit to N.
+fn newtons(table: &Table, column: usize) -> Result<f64, Error> {
+    let unit = table.columns[column].unit.as_deref();
+    let name = &table.columns[column].written;
+    let Some(unit) = unit else {
+        let hint = format!("write it in brackets, as in {name} [N], or in a second line");
+        return Err(table.refuse_columns(format!("the column `{name}` has no unit"), &hint));
+    };
+    units::factor(unit, Dimension::Force).map_err(|_| {
+        let message = format!("`{unit}` of the column `{name}` is not a unit of force");
+        columns::unknown_unit(table, unit, Dimension::Force, message)
+    })
+}
+
+/// What the rows are matched by: a column `frame`, else a column `time`.
+fn matching(table: &Table) -> Result<Match, Error> {
+    let values = |column: usize| -> Result<Vec<f64>, Error> {
+        table.check_numbers([column], "every row needs a frame or a time")?;
+        Ok(table.rows.iter().map(|(row, _)| row[column]).collect())
+    };
+    if let Some(column) = columns::plain(table, columns::FRAME) {
+        let mut rows = HashMap::new();
+        for (row, number) in values(column)?.into_iter().enumerate() {
+            if rows.insert(key(number), row).is_some() {
+                let place = table.rows[row].1.clone();
+                let message = format!("frame {number} occurs twice");
+                return Err(table.refuse(place, message, "give each frame one row"));
+            }
+        }
+        return Ok(Match::Frames(rows));
+    }
+    let Some(column) = columns::plain(table, columns::TIME) else {
+        let hint = "name the column of frame numbers `frame`, or the column of times `time [s]`";
+        return Err(table.refuse_columns("there is neither a column `frame` nor `time`", hint));
+    };
+    let second = columns::seconds(table, column)?;
+    let times: Vec<f64> = values(column)?
+        .into_iter()
+        .map(|time| second * time)
+        .collect();
+    match times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        None => Ok(Match::Times(times)),
+        Some(row) => {
+            let hint = "sort the rows by time, each time once";
+            let place = table.rows[row + 1].1.clone();
+            Err(table.refuse(place, "the time does not increase here", hint))
+        }
+    }
+}
+
+/// A number by which frames are found: equal ones have the same bits, both zeros too.
+fn key(number: f64) -> u64 {
+    (number + 0.0).to_bits()
+}
+
+impl Match {
+    /// The force in a frame: that of its row, or between the rows before and after its time.
+    fn at(&self, table: &Table, frame: &Frame, forces: &[f64]) -> Result<Option<f64>, Error> {
+        let times = match self {
+            Self::Frames(rows) => {
+                let row = rows.get(&key(frame.number as f64));
+                return Ok(row.map(|row| forces[*row]));
+            }
+            Self::Times(times) => times,
+        };
+        let Some(time) = frame.time else {
+            let message = format!(
+                "rows are matched by time, but frame {} has none",
+                frame.number
+            );
+            let hint = "give the field a column `time [s]`, or this table a column `frame`";
+            return Err(table.refuse_columns(message, hint));
+        };
+        let after = times.partition_point(|known| *known < time);
+        if times.get(after) == Some(&time) {
+            return Ok(Some(forces[after]));
+        }
+        if after == 0 || after == times.len() {
+            let row = after.min(times.len() - 1);
+            let message = format!(
+                "frame {} was taken at {time} s, but the machine's times run from {} to {} s",
+                frame.number,
+                times[0],
+                times[times.len() - 1]
+            );
+            let hint = "give both times on one clock: shift one of the columns";
+            return Err(table.refuse(table.rows[row].1.clone(), message, hint));
+        }
+        let share = (time - times[after - 1]) / (times[after] - times[after - 1]);
+        Ok(Some(
+            (1.0 - share) * forces[after - 1] + share * forces[after],
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series(frames: &[(usize, Option<f64>)]) -> MarkerSeries {
+        let frame = |(number, time): &(usize, Option<f64>)| Frame {
+            number: *number,
+            time: *time,
+            markers: Vec::new(),
+        };
+        MarkerSeries {
+            frames: frames.iter().map(frame).collect(),
+            ..MarkerSeries::default()
+        }
+    }
+
+    type Found = Result<(FrameForces, Vec<Diagnostic>), Error>;
+
+    fn of(text: &str, column: &str, frames: &[(usize, Option<f64>)]) -> Found {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("machine.csv");
+        std::fs::write(&path, text).unwrap();
+        let column = ForceColumn {
+            edge: "right".into(),
+            axis: 0,
+            column: column.into(),
+            standard_deviation: None,
+        };
+        forces(&path, &[column], &series(frames))
+    }
+
+    const BY_TIME: &str = "time [ms];Weg [mm];Load [kN]\n0;0;0\n1000;1;0,002\n3000;2;0,006\n";
+
+    #[test]
+    fn forces_are_matched_by_frame_or_between_times() {
+        let by_frame = "frame,ux [mm],Load [N]\n2,1,-5\n7,2,8\n";
+        let (found, told) = of(by_frame, "-Load", &[(7, None), (2, None), (3, None)]).unwrap();
+        let values: Vec<_> = found
+            .iter()
+            .map(|(frame, one)| (frame.unwrap(), one.force))
+            .collect();
+        assert_eq!(values, [(7, -8.0), (2, 5.0)]);
+        assert!((found[0].1.standard_deviation - 0.08).abs() < 1e-12);
+        assert!(
+            told[0].to_string().contains("no force for the frames 3"),
+            "{told:?}"
+        );
+        let (found, told) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
+        let values: Vec<f64> = found.iter().map(|(_, one)| one.force).collect();
+        assert!(
+            (values[0] - 2.0).abs() < 1e-12 && (values[1] - 3.0).abs() < 1e-12,
+            "{values:?}"
+        );
+        assert!(told.is_empty());
+    }
+
+    #[test]
+    fn what_cannot_be_matched_is_told_with_its_place() {
+        let frame = &[(1, Some(1.0))][..];
+        for (text, column, frames, told) in [
+            (
+                BY_TIME,
+                "Kraft",
+                frame,
+                "machine.csv:1: there is no column `Kraft`",
+            ),
+            (
+                BY_TIME,
+                "Weg",
+                frame,
+                "`mm` of the column `Weg` is not a unit of force",
+            ),
+            (
+                "frame,Load\n1,2\n",
+                "Load",
+                frame,
+                "the column `Load` has no unit",
+            ),
+            (
+                "step,Load [N]\n1,2\n",
+                "Load",
+                frame,
+                "neither a column `frame` nor `time`",
+            ),
+            (
+                "frame,Load [N]\n1,2\n1,3\n",
+                "Load",
+                frame,
+                "machine.csv:3: frame 1 occurs twice",
+            ),
+            (
+                "time [s],Load [N]\n1,2\n1,3\n",
+                "Load",
+                frame,
+                "machine.csv:3: the time does not increase",
+            ),
+            (
+                "time [N],Load [N]\n1,2\n",
+                "Load",
+                frame,
+                "`N` is not a unit of time",
+            ),
+            (
+                "frame,Load [N]\n1,lost\n",
+                "Load",
+                frame,
+                "machine.csv:2: column `load`: \"lost\"",
+            ),
+            (
+                "frame,Load [N]\n5,2\n",
+                "Load",
+                frame,
+                "no row belongs to a frame",
+            ),
+            (
+                BY_TIME,
+                "Load",
+                &[(4, Some(9.0))],
+                "frame 4 was taken at 9 s, but the machine's times run from 0 to 3 s",
+            ),
+            (
+                BY_TIME,
+                "Load",
+                &[(4, None)],
+                "matched by time, but frame 4 has none",
+            ),
+        ] {
+            let found = of(text, column, frames).unwrap_err().to_string();
+            assert!(found.contains(told), "{told}: {found}");
+        }
+    }
+}

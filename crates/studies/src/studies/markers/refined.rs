@@ -1,0 +1,92 @@
+//! Cells that are small enough for the data.
+
+use super::{MarkerStudy, Request};
+use crate::error::{Diagnostic, Error};
+use crate::estimation::{FieldEstimate, MOST_REFINED_CELLS};
+use crate::markers::Frame;
+use crate::material::Card;
+use crate::units::decimals;
+
+/// Share of the area on which the mesh's own error may be the larger part of the error of stress.
+const COARSE: f64 = 0.05;
+
+impl MarkerStudy {
+    /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the mesh's
+    /// own error is the larger part of the error of stress on 5 % of the area at most, and is not why the data are not explained. Where that
+    /// would take more cells than can be refined, a warning says how far it came.
+    ///
+    /// # Errors
+    /// As [`Self::prepare`] and [`Self::estimate_frame`]; [`Error::Input`] where the mesh is not made inside an outline.
+    pub fn prepare_refined(
+        card: Card,
+        mut request: Request,
+        told: &dyn Fn(&str),
+    ) -> Result<Self, Error> {
+        let mut study = Self::prepare_with(card.clone(), request.clone())?;
+        loop {
+            let Some(size) = study.cell_size else {
+                return Err(Error::input(
+                    "cells cannot be refined, because the mesh is given",
+                    "leave out --refine (refine), or the mesh",
+                ));
+            };
+            told(&format!("cells of {} mm", decimals(size, 4)));
+            let found = study.estimate_frame(study.most_moved()?)?;
+            let share = found.coarse_share(&study.mesh);
+            let asked = found.verdict.asks_for_finer_mesh();
+            if share <= COARSE && !asked {
+                return Ok(study);
+            }
+            let coarse = |reason: &str| {
+                let still = match asked {
+                    true => "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned(),
+                    false => format!(
+                        "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error",
+                        100.0 * share
+                    ),
+                };
+                Diagnostic::warning("", format!("{still}: {reason}"))
+            };
+            if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
+                let reason = format!("cells smaller than {} mm are too many", decimals(size, 4));
+                study.warnings.push(coarse(&reason));
+                return Ok(study);
+            }
+            request.cell_size = Some(0.5 * size);
+            match Self::prepare_with(card.clone(), request.clone()) {
+                Ok(finer) => study = finer,
+                Err(fault) => {
+                    study.warnings.push(coarse(&fault.to_string()));
+                    return Ok(study);
+                }
+            }
+        }
+    }
+
+    /// The frame whose markers move most.
+    fn most_moved(&self) -> Result<&Frame, Error> {
+        let frames = self.series.frames.iter();
+        let most = frames.max_by(|a, b| a.motion().total_cmp(&b.motion()));
+        most.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
+    }
+}
+
+/// Where the mesh rather than the noise makes the intervals of stress wide.
+pub(super) fn told(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
+    let shares = field.series.frames.iter().zip(estimates);
+    let shares = shares.map(|(frame, found)| (frame.number, found.coarse_share(&field.mesh)));
+    let (number, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (share > COARSE).then(|| {
+        let remedy = match field.cell_size {
+            Some(size) => format!(
+                "cells smaller than {} mm make intervals narrower there (--refine, or --cell-size)",
+                decimals(size, 4)
+            ),
+            None => "a finer mesh makes intervals narrower there".to_owned(),
+        };
+        format!(
+            "In frame {number}, the mesh's discretisation error is the larger part of the stress error on {:.0} % of the area: {remedy}.",
+            100.0 * share
+        )
+    })
+}

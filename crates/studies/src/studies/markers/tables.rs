@@ -1,0 +1,131 @@
+//! Tables of a corrected field, with units in the heads.
+
+use std::fmt::Write;
+
+use super::quantities::{nominal, nominal_stress, residuals};
+use crate::document::write_records;
+use crate::estimation::FieldEstimate;
+use crate::markers::Frame;
+use crate::results::cell_states;
+use crate::studies::markers::MarkerStudy;
+
+/// A row of a table; a number that is none leaves its field empty.
+fn row(text: &mut String, first: &[usize], values: &[f64]) {
+    let first = first.iter().map(ToString::to_string);
+    let values = values.iter().map(|value| match value.is_finite() {
+        true => format!("{value:.9e}"),
+        false => String::new(),
+    });
+    let fields: Vec<String> = first.chain(values).collect();
+    let _ = writeln!(text, "{}", fields.join(","));
+}
+
+/// The name of a standard error; where the data are not explained it is none, and the name says so.
+fn error(estimate: &FieldEstimate) -> &'static str {
+    match estimate.has_intervals() {
+        true => "standard_error",
+        false => "spread_not_explained",
+    }
+}
+
+/// The field at the nodes.
+pub fn nodes(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
+    let error = error(estimate);
+    let mut text = format!(
+        "node,X_mm,Y_mm,ux_mm,uy_mm,ux_{error}_mm,uy_{error}_mm,reaction_x_N,reaction_y_N,\
+         multiplier_x_mm2_per_N,multiplier_y_mm2_per_N\n",
+    );
+    for (node, [x, y]) in field.mesh.nodes.iter().enumerate() {
+        let pair = |values: &[f64]| [values[2 * node], values[2 * node + 1]];
+        let parts = [
+            [*x, *y],
+            pair(&estimate.displacement),
+            pair(&estimate.displacement_error),
+            pair(&estimate.reactions),
+            pair(&estimate.multipliers),
+        ];
+        row(&mut text, &[node], parts.as_flattened());
+    }
+    text
+}
+
+/// Stress, thickness and strain in the middle of the cells.
+pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
+    let mut text = String::from("cell,X_mm,Y_mm");
+    let error = error(estimate);
+    for of in [String::new(), format!("_{error}")] {
+        for component in ["xx", "xy", "yx", "yy"] {
+            let _ = write!(text, ",nominal_stress_{component}{of}_MPa");
+        }
+    }
+    let _ = write!(text, ",thickness_mm,thickness_{error}_mm");
+    for (of, unit) in [("cauchy_stress", "_MPa"), ("green_lagrange_strain", "")] {
+        for component in ["xx", "yy", "zz", "xy"] {
+            let _ = write!(text, ",{of}_{component}{unit}");
+        }
+    }
+    text.push('\n');
+    let law = field.law(estimate);
+    let states = cell_states(&*law, &field.mesh, &[&estimate.displacement], &[]);
+    for (index, (cell, state)) in estimate.cells.iter().zip(states).enumerate() {
+        let mut values = field.mesh.centre(index).to_vec();
+        values.extend(nominal_stress(cell));
+        values.extend(nominal(cell.stress_error));
+        values.extend([cell.thickness, cell.thickness_error]);
+        values.extend(state.cauchy);
+        values.extend(state.green_lagrange);
+        row(&mut text, &[index], &values);
+    }
+    text
+}
+
+/// The markers of a frame.
+pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
+    let mut text = String::from(
+        "marker,X_mm,Y_mm,ux_mm,uy_mm,residual_x_mm,residual_y_mm,standardised_residual,trust,outlier\n",
+    );
+    for (marker, left) in frame.markers.iter().zip(residuals(estimate)) {
+        let ([x, y], [ux, uy], [rx, ry]) = (marker.place, marker.displacement, left.residual);
+        let values = [
+            x,
+            y,
+            ux,
+            uy,
+            rx,
+            ry,
+            left.standardised,
+            left.trust,
+            left.outlier,
+        ];
+        row(&mut text, &[marker.number], &values);
+    }
+    text
+}
+
+/// The forces on the edges in all frames.
+pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
+    let of_axis = |axis: &str| {
+        ["", "_standard_error", "_low", "_high"].map(|of| format!("force_{axis}{of}_N"))
+    };
+    let mut head = vec!["frame".to_owned(), "edge".to_owned()];
+    head.extend(["x", "y"].iter().flat_map(|axis| of_axis(axis)));
+    head.push("verdict".to_owned());
+    let mut records = vec![head];
+    for (frame, estimate) in field.series.frames.iter().zip(estimates) {
+        let explained = |value: f64| match estimate.has_intervals() {
+            true => format!("{value:.9e}"),
+            false => String::new(),
+        };
+        for force in &estimate.forces {
+            let mut record = vec![frame.number.to_string(), force.edge.clone()];
+            for force in &force.force {
+                record.push(format!("{:.9e}", force.value));
+                let [low, high] = force.interval;
+                record.extend([force.standard_error, low, high].map(explained));
+            }
+            record.push(estimate.verdict.answer.words().to_owned());
+            records.push(record);
+        }
+    }
+    write_records(records)
+}

@@ -1,0 +1,227 @@
+//! What the correction of measured displacements writes.
+//!
+//! ```text
+//! report.html, report.md, report.json
+//! displacement.png …                    pictures of the last frame
+//! vtk/corrected.pvd, corrected_001.vtu  field, stress, thickness, reactions, multipliers, standard errors
+//! vtk/markers.pvd, markers_001.vtu      markers with their residuals and outliers
+//! nodes_001.csv, cells_001.csv, markers_001.csv, forces.csv
+//! ```
+//!
+//! Files of a frame carry its number.
+
+use crate::estimation::FieldEstimate;
+use crate::markers::Frame;
+use crate::results::{
+    Array, Content, Grid, GridSeries, Material, NamedGrid, Outcome, Results, Sheet,
+};
+use crate::statistics::larger;
+use crate::studies::markers::MarkerStudy;
+use crate::studies::pictures::Pictures;
+
+use super::quantities::{Residual, misfits, nominal, residuals};
+use super::{figures, json, report, tables};
+
+/// The `kind` of these results.
+pub const KIND: &str = "markers";
+
+/// What is told of a correction but for the [`FrameFiles`]: of the study's `name` and `text`, empty where there is none, and after
+/// `seconds`.
+pub fn results(
+    field: &MarkerStudy,
+    estimates: &[FieldEstimate],
+    name: String,
+    text: String,
+    seconds: f64,
+) -> Results {
+    results_with(&Pictures::default(), field, estimates, name, text, seconds)
+}
+
+/// The same, with the pictures that are wanted.
+pub fn results_with(
+    pictures: &Pictures,
+    field: &MarkerStudy,
+    estimates: &[FieldEstimate],
+    name: String,
+    text: String,
+    seconds: f64,
+) -> Results {
+    let doubts = field.all_doubts(estimates);
+    let frames = || field.series.frames.iter().zip(estimates);
+    let figures = frames().next_back();
+    let figures =
+        figures.map(|(frame, last)| figures::figures(field, frame, last, &pictures.fields));
+    let outcome = Outcome {
+        problem: json::problem(field, estimates),
+        material: Some(Material::from(&field.card)),
+        along: "frame",
+        steps: frames()
+            .map(|(frame, own)| json::step(field, frame, own))
+            .collect(),
+        blocks: report::blocks(field, estimates),
+        figures: figures.unwrap_or_default(),
+        style: pictures.style.clone(),
+        explored: vec![explored(field, estimates)],
+        files: vec![(
+            "forces.csv".to_owned(),
+            Content::Text(tables::forces(field, estimates)),
+        )],
+        doubts: doubts.iter().map(ToString::to_string).collect(),
+        balance: estimates.iter().map(|found| found.imbalance).reduce(larger),
+        summary: report::summary(field, estimates, &doubts),
+        ..Outcome::default()
+    };
+    Results {
+        name,
+        title: title(field),
+        kind: KIND,
+        text,
+        defaults: Vec::new(),
+        read_warnings: field.warnings.iter().map(ToString::to_string).collect(),
+        outcome,
+        seconds,
+    }
+}
+
+/// Grids and tables of one frame, which can be written as soon as it is corrected.
+pub struct FrameFiles {
+    /// The corrected field, and the markers.
+    pub grids: [NamedGrid; 2],
+    /// Tables by the names of their files.
+    pub tables: [(String, String); 3],
+}
+
+impl FrameFiles {
+    /// Of a frame and its corrected field.
+    pub fn new(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Self {
+        let number = frame.number;
+        let named = |series: &str, grid: Grid| NamedGrid {
+            name: grid_name(series, frame),
+            time: Some(time(frame)),
+            grid,
+        };
+        Self {
+            grids: [
+                named(SERIES[0], corrected(field, estimate)),
+                named(SERIES[1], markers(frame, estimate)),
+            ],
+            tables: [
+                (
+                    format!("nodes_{number:03}.csv"),
+                    tables::nodes(field, estimate),
+                ),
+                (
+                    format!("cells_{number:03}.csv"),
+                    tables::cells(field, estimate),
+                ),
+                (
+                    format!("markers_{number:03}.csv"),
+                    tables::markers(frame, estimate),
+                ),
+            ],
+        }
+    }
+}
+
+/// The series of grids.
+pub const SERIES: [&str; 2] = ["corrected", "markers"];
+
+/// The times of the frames and the names of their grids in a series.
+pub fn played(field: &MarkerStudy, series: &str) -> Vec<(f64, String)> {
+    let frames = field.series.frames.iter();
+    frames
+        .map(|frame| (time(frame), grid_name(series, frame)))
+        .collect()
+}
+
+fn grid_name(series: &str, frame: &Frame) -> String {
+    format!("{series}_{:03}", frame.number)
+}
+
+fn time(frame: &Frame) -> f64 {
+    frame.time.unwrap_or(frame.number as f64)
+}
+
+/// The heading of a report.
+pub(super) fn title(field: &MarkerStudy) -> String {
+    match field.conditions.title.as_str() {
+        "" => "Corrected displacement field".to_owned(),
+        title => title.to_owned(),
+    }
+}
+
+/// The corrected fields of the last frames.
+fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
+    const MOST: usize = 20;
+    let frames = field.series.frames.iter().zip(estimates);
+    let last = frames.skip(estimates.len().saturating_sub(MOST));
+    let grids = last.map(|(frame, estimate)| (frame.number as f64, corrected(field, estimate)));
+    GridSeries::steps(SERIES[0], grids)
+}
+
+fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
+    let law = field.law(estimate);
+    let sheet = Sheet {
+        law: &*law,
+        thickness: field.thickness,
+        past: &[],
+        viscous: None,
+    };
+    let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
+    let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([
+        nodal("reaction_N", &estimate.reactions),
+        nodal(
+            "multiplier_zeta_equilibrium_mm2_per_N",
+            &estimate.multipliers,
+        ),
+    ]);
+    if estimate.interior_forces.len() == estimate.displacement.len() {
+        grid = grid.with([nodal("interior_force_N", &estimate.interior_forces)]);
+    }
+    if field.coarse.is_some() {
+        return grid;
+    }
+    let cells = estimate.cells.iter();
+    // Nothing acts across a sheet in plane stress.
+    let stress = cells.clone().flat_map(|cell| {
+        let [xx, xy, yx, yy] = nominal(cell.stress_error);
+        [xx, xy, yx, yy, 0.0]
+    });
+    let thickness = cells.map(|cell| cell.thickness_error);
+    let [of_displacement, of_stress, of_thickness] = match estimate.is_explained() {
+        true => [
+            "displacement_standard_error_mm",
+            "nominal_stress_standard_error_MPa",
+            "thickness_standard_error_mm",
+        ],
+        false => [
+            "displacement_spread_not_explained_mm",
+            "nominal_stress_spread_not_explained_MPa",
+            "thickness_spread_not_explained_mm",
+        ],
+    };
+    grid.with([nodal(of_displacement, &estimate.displacement_error)])
+        .with_in_cells([
+            Array::tensors(of_stress, stress),
+            Array::scalars(of_thickness, thickness),
+        ])
+}
+
+fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
+    let all = &frame.markers;
+    let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
+    let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
+    let numbers = all.iter().map(|marker| marker.number as f64);
+    let of =
+        |name, value: fn(Residual) -> f64| Array::scalars(name, residuals(estimate).map(value));
+    let differences = residuals(estimate).flat_map(|left| left.residual);
+    let misfit = misfits(frame, estimate).into_iter().flatten();
+    Grid::scattered(&places, &measured).with([
+        Array::vectors("residual_mm", differences),
+        Array::vectors("mean_residual_of_neighbours_mm", misfit),
+        of("standardised_residual", |left| left.standardised),
+        of("trust", |left| left.trust),
+        of("outlier", |left| left.outlier),
+        Array::scalars("number", numbers),
+    ])
+}
