@@ -55,6 +55,19 @@ def test_all_models_together_give_the_commands_report(plate, reports):
     results = plate.run([0.2, 0.5])
     assert without_times(results.json) == without_times(report)
     assert results.passed == report["passed"]
+    # The result comes first.
+    title, _, table = repr(results).split("\n", 2)
+    assert title.startswith(results.title)
+    force = f"{report['steps'][0]['finite_element']['force_N']:.4f}"
+    assert force in table.split("deviation from")[0]
+
+
+def test_a_model_alone_warns_as_all_models_do():
+    """A sheet as thin as a foil wrinkles."""
+    foil = gb.Plate(60, 20, 0.005, "neo-hooke", **SMALL)
+    wrinkles = [told for told in foil.run([0.5]).warnings if "wrinkl" in told]
+    assert wrinkles
+    assert [told for told in foil.solve("finite-element", [0.5]).warnings if "wrinkl" in told] == wrinkles
 
 
 def test_errors_are_those_of_the_report(plate, reports):
