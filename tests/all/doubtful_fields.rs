@@ -92,9 +92,10 @@ fn half_a_subset_lies_between_the_outermost_markers_and_the_edge() {
         let [x, y, ux, uy] = line.split(',').collect::<Vec<_>>()[..] else {
             return String::new();
         };
-        match uy.is_empty() {
-            true => format!("{x},-{y},,,0\n"),
-            false => format!("{x},-{y},{ux},{},0\n", format!("-{uy}").replace("--", "")),
+        if uy.is_empty() {
+            format!("{x},-{y},,,0\n")
+        } else {
+            format!("{x},-{y},{ux},{},0\n", format!("-{uy}").replace("--", ""))
         }
     };
     let rows: String = inner.lines().skip(1).map(turned).collect();

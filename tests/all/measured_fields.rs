@@ -76,9 +76,10 @@ fn markers() -> String {
                 u[0] + noise[0] + off * angle.cos(),
                 u[1] + noise[1] + off * angle.sin(),
             ];
-            let _ = match fate > 0.98 {
-                true => writeln!(text, "{frame},{x},{y},,"),
-                false => writeln!(text, "{frame},{x},{y},{ux:.4},{uy:.4}"),
+            let _ = if fate > 0.98 {
+                writeln!(text, "{frame},{x},{y},,")
+            } else {
+                writeln!(text, "{frame},{x},{y},{ux:.4},{uy:.4}")
             };
         }
     }

@@ -22,9 +22,10 @@ pub enum Became {
 
 impl From<bool> for Became {
     fn from(complete: bool) -> Self {
-        match complete {
-            true => Self::Complete,
-            false => Self::Refused,
+        if complete {
+            Self::Complete
+        } else {
+            Self::Refused
         }
     }
 }

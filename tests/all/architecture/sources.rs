@@ -70,9 +70,10 @@ pub fn expand(tree: &str, before: &[String]) -> Vec<(ModulePath, String)> {
         .chain(names.map(str::to_owned))
         .collect();
     let Some(group) = group else {
-        let all = match all.last().is_some_and(|last| last == "self") && all.len() > 1 {
-            true => all[..all.len() - 1].to_vec(),
-            false => all,
+        let all = if all.last().is_some_and(|last| last == "self") && all.len() > 1 {
+            all[..all.len() - 1].to_vec()
+        } else {
+            all
         };
         let own = if name.is_empty() {
             all.last().unwrap().clone()

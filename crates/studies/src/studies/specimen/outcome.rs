@@ -180,9 +180,10 @@ fn deviation(
 
 /// The deviation of a value from another one in % of it; two zeros do not deviate.
 fn percent(value: f64, expected: f64) -> f64 {
-    match value == expected {
-        true => 0.0,
-        false => 100.0 * (value / expected - 1.0),
+    if value == expected {
+        0.0
+    } else {
+        100.0 * (value / expected - 1.0)
     }
 }
 

@@ -272,9 +272,10 @@ fn coarsest_cells(cells: usize, element: CellShape) -> usize {
 /// A place without what rounding has left of it, compared with the size of the mesh.
 fn without_rounding(place: f64, size: f64) -> f64 {
     const ROUNDING: f64 = 1e-12;
-    match place.abs() < ROUNDING * size {
-        true => 0.0,
-        false => format!("{place:.11e}").parse().unwrap_or(place),
+    if place.abs() < ROUNDING * size {
+        0.0
+    } else {
+        format!("{place:.11e}").parse().unwrap_or(place)
     }
 }
 

@@ -241,9 +241,10 @@ impl Reference {
     /// The error of the displacement at each load factor at the nodes of a mesh, without that of a file's outline.
     pub(super) fn errors_at(&self, at: &Mesh) -> Vec<Option<f64>> {
         let is_refined = !self.rounds.is_empty();
-        let others: Vec<&Solution> = match is_refined {
-            true => self.all_halved.iter().collect(),
-            false => self.coarser.iter().collect(),
+        let others: Vec<&Solution> = if is_refined {
+            self.all_halved.iter().collect()
+        } else {
+            self.coarser.iter().collect()
         };
         let all = others.into_iter().chain([&self.finest]);
         let on_nodes: Vec<_> = all
@@ -315,9 +316,10 @@ impl Reference {
         let wanted = Wanted::AtMost(goal.error_percent);
         let source = "the study's goal";
         let check = Check::new(quantity, "%", wanted, source, last.energy_percent);
-        Some(match last.energy_percent.is_nan() {
-            true => check.judged(unknown_energy(), f64::NAN),
-            false => check,
+        Some(if last.energy_percent.is_nan() {
+            check.judged(unknown_energy(), f64::NAN)
+        } else {
+            check
         })
     }
 
