@@ -104,10 +104,10 @@ fn the_end_of_the_springs_is_told_and_the_other_models_complete() {
     let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(3);
     let printed = words(&done.get_output().stdout);
     assert!(
-        printed.contains("FAIL specimen: mass-spring at load factor 1 (reached 0."),
+        printed.contains("FAIL mass-spring at load factor 1 (reached 0."),
         "{printed}"
     );
-    assert!(!printed.contains("specimen: corrector at"), "{printed}");
+    assert!(!printed.contains("corrector at load factor"), "{printed}");
     let out = folder.path().join("out");
     for file in [
         "mass_spring_001.vtu",

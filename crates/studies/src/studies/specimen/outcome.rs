@@ -196,7 +196,8 @@ fn row(
 ) -> Vec<String> {
     let reference = &models.reference;
     let text = |value: Option<f64>, digits: usize| {
-        value.map_or("–".into(), |value| format!("{value:.digits$}"))
+        let known = value.filter(|value| !value.is_nan());
+        known.map_or("–".into(), |value| format!("{value:.digits$}"))
     };
     let springs = |which: usize| deviation.and_then(|own| Some(own.springs?[which]));
     let corrected = |which: usize| deviation.map(|own| own.corrected[which]);
