@@ -54,9 +54,10 @@ impl fmt::Display for Layout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y] = self.cells;
         write!(f, "{x}x{y}")?;
-        match self.grading == 1.0 {
-            true => Ok(()),
-            false => write!(f, "^{}", self.grading),
+        if self.grading == 1.0 {
+            Ok(())
+        } else {
+            write!(f, "^{}", self.grading)
         }
     }
 }
@@ -152,13 +153,15 @@ pub fn go(
         Way::Newton(scheme) => (scheme, true),
     };
     let settings = ClimbSettings::FAST;
-    let mut climb = match layout.grading == 1.0 {
-        true => Climb::even(problem, layout.cells, scheme, settings),
-        false => Climb::graded(problem, layout.cells, scheme, layout.grading, settings),
+    let mut climb = if layout.grading == 1.0 {
+        Climb::even(problem, layout.cells, scheme, settings)
+    } else {
+        Climb::graded(problem, layout.cells, scheme, layout.grading, settings)
     };
-    let climbed = match newton {
-        true => climb.newton_from_affine(stretch, (0.1 * error).sqrt(), 1e-3)?,
-        false => climb.correct(stretch)?,
+    let climbed = if newton {
+        climb.newton_from_affine(stretch, (0.1 * error).sqrt(), 1e-3)?
+    } else {
+        climb.correct(stretch)?
     };
     let seconds = start.elapsed().as_secs_f64();
     let evaluations = (0..EVALUATIONS).map(|_| {

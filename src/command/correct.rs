@@ -34,13 +34,12 @@ pub fn run(options: Options) -> Outcome {
     let pictures = options.pictures.chosen();
     let refine = options.refine;
     let request = request(options)?;
-    let mut field = match refine {
-        true => {
-            let progress = Progress::of(0);
-            let card = Card::load(&request.material, Path::new("."))?;
-            MarkerStudy::prepare_refined(card, request, &|what| progress.tell(what))?
-        }
-        false => MarkerStudy::prepare(request)?,
+    let mut field = if refine {
+        let progress = Progress::of(0);
+        let card = Card::load(&request.material, Path::new("."))?;
+        MarkerStudy::prepare_refined(card, request, &|what| progress.tell(what))?
+    } else {
+        MarkerStudy::prepare(request)?
     };
     warn(&field.warnings);
     let told = Told {

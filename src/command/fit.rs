@@ -132,9 +132,10 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         bounds: bounds(&arguments.bounds)?,
         starts: arguments.starts.into(),
     };
-    let wanted = match arguments.softening {
-        true => InTime::Softening,
-        false => terms.map_or(InTime::Nothing, InTime::Relaxation),
+    let wanted = if arguments.softening {
+        InTime::Softening
+    } else {
+        terms.map_or(InTime::Nothing, InTime::Relaxation)
     };
     let base = arguments.card.as_deref().map(load).transpose()?;
     let fit = found(arguments.law, base, &tests, &settings, wanted)?;
@@ -183,12 +184,13 @@ fn usual_name(data: &Path, fit: &Fit) -> String {
 
 /// Checks that nothing is stated of an earlier loading, which only a fit of softening takes.
 fn check_history(reading: &Statements) -> Result<(), Error> {
-    match reading.contains_key(PRECONDITIONED) {
-        true => Err(Error::input(
+    if reading.contains_key(PRECONDITIONED) {
+        Err(Error::input(
             "an earlier stretch only matters for the softening of a specimen",
             "add --softening, or leave out --preconditioned",
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 
@@ -257,9 +259,12 @@ impl Written<'_> {
                 .map(|path| output::relative(path, folder))
                 .collect(),
             reading: self.reading,
-            base_card: self.base.map(|card| match shipped(card) {
-                true => card.to_owned(),
-                false => output::relative(Path::new(card), folder),
+            base_card: self.base.map(|card| {
+                if shipped(card) {
+                    card.to_owned()
+                } else {
+                    output::relative(Path::new(card), folder)
+                }
             }),
         };
         let text = calibration::card_text(self.fit, self.tests, &provenance);
@@ -348,9 +353,10 @@ pub fn refit(name: &str) -> Outcome {
         }
         None => {
             let terms = record.relaxation_terms.map(Terms::Exactly);
-            let wanted = match record.softening {
-                true => InTime::Softening,
-                false => terms.map_or(InTime::Nothing, InTime::Relaxation),
+            let wanted = if record.softening {
+                InTime::Softening
+            } else {
+                terms.map_or(InTime::Nothing, InTime::Relaxation)
             };
             let law = Law::named(&card.law_name).expect("a card that was loaded has a known law");
             fitted(law, &tests, &settings, wanted)?

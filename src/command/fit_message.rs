@@ -124,9 +124,10 @@ fn parameters(fit: &Fit) -> String {
 
 fn figures(fit: &Fit) -> String {
     let quality = &fit.quality;
-    let residuals = match fit.parameters.is_empty() {
-        true => "  the curve is used as measured; nothing is fitted\n".to_owned(),
-        false => format!(
+    let residuals = if fit.parameters.is_empty() {
+        "  the curve is used as measured; nothing is fitted\n".to_owned()
+    } else {
+        format!(
             "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {}, largest relative error {:.2} %, sum of squares {} MPa²\n",
             quality.rmse,
             quality.nmad_percent,
@@ -134,7 +135,7 @@ fn figures(fit: &Fit) -> String {
             criterion(quality.aicc),
             quality.largest_relative_error_percent,
             digits(quality.sum_of_squares, 6)
-        ),
+        )
     };
     format!(
         "{residuals}  moduli       E₀ = {:.6} MPa, μ₀ = {:.6} MPa\n",
@@ -164,9 +165,12 @@ fn correlation(fit: &Fit) -> String {
     let keys = fit.parameters.iter().map(|parameter| parameter.key);
     // Names that are wider than a column stand as numbers above.
     let is_wide = keys.clone().any(|key| key.len() > 8);
-    let label = |(i, key): (usize, &str)| match is_wide {
-        true => [i.to_string(), format!("{i} {key}")],
-        false => [key.to_owned(), key.to_owned()],
+    let label = |(i, key): (usize, &str)| {
+        if is_wide {
+            [i.to_string(), format!("{i} {key}")]
+        } else {
+            [key.to_owned(), key.to_owned()]
+        }
     };
     let labels: Vec<[String; 2]> = (1..).zip(keys).map(label).collect();
     let names = labels.iter().map(|[_, name]| name.len());
@@ -215,9 +219,10 @@ pub fn curves(
 
 /// AICc, which parameters as many as points do not have.
 fn criterion(aicc: f64) -> String {
-    match aicc.is_finite() {
-        true => format!("{aicc:.2}"),
-        false => "none".to_owned(),
+    if aicc.is_finite() {
+        format!("{aicc:.2}")
+    } else {
+        "none".to_owned()
     }
 }
 
@@ -226,9 +231,10 @@ pub fn chosen(best: &Fit, (nearest, aicc): (&str, f64)) -> String {
     if best.law.name == nearest {
         return String::new();
     }
-    let reason = match best.quality.is_stable() && best.quality.is_identifiable() {
-        true => "the first that is stable over the data and whose parameters are all identifiable",
-        false => "the first that is stable over the data",
+    let reason = if best.quality.is_stable() && best.quality.is_identifiable() {
+        "the first that is stable over the data and whose parameters are all identifiable"
+    } else {
+        "the first that is stable over the data"
     };
     format!(
         "{} is written, {reason}; its AICc is {:.1} above that of {nearest}\n\n",

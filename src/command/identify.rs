@@ -269,9 +269,10 @@ fn powers(function: &Function, unit: &str) -> String {
         };
         let value = number(estimate.value);
         let error = number(estimate.standard_error);
-        let _ = match estimate.standard_error.is_nan() {
-            true => writeln!(text, "  {value}{per}"),
-            false => writeln!(text, "  {value} ± {error}{per}   95 % {low} … {high}"),
+        let _ = if estimate.standard_error.is_nan() {
+            writeln!(text, "  {value}{per}")
+        } else {
+            writeln!(text, "  {value} ± {error}{per}   95 % {low} … {high}")
         };
     }
     text

@@ -16,9 +16,10 @@ pub struct Large {
 impl Large {
     /// The budget that it stands for.
     pub fn budget(&self) -> Budget {
-        match self.allow_large {
-            true => Budget::LARGE,
-            false => Budget::USUAL,
+        if self.allow_large {
+            Budget::LARGE
+        } else {
+            Budget::USUAL
         }
     }
 }

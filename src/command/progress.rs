@@ -71,9 +71,10 @@ impl Progress {
         if is_shown(Shown::EveryStep) {
             return Self::Steps(Mutex::new(State::new(parts)));
         }
-        match has_room() {
-            true => Self::Bar(bar(parts)),
-            false => Self::Lines(Lines::new(parts, BETWEEN_LINES, std::io::stderr())),
+        if has_room() {
+            Self::Bar(bar(parts))
+        } else {
+            Self::Lines(Lines::new(parts, BETWEEN_LINES, std::io::stderr()))
         }
     }
 

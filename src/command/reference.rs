@@ -219,9 +219,12 @@ fn line(found: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
 
 /// What a key takes, in words.
 fn takes(takes: &Takes) -> String {
-    let whole = |[low, high]: &[usize; 2]| match *high > 1 << 40 {
-        true => format!("from {low}"),
-        false => format!("from {low} to {high}"),
+    let whole = |[low, high]: &[usize; 2]| {
+        if *high > 1 << 40 {
+            format!("from {low}")
+        } else {
+            format!("from {low} to {high}")
+        }
     };
     match takes {
         Takes::Text => "text".to_owned(),

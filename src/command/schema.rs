@@ -55,9 +55,10 @@ fn put(root: &mut Value, found: &FoundKey, own: Value) {
     let name = parts.pop().unwrap_or_default();
     for part in parts {
         let entry = &mut table["properties"][part.trim_end_matches("[]")];
-        table = match part.ends_with("[]") {
-            true => &mut entry["items"],
-            false => entry,
+        table = if part.ends_with("[]") {
+            &mut entry["items"]
+        } else {
+            entry
         };
         if table.is_null() {
             *table = object();

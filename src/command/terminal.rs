@@ -40,9 +40,10 @@ impl Printed {
 
 /// Prints a report as JSON, if that is wanted.
 pub fn print_report(report: impl FnOnce() -> Value) -> Result<(), Error> {
-    match IS_JSON.load(Ordering::Relaxed) {
-        true => print_data(&format!("{:#}\n", report())),
-        false => Ok(()),
+    if IS_JSON.load(Ordering::Relaxed) {
+        print_data(&format!("{:#}\n", report()))
+    } else {
+        Ok(())
     }
 }
 
@@ -84,15 +85,14 @@ fn wrapped(text: &str, columns: Option<usize>) -> String {
 
 /// Prints words for people, in lines that the terminal has room for; a reader that has gone away is no error.
 pub fn print(text: &str) -> Result<(), Error> {
-    match IS_JSON.load(Ordering::Relaxed) {
-        true => print_to(
+    if IS_JSON.load(Ordering::Relaxed) {
+        print_to(
             &mut io::stderr().lock(),
             &wrapped(text, columns_of_errors()),
-        ),
-        false => {
-            let columns = columns(terminal_size::terminal_size_of(io::stdout()));
-            print_data(&wrapped(text, columns))
-        }
+        )
+    } else {
+        let columns = columns(terminal_size::terminal_size_of(io::stdout()));
+        print_data(&wrapped(text, columns))
     }
 }
 
@@ -151,9 +151,10 @@ fn told(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String 
     for fault in faults {
         let alike = told.entry((&fault.key, &fault.message)).or_default();
         *alike += 1;
-        match *alike <= OF_ONE_CAUSE {
-            true => text += &words(fault),
-            false => more += 1,
+        if *alike <= OF_ONE_CAUSE {
+            text += &words(fault)
+        } else {
+            more += 1
         }
     }
     if more > 0 {

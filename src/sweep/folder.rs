@@ -222,12 +222,13 @@ pub fn join(runs: &[Run], mut rows: Vec<Row>) -> Result<Vec<Row>, Error> {
             let mut pairs = row.settings.iter().zip(&run.settings);
             row.number == run.number && pairs.all(|(a, b)| a.words() == b.words())
         });
-    match same {
-        true => Ok(rows),
-        false => Err(Error::input(
+    if same {
+        Ok(rows)
+    } else {
+        Err(Error::input(
             "the parts are not those of this sweep",
             "give the same --vary, --points, --fit, --samples, --method and --seed as with --shard",
-        )),
+        ))
     }
 }
 

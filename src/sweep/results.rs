@@ -134,9 +134,12 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
         .map(|key| format!("rank correlation with {key}"))
         .collect();
     head.extend(correlations.iter().map(String::as_str));
-    let told = |value: f64| match value.is_finite() {
-        true => number(value),
-        false => "–".to_owned(),
+    let told = |value: f64| {
+        if value.is_finite() {
+            number(value)
+        } else {
+            "–".to_owned()
+        }
     };
     let lines = all.iter().map(|one| {
         let [low, middle, high] = one.quantiles;

@@ -141,9 +141,10 @@ impl Values {
         }
         if let Some((mean, deviation)) = text.split_once("+-").or_else(|| text.split_once('±')) {
             let (normal, unit) = pair(mean, deviation)?;
-            return match normal[1] > 0.0 {
-                true => Ok(Self::Normal(normal, unit)),
-                false => Err("the standard deviation has to be positive".to_owned()),
+            return if normal[1] > 0.0 {
+                Ok(Self::Normal(normal, unit))
+            } else {
+                Err("the standard deviation has to be positive".to_owned())
             };
         }
         Self::listed(text.split(','))
@@ -203,9 +204,10 @@ fn pair(first: &str, second: &str) -> Result<([f64; 2], String), String> {
         found.ok_or_else(|| format!("`{}` is not a number", text.trim()))
     };
     let ((a, before), (b, unit)) = (read(first)?, read(second)?);
-    match before.is_empty() || before == unit {
-        true => Ok(([a, b], unit)),
-        false => Err(format!("`{before}` and `{unit}` are two units")),
+    if before.is_empty() || before == unit {
+        Ok(([a, b], unit))
+    } else {
+        Err(format!("`{before}` and `{unit}` are two units"))
     }
 }
 

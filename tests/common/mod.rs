@@ -11,6 +11,7 @@ use tempfile::TempDir;
 
 pub mod browser;
 pub mod exports;
+pub mod figures;
 pub mod measured;
 pub mod mesh_files;
 pub mod process;

@@ -140,9 +140,10 @@ pub struct Excess {
 impl Excess {
     /// Advice: a smaller problem, or the option where it helps.
     pub fn remedy(&self, smaller: &str) -> String {
-        match self.passes {
-            true => format!("{smaller}, or use --allow-large"),
-            false => smaller.to_owned(),
+        if self.passes {
+            format!("{smaller}, or use --allow-large")
+        } else {
+            smaller.to_owned()
         }
     }
 }

@@ -50,9 +50,10 @@ pub fn farthest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// A small probability as text; one that is too small for a normal number is given as an upper bound.
 pub fn small_probability(probability: f64) -> String {
-    match probability < f64::MIN_POSITIVE {
-        true => format!("less than {:.0e}", f64::MIN_POSITIVE),
-        false => format!("{probability:.0e}"),
+    if probability < f64::MIN_POSITIVE {
+        format!("less than {:.0e}", f64::MIN_POSITIVE)
+    } else {
+        format!("{probability:.0e}")
     }
 }
 
@@ -166,9 +167,10 @@ pub fn larger(a: f64, b: f64) -> f64 {
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     let middle = values.len() / 2;
-    match values.is_empty() {
-        true => f64::NAN,
-        false => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
+    if values.is_empty() {
+        f64::NAN
+    } else {
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 }
 

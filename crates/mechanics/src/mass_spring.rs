@@ -81,9 +81,10 @@ pub const LARGEST_ASPECT: f64 = 1.732;
 ///
 /// A law with fibres is taken to have ν = ½.
 fn isotropic_shares(law: &dyn HyperelasticLaw) -> [f64; 2] {
-    let nu = match law.is_isotropic() {
-        true => in_plane_poisson_ratio(law),
-        false => 0.5,
+    let nu = if law.is_isotropic() {
+        in_plane_poisson_ratio(law)
+    } else {
+        0.5
     };
     [
         4.0 / (3.0 * (1.0 + nu)),
@@ -117,9 +118,10 @@ impl MassSpring {
     /// would need edges of negative stiffness.
     pub fn new(problem: &ClampedPlate, cells: [usize; 2], settings: LatticeSettings) -> Self {
         let mesh = Mesh::plate(problem.size, cells, CellShape::Quad4);
-        let [scale, area_stiffness] = match settings.area_term {
-            true => isotropic_shares(&*problem.law),
-            false => [1.0, 0.0],
+        let [scale, area_stiffness] = if settings.area_term {
+            isotropic_shares(&*problem.law)
+        } else {
+            [1.0, 0.0]
         };
         let [hx, hy] = mesh.cell_size(0);
         let diagonal = hx.hypot(hy);

@@ -238,9 +238,10 @@ fn weighted_percent(mesh: &Mesh, areas: &[f64], field: &[f64], reference: &[f64]
     let [low, high] = mesh.bounding_box();
     let size = (high[0] - low[0]).max(high[1] - low[1]) * areas.iter().sum::<f64>().sqrt();
     let rests = |field: &[f64]| field.weighted_norm(areas) <= ROUNDING * size;
-    match rests(field) && rests(reference) {
-        true => 0.0,
-        false => percent(areas, field, reference),
+    if rests(field) && rests(reference) {
+        0.0
+    } else {
+        percent(areas, field, reference)
     }
 }
 

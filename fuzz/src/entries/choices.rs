@@ -41,9 +41,10 @@ impl<'a> Choices<'a> {
         const STRANGE: [f64; 12] = [
             0.0, -1.0, 1e-6, 1e6, 1e-12, -1e9, 1e-30, 1e30, 1e150, 0.5, 1.0, 1e3,
         ];
-        match self.rarely() {
-            true => STRANGE[self.below(STRANGE.len())],
-            false => low + (high - low) * f64::from(self.byte()) / 255.0,
+        if self.rarely() {
+            STRANGE[self.below(STRANGE.len())]
+        } else {
+            low + (high - low) * f64::from(self.byte()) / 255.0
         }
     }
 }

@@ -187,9 +187,10 @@ fn test_data(choices: &mut Choices) -> String {
     let (modulus, bend) = (choices.between(0.01, 1.0), choices.between(-0.2, 0.5));
     let count = 2 + choices.below(10);
     for i in 1..=count {
-        let strain = match choices.rarely() {
-            true => choices.between(-0.5, 3.0),
-            false => 0.1 * i as f64,
+        let strain = if choices.rarely() {
+            choices.between(-0.5, 3.0)
+        } else {
+            0.1 * i as f64
         };
         let stress = modulus * strain * (1.0 + bend * strain) + choices.between(-0.001, 0.001);
         let _ = writeln!(text, "{strain},{stress}");

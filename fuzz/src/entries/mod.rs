@@ -1,6 +1,6 @@
 //! What every target does with an input: the doors of the library, as the command uses them.
 //!
-//! The targets of the campaign and `tests/corpus.rs`, which replays what was found, share this file.
+//! The targets of the campaign and `tests/all/corpus.rs`, which replays what was found, share this file.
 
 use std::path::Path;
 
@@ -22,9 +22,10 @@ pub enum Became {
 
 impl From<bool> for Became {
     fn from(complete: bool) -> Self {
-        match complete {
-            true => Self::Complete,
-            false => Self::Refused,
+        if complete {
+            Self::Complete
+        } else {
+            Self::Refused
         }
     }
 }

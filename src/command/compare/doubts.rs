@@ -9,10 +9,7 @@ pub fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
     let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
     let ratio = ratios.filter(|ratios| ratios.iter().all(|ratio| *ratio == ratios[0]));
     let doubt = ratio.map(|ratios| {
-        let relation = match differences[0].factor.abs() > 1.0 {
-            true => "small",
-            false => "large",
-        };
+        let relation = if differences[0].factor.abs() > 1.0 { "small" } else { "large" };
         let message = format!(
             "the imported displacements are about {} times too {relation}, as if in another unit of length",
             ratios[0]

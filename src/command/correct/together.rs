@@ -99,9 +99,10 @@ fn read(options: Options) -> Result<(JointStudy, Vec<PathBuf>), Error> {
     };
     let own_name = options.fields.first().map(|first| name(first));
     let like = request(options)?;
-    let fit = match like.conditions.fit.is_empty() {
-        true => vec!["all".to_owned()],
-        false => like.conditions.fit.clone(),
+    let fit = if like.conditions.fit.is_empty() {
+        vec!["all".to_owned()]
+    } else {
+        like.conditions.fit.clone()
     };
     let mut specimens = Vec::new();
     if let Some(own_name) = own_name {

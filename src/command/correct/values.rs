@@ -150,9 +150,10 @@ fn quantity(
         let hint = fault.remedy(text, dimension);
         Diagnostic::error("", format!("it {fault}")).hint(hint)
     })?;
-    match holds(value) {
-        true => Ok(value),
-        false => Err(Diagnostic::error("", wanted).hint(format!("write it as in \"{example}\""))),
+    if holds(value) {
+        Ok(value)
+    } else {
+        Err(Diagnostic::error("", wanted).hint(format!("write it as in \"{example}\"")))
     }
 }
 
@@ -171,9 +172,10 @@ pub fn unit(text: &str) -> Result<f64, Diagnostic> {
         let number =
             text.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first));
         let hint = fault.remedy(text, Dimension::Length);
-        match number {
-            true => length(text),
-            false => Err(Diagnostic::error("", format!("it {fault}")).hint(hint)),
+        if number {
+            length(text)
+        } else {
+            Err(Diagnostic::error("", format!("it {fault}")).hint(hint))
         }
     })
 }

@@ -75,9 +75,10 @@ impl<R: ColumnRole> ChosenColumns<R> {
                 Err(fault) => faults.push(fault),
             }
         }
-        match faults.is_empty() {
-            true => Ok(FoundColumns(found)),
-            false => Err(Error::Input(faults)),
+        if faults.is_empty() {
+            Ok(FoundColumns(found))
+        } else {
+            Err(Error::Input(faults))
         }
     }
 }
@@ -138,15 +139,14 @@ pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
         return Ok(number - 1);
     }
     let known = heads.iter().map(String::as_str);
-    let hint = match heads.iter().all(String::is_empty) {
-        true => format!(
+    let hint = if heads.iter().all(String::is_empty) {
+        format!(
             "the columns of this file have no names: write their numbers, 1 to {}",
             heads.len()
-        ),
-        false => {
-            let near = nearest(name, known).map(|near| format!("did you mean `{near}`? "));
-            format!("{}the file has {all}", near.unwrap_or_default())
-        }
+        )
+    } else {
+        let near = nearest(name, known).map(|near| format!("did you mean `{near}`? "));
+        format!("{}the file has {all}", near.unwrap_or_default())
     };
     let message = format!("there is no column `{name}`");
     Err(table.fault(table.columns_place.clone(), message, &hint))

@@ -52,9 +52,12 @@ fn path(statement: &str, table: &mut String) -> Option<String> {
     }
     let (key, _) = statement.split_once('=')?;
     let key = key.trim();
-    is_name(key).then(|| match table.is_empty() {
-        true => key.to_owned(),
-        false => format!("{table}.{key}"),
+    is_name(key).then(|| {
+        if table.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{table}.{key}")
+        }
     })
 }
 

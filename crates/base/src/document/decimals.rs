@@ -32,9 +32,10 @@ impl Decimals {
         } else {
             self.ungrouped |= value.abs() >= 100.0;
         }
-        match self.point && self.comma {
-            true => Err(NotANumber::Mixed(field.to_owned())),
-            false => Ok(value),
+        if self.point && self.comma {
+            Err(NotANumber::Mixed(field.to_owned()))
+        } else {
+            Ok(value)
         }
     }
 

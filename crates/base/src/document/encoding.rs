@@ -17,9 +17,10 @@ impl TextEncoding {
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        match self.0 == WINDOWS_1252 {
-            true => "Latin-1 (Windows-1252)",
-            false => self.0.name(),
+        if self.0 == WINDOWS_1252 {
+            "Latin-1 (Windows-1252)"
+        } else {
+            self.0.name()
         }
     }
 }

@@ -39,9 +39,12 @@ pub enum FileFault {
 /// # Errors
 /// A [`FileFault`].
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
-    let limited = |bytes: Vec<u8>| match bytes.len() as u64 > most {
-        true => Err(FileFault::TooLarge(most >> 20)),
-        false => Ok(bytes),
+    let limited = |bytes: Vec<u8>| {
+        if bytes.len() as u64 > most {
+            Err(FileFault::TooLarge(most >> 20))
+        } else {
+            Ok(bytes)
+        }
     };
     if let Some(bytes) = given(path) {
         return limited(bytes);

@@ -59,9 +59,10 @@ impl<'a> Head<'a> {
     pub fn missing(&self, key: &str, example: &str) -> Box<Diagnostic> {
         let option = key.replace(" measure", "").replace(' ', "-");
         let message = format!("{}: the {key} is not stated", self.table.source.name);
-        let quoted = match example.contains(' ') {
-            true => format!("\"{example}\""),
-            false => example.to_owned(),
+        let quoted = if example.contains(' ') {
+            format!("\"{example}\"")
+        } else {
+            example.to_owned()
         };
         let hint = format!(
             "write `# {key}: {example}` at the top of the file, or give --{option} {quoted}"
@@ -244,9 +245,10 @@ pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnost
             }
         }
     }
-    match faults.is_empty() {
-        true => Ok(pairs),
-        false => Err(faults),
+    if faults.is_empty() {
+        Ok(pairs)
+    } else {
+        Err(faults)
     }
 }
 

@@ -11,9 +11,10 @@ pub(super) const SURVEYED: usize = 1000;
 /// become remarks.
 pub(super) fn plain_text(text: &str) -> String {
     let text = text.trim_start_matches('\u{feff}');
-    let text = match text.contains('\n') {
-        true => text.to_owned(),
-        false => text.replace('\r', "\n"),
+    let text = if text.contains('\n') {
+        text.to_owned()
+    } else {
+        text.replace('\r', "\n")
     };
     if !text.starts_with("***") {
         return text;

@@ -200,9 +200,12 @@ impl<'a> Section<'a> {
             if known.contains(&key) {
                 continue;
             }
-            let hint = remedy(key).unwrap_or_else(|| match known.is_empty() {
-                true => "no key is expected here".to_owned(),
-                false => suggestion(key, &known, "known here:"),
+            let hint = remedy(key).unwrap_or_else(|| {
+                if known.is_empty() {
+                    "no key is expected here".to_owned()
+                } else {
+                    suggestion(key, &known, "known here:")
+                }
             });
             let span = name.span().start..name.span().end.max(name.span().start + 1);
             let kind = if matches!(value.get_ref(), DeValue::Table(_)) {

@@ -90,13 +90,14 @@ impl Table {
         let faults = Faults::default();
         table.read_records(&text, &faults);
         faults.finish()?;
-        match table.rows.is_empty() {
-            true => Err(table.refuse(
+        if table.rows.is_empty() {
+            Err(table.refuse(
                 0..0,
                 "there are no rows of numbers",
                 "a table has a header line of names with units, and rows of numbers",
-            )),
-            false => Ok(table),
+            ))
+        } else {
+            Ok(table)
         }
     }
 
@@ -185,9 +186,10 @@ impl Table {
             .iter()
             .skip(known)
             .all(|field| field.trim().is_empty());
-        let count = match known > 0 && beyond {
-            true => record.len().min(known),
-            false => record.len(),
+        let count = if known > 0 && beyond {
+            record.len().min(known)
+        } else {
+            record.len()
         };
         if self.columns.is_empty() {
             self.columns = vec![Column::default(); count];
@@ -283,9 +285,10 @@ impl Table {
             Some(self.fault(self.rows[*row].1.clone(), format!("{name}{reason}"), hint))
         };
         let found: Vec<Diagnostic> = columns.into_iter().filter_map(first).collect();
-        match found.is_empty() {
-            true => Ok(()),
-            false => Err(Error::Input(found)),
+        if found.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::Input(found))
         }
     }
 

@@ -49,11 +49,10 @@ pub fn read_text(path: &Path, most: u64, hint: &str) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|fault| {
         let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        let hint = match is_text {
-            true => format!(
-                "save it as UTF-8: an editor may have chosen Latin-1 or Windows-1252; {hint}"
-            ),
-            false => hint.to_owned(),
+        let hint = if is_text {
+            format!("save it as UTF-8: an editor may have chosen Latin-1 or Windows-1252; {hint}")
+        } else {
+            hint.to_owned()
         };
         Error::input(format!("{name}: line {line} is not UTF-8 text"), hint)
     })

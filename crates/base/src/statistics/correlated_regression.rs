@@ -292,9 +292,10 @@ mod tests {
         let values = DVector::from_fn(2 * count, |row, _| components[row % 2][row / 2]);
         let design = DMatrix::from_fn(2 * count, 6, |row, column| {
             let [x, y] = places[row / 2];
-            match column / 3 == row % 2 {
-                true => [1.0, x / 20.0, y / 12.0][column % 3],
-                false => 0.0,
+            if column / 3 == row % 2 {
+                [1.0, x / 20.0, y / 12.0][column % 3]
+            } else {
+                0.0
             }
         });
         let fitted = (design.tr_mul(&design))

@@ -116,9 +116,12 @@ impl Whitening {
     /// The transformation that makes noise of this correlation white; the identity where there is no correlation.
     pub fn new(sites: &Sites, correlation: &Correlation) -> Self {
         let row = |(place, before): &(usize, Vec<usize>)| {
-            let at = |a: usize, b: usize| match a == b {
-                true => 1.0,
-                false => correlation.at(distance(sites.places[a], sites.places[b])),
+            let at = |a: usize, b: usize| {
+                if a == b {
+                    1.0
+                } else {
+                    correlation.at(distance(sites.places[a], sites.places[b]))
+                }
             };
             let own = DVector::from_iterator(before.len(), before.iter().map(|b| at(*place, *b)));
             let mutual =
@@ -221,9 +224,12 @@ mod tests {
         let sites = sites();
         let whitening = Whitening::new(&sites, &SHORT);
         let places = sites.places();
-        let exact = DMatrix::from_fn(places.len(), places.len(), |i, j| match i == j {
-            true => 1.0,
-            false => SHORT.at(distance(places[i], places[j])),
+        let exact = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+            if i == j {
+                1.0
+            } else {
+                SHORT.at(distance(places[i], places[j]))
+            }
         });
         let exact_log = exact.clone().determinant().ln();
         assert!((whitening.log_determinant() / exact_log - 1.0).abs() < 0.02);

@@ -291,9 +291,10 @@ impl CurveNoise {
             let missed = self.parts.iter().zip(&errors).map(|(part, error)| {
                 part.weight * 2.0 * student_tail(self.freedom, middle / error)
             });
-            match missed.sum::<f64>() > MISSED {
-                true => low = middle,
-                false => high = middle,
+            if missed.sum::<f64>() > MISSED {
+                low = middle
+            } else {
+                high = middle
             }
         }
         high

@@ -50,9 +50,10 @@ fn likelihood(curves: &[Vec<usize>], residual: &DVector<f64>, squares: &DVector<
         let (logarithms, ratios): (Vec<f64>, Vec<f64>) = own.unzip();
         let count = ratios.len() as f64;
         let mean = ratios.iter().sum::<f64>() / count;
-        match ratios.len() < FEWEST || mean == 0.0 {
-            true => 0.0,
-            false => -0.5 * (logarithms.iter().sum::<f64>() + count * mean.ln()),
+        if ratios.len() < FEWEST || mean == 0.0 {
+            0.0
+        } else {
+            -0.5 * (logarithms.iter().sum::<f64>() + count * mean.ln())
         }
     };
     curves.iter().map(of_curve).sum()

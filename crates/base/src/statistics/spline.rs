@@ -133,9 +133,10 @@ impl BSpline {
                 let j = interval + self.degree + i - q;
                 let [from, next, to, end] =
                     [j, j + 1, j + q, j + q + 1].map(|index| self.knot(index));
-                let [rising, falling] = match q > self.degree - order {
-                    true => [slope, -slope],
-                    false => [s - from, end - s],
+                let [rising, falling] = if q > self.degree - order {
+                    [slope, -slope]
+                } else {
+                    [s - from, end - s]
                 };
                 let before = if i == 0 {
                     0.0

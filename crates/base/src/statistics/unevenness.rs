@@ -181,9 +181,10 @@ impl Told {
     /// g or h, where chance would hardly cause it; quadratic terms are zero where places are few.
     fn slopes(&self, logarithms: &Logarithms) -> Option<[f64; TERMS]> {
         let sites = &self.sites;
-        let count = match sites.len() < FEWEST[1] {
-            true => FEW_TERMS,
-            false => TERMS,
+        let count = if sites.len() < FEWEST[1] {
+            FEW_TERMS
+        } else {
+            TERMS
         };
         let middle = |term: usize| mean(&sites.iter().map(|site| site[term]).collect::<Vec<_>>());
         let means: Vec<f64> = (0..count).map(middle).collect();
@@ -283,10 +284,7 @@ fn out_of_the_middle(places: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) ->
 
 /// A ratio; zero where the whole is not positive.
 fn share(part: f64, whole: f64) -> f64 {
-    match whole > 0.0 {
-        true => part / whole,
-        false => 0.0,
-    }
+    if whole > 0.0 { part / whole } else { 0.0 }
 }
 
 /// dᵢ; `None` where a component has no noise at all.

@@ -4,9 +4,10 @@
 pub fn decimals(value: f64, decimals: usize) -> String {
     const ROUNDING: f64 = 1e-12;
     let least = 10_f64.powi(2 - decimals as i32);
-    match (ROUNDING..least).contains(&value.abs()) {
-        true => number(value),
-        false => format!("{value:.decimals$}"),
+    if (ROUNDING..least).contains(&value.abs()) {
+        number(value)
+    } else {
+        format!("{value:.decimals$}")
     }
 }
 

@@ -310,16 +310,17 @@ impl Whole<'_> {
         for history in begun {
             let data = &self.tests[history.test];
             let mut text = format!("{} begins stretched: ", data.name);
-            let _ = match data.rise > 0.0 {
-                true => write!(
+            let _ = if data.rise > 0.0 {
+                write!(
                     text,
                     "a linear rise over the {} s before is assumed",
                     data.rise
-                ),
-                false => write!(
+                )
+            } else {
+                write!(
                     text,
                     "a sudden rise is assumed; state with `--ramp` how long it took"
-                ),
+                )
             };
             found.push(text);
         }

@@ -111,9 +111,10 @@ impl FunctionText<'_> {
             .iter()
             .map(|one| self.factor * one.standard_error)
             .collect();
-        let zero = match estimates.iter().any(|one| one.value < 0.0) {
-            true => "# Values below zero are written as zero.\n",
-            false => "",
+        let zero = if estimates.iter().any(|one| one.value < 0.0) {
+            "# Values below zero are written as zero.\n"
+        } else {
+            ""
         };
         format!(
             "kind = \"table\"\nat = [{}]\nvalues = {}\n{zero}# standard errors: {}\n",

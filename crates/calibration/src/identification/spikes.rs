@@ -90,9 +90,10 @@ mod tests {
         let values = times.iter().map(|t| {
             let draw: f64 = StandardNormal.sample(&mut random);
             let value = motion(*t) + noise * draw;
-            match quantum > 0.0 {
-                true => (value / quantum).round() * quantum,
-                false => value,
+            if quantum > 0.0 {
+                (value / quantum).round() * quantum
+            } else {
+                value
             }
         });
         let values = values.collect();

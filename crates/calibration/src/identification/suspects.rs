@@ -199,9 +199,10 @@ fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedF
             suspect: *suspect,
             amount,
             effect: amount.abs() * relative_size(joint, &columns[index]),
-            error: match is_own {
-                true => (fit.misfit.max(1.0) / information).sqrt(),
-                false => f64::INFINITY,
+            error: if is_own {
+                (fit.misfit.max(1.0) / information).sqrt()
+            } else {
+                f64::INFINITY
             },
             taken: score * score / information,
             follow,
@@ -280,9 +281,10 @@ pub fn description(suspects: &[Suspected]) -> Option<String> {
         .iter()
         .map(|own| own.suspect.words(own.amount, own.error));
     let words: Vec<String> = words.collect();
-    let remedy = match suspects.first()?.suspect.is_of_body() {
-        true => "smooth functions cannot follow it, and no interval or band includes it",
-        false => "correct this in the data first, because no interval includes it",
+    let remedy = if suspects.first()?.suspect.is_of_body() {
+        "smooth functions cannot follow it, and no interval or band includes it"
+    } else {
+        "correct this in the data first, because no interval includes it"
     };
     Some(format!(
         "the recording indicates {}: {remedy}",

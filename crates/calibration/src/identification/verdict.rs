@@ -175,14 +175,16 @@ impl Evidence<'_> {
             .into_iter()
             .chain(reason)
             .collect();
-        let doubts = match reasons.is_empty() {
-            true => doubt.into_iter().chain(self.doubts(found)).collect(),
-            false => self.faults.doubts(&self.recording.times),
+        let doubts = if reasons.is_empty() {
+            doubt.into_iter().chain(self.doubts(found)).collect()
+        } else {
+            self.faults.doubts(&self.recording.times)
         };
         RecordingVerdict {
-            answer: match reasons.is_empty() {
-                true => Answer::Explained,
-                false => Answer::NotExplained,
+            answer: if reasons.is_empty() {
+                Answer::Explained
+            } else {
+                Answer::NotExplained
             },
             reasons,
             doubts,

@@ -289,9 +289,10 @@ impl<'a> Climb<'a> {
 
     /// Without a factor of the coarsest operator that was assembled last, no iteration is possible.
     fn check_operators(&self) -> Result<(), SolveFault> {
-        match self.multigrid.is_factorised() {
-            true => Ok(()),
-            false => Err(SolveFault::NotPositiveDefinite),
+        if self.multigrid.is_factorised() {
+            Ok(())
+        } else {
+            Err(SolveFault::NotPositiveDefinite)
         }
     }
 
@@ -361,9 +362,12 @@ fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<
     if halve == [false, false] {
         return None;
     }
-    Some([0, 1].map(|axis| match halve[axis] {
-        true => thin_out(&boundaries[axis]),
-        false => boundaries[axis].clone(),
+    Some([0, 1].map(|axis| {
+        if halve[axis] {
+            thin_out(&boundaries[axis])
+        } else {
+            boundaries[axis].clone()
+        }
     }))
 }
 

@@ -30,9 +30,10 @@ impl Numbers {
         let free = lines.count - 2;
         let across = lines.nodes.min(free);
         Self {
-            steps: match across == lines.nodes {
-                true => [2, 2 * across],
-                false => [2 * across, 2],
+            steps: if across == lines.nodes {
+                [2, 2 * across]
+            } else {
+                [2 * across, 2]
             },
             unknowns: 2 * lines.nodes * free,
             // The node after next to the one beside: the last of its two unknowns.

@@ -55,9 +55,10 @@ impl Stencil {
     /// stiffness of a column. Whether `column` always succeeded.
     pub fn assemble(&mut self, column: impl Fn(usize, &mut CellStiffness) -> bool + Sync) -> bool {
         let lines = self.lines;
-        let chunk = match lines.threaded() {
-            true => (lines.count / 64).max(8),
-            false => lines.count,
+        let chunk = if lines.threaded() {
+            (lines.count / 64).max(8)
+        } else {
+            lines.count
         };
         let size = COEFFICIENTS * lines.stride();
         let fill = |(index, coefficients): (usize, &mut [f32])| {

@@ -196,9 +196,10 @@ impl Strip {
             places.for_each(|(place, numbers)| self.gather(stencil, batch, place, numbers));
             Arch::new().dispatch(Factorise { factors });
         };
-        match self.lines.threaded() {
-            true => factors.par_chunks_mut(size).enumerate().for_each(factorise),
-            false => factors.chunks_mut(size).enumerate().for_each(factorise),
+        if self.lines.threaded() {
+            factors.par_chunks_mut(size).enumerate().for_each(factorise)
+        } else {
+            factors.chunks_mut(size).enumerate().for_each(factorise)
         }
         self.factors = factors;
     }
@@ -247,9 +248,10 @@ impl Strip {
             });
         };
         let size = places * PAIR;
-        match self.lines.threaded() {
-            true => corrections.par_chunks_mut(size).enumerate().for_each(solve),
-            false => corrections.chunks_mut(size).enumerate().for_each(solve),
+        if self.lines.threaded() {
+            corrections.par_chunks_mut(size).enumerate().for_each(solve)
+        } else {
+            corrections.chunks_mut(size).enumerate().for_each(solve)
         }
         self.add(&corrections, x, colour);
         self.corrections = corrections;

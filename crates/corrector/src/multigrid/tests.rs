@@ -4,9 +4,12 @@ use super::*;
 /// Lines that are closer to each other towards both ends; with a grading of 1 they are as far everywhere.
 fn graded(length: f64, cells: usize, grading: f64) -> Vec<f64> {
     let near = |line: usize| 0.5 * (2.0 * line as f64 / cells as f64).powf(grading);
-    let share = |line: usize| match 2 * line <= cells {
-        true => near(line),
-        false => 1.0 - near(cells - line),
+    let share = |line: usize| {
+        if 2 * line <= cells {
+            near(line)
+        } else {
+            1.0 - near(cells - line)
+        }
     };
     (0..=cells).map(|line| length * share(line)).collect()
 }

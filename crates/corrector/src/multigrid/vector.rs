@@ -109,12 +109,11 @@ impl Vector {
     pub fn clear(&mut self) {
         let (stride, threaded) = (self.lines.stride(), self.lines.threaded());
         for component in &mut self.components {
-            match threaded {
-                true => {
-                    let lines = component.values.par_chunks_mut(stride).with_min_len(8);
-                    lines.for_each(|line| line.fill(0.0));
-                }
-                false => component.values.fill(0.0),
+            if threaded {
+                let lines = component.values.par_chunks_mut(stride).with_min_len(8);
+                lines.for_each(|line| line.fill(0.0));
+            } else {
+                component.values.fill(0.0)
             }
         }
     }

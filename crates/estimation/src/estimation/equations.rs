@@ -89,9 +89,10 @@ impl<'a> Equations<'a> {
         }
         let weighted = task.knowledge.physics == Physics::Weighted;
         let forces = vec![0.0; energy.unknowns()];
-        let newton = match weighted {
-            true => Newton::new(&Sum::with_forces(&energy, &forces), &held),
-            false => Newton::new(&energy, &held),
+        let newton = if weighted {
+            Newton::new(&Sum::with_forces(&energy, &forces), &held)
+        } else {
+            Newton::new(&energy, &held)
         };
         Ok(Self {
             task: *task,

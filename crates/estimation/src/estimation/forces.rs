@@ -105,9 +105,10 @@ impl NearestField<'_> {
             };
             let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_all));
             let variance = measured.standard_deviation.powi(2);
-            let left = match knowledge.forces_are_checks {
-                true => variance + noise,
-                false => variance - noise,
+            let left = if knowledge.forces_are_checks {
+                variance + noise
+            } else {
+                variance - noise
             };
             if left > REDUNDANT * variance {
                 let bodies = self.equations.bodies.iter().zip(&scale.forces);

@@ -109,9 +109,10 @@ fn settle<'a>(
     for edge in edges.iter_mut().filter(|edge| edge.tested) {
         edge.of_body = true;
     }
-    match singular_corners(&edges) == before {
-        true => Ok((found, edges)),
-        false => Ok((Equations::new(task, &edges)?.run(MOST_STEPS)?, edges)),
+    if singular_corners(&edges) == before {
+        Ok((found, edges))
+    } else {
+        Ok((Equations::new(task, &edges)?.run(MOST_STEPS)?, edges))
     }
 }
 

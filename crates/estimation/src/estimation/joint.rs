@@ -198,9 +198,10 @@ fn mesh_error(says: &[FrameInformation], inverse: &DMatrix<f64>) -> Option<Step>
 /// Half the width of a 95 % interval in standard errors, with so many degrees of freedom of the noise.
 fn reach(descent: &Descent, freedom: f64) -> f64 {
     const LEAST_FREEDOM: f64 = 3.0;
-    match descent.frames.iter().all(|frame| frame.knows_noise()) {
-        true => normal_reach(),
-        false => student_reach(freedom.max(LEAST_FREEDOM)),
+    if descent.frames.iter().all(|frame| frame.knows_noise()) {
+        normal_reach()
+    } else {
+        student_reach(freedom.max(LEAST_FREEDOM))
     }
 }
 

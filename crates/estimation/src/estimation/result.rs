@@ -88,9 +88,10 @@ impl NearestField<'_> {
         let freedom = self.widen(judged).unwrap_or(white);
         let is_plain =
             self.equations.task.knowledge.robust == Robust::No && judged.noises.is_empty();
-        let reach = match self.observations().known_noise && is_plain {
-            true => normal_reach(),
-            false => student_reach(freedom),
+        let reach = if self.observations().known_noise && is_plain {
+            normal_reach()
+        } else {
+            student_reach(freedom)
         };
         // Where the data are not explained, residuals taken for noise would hide a wrong force.
         let force_checks = match judged.verdict.answer {
@@ -167,9 +168,10 @@ impl NearestField<'_> {
         let found = equations.neighbours(&self.parameters);
         let considered = equations.task.knowledge.uncertain_law();
         let considered = considered.map_or(Vec::new(), |law| law.neighbours());
-        let first = match found.is_empty() {
-            true => self.parameters.len(),
-            false => equations.motion.parameters(),
+        let first = if found.is_empty() {
+            self.parameters.len()
+        } else {
+            equations.motion.parameters()
         };
         (first..).zip(found.into_iter().chain(considered)).collect()
     }

@@ -22,9 +22,10 @@ impl<'a> Dashpots<'a> {
             return Ok(None);
         }
         let pose = self.springs.pose(element, u);
-        match pose.stretch > 0.0 {
-            true => Ok(Some(pose)),
-            false => Err(Inadmissible { element }),
+        if pose.stretch > 0.0 {
+            Ok(Some(pose))
+        } else {
+            Err(Inadmissible { element })
         }
     }
 

@@ -262,9 +262,10 @@ impl<'a> March<'a> {
             let step = rest / count;
             let run = (count as usize).min(RUN);
             // After a jerk viscous forces may decay faster than any step.
-            let trust = match 0.5 * step < SHORTEST * self.pace.wanted.min(rest) {
-                true => Trust::ViscousWorkTooLarge,
-                false => Trust::AllEnergies,
+            let trust = if 0.5 * step < SHORTEST * self.pace.wanted.min(rest) {
+                Trust::ViscousWorkTooLarge
+            } else {
+                Trust::AllEnergies
             };
             match self.take(&at, step, run, trust) {
                 Ok(next) => {
@@ -289,12 +290,12 @@ impl<'a> March<'a> {
 
     /// The longest step now, according to the settings, the integrator and halving.
     fn longest(&mut self, at: &BodyState) -> Result<f64, SolveFault> {
-        let limit = match self.pace.automatic {
-            true => self
-                .stepper
+        let limit = if self.pace.automatic {
+            self.stepper
                 .longest(self.motion, at)?
-                .unwrap_or(f64::INFINITY),
-            false => self.pace.wanted,
+                .unwrap_or(f64::INFINITY)
+        } else {
+            self.pace.wanted
         };
         self.afford(at.time, limit)?;
         Ok(self.pace.within(limit))
@@ -304,13 +305,14 @@ impl<'a> March<'a> {
     fn afford(&self, time: f64, longest: f64) -> Result<(), SolveFault> {
         let rest = self.settings.duration - time;
         let needed = self.history.steps as f64 + rest / longest;
-        match needed <= self.settings.most_steps {
-            true => Ok(()),
-            false => Err(SolveFault::TooManySteps {
+        if needed <= self.settings.most_steps {
+            Ok(())
+        } else {
+            Err(SolveFault::TooManySteps {
                 needed,
                 longest,
                 allowed: self.settings.most_steps,
-            }),
+            })
         }
     }
 
@@ -322,9 +324,10 @@ impl<'a> March<'a> {
             Trust::AllEnergies => gain,
             Trust::ViscousWorkTooLarge => gain.min(gain - viscous_work),
         };
-        match self.stepper.conserves() {
-            true => made.max(-gain),
-            false => made,
+        if self.stepper.conserves() {
+            made.max(-gain)
+        } else {
+            made
         }
     }
 

@@ -43,9 +43,10 @@ impl Motion<'_> {
         ];
         self.impose(0.0, 0.0, imposed.map(|values| &mut values[..]));
         let rest = vec![0.0; size];
-        let past = match start.relaxed {
-            true => &start.displacement,
-            false => &rest,
+        let past = if start.relaxed {
+            &start.displacement
+        } else {
+            &rest
         };
         let memory = self.viscosity.map_or(Ok(Memory::default()), |viscosity| {
             Memory::relaxed(self.energy.connectivity(), viscosity, past)
@@ -185,9 +186,10 @@ impl Motion<'_> {
         for i in (0..held.len()).filter(|i| !held[*i]) {
             at.acceleration[i] = (external[i] - elastic[i] - viscous[i]) / self.mass[i];
         }
-        match at.acceleration.iter().all(|value| value.is_finite()) {
-            true => Ok(()),
-            false => Err(SolveFault::NotFinite("the acceleration".into())),
+        if at.acceleration.iter().all(|value| value.is_finite()) {
+            Ok(())
+        } else {
+            Err(SolveFault::NotFinite("the acceleration".into()))
         }
     }
 

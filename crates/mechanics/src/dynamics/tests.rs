@@ -57,9 +57,12 @@ fn frequency_of(history: &History, unknown: usize) -> f64 {
         .map(|i| {
             // Inverse interpolation through four instants.
             let points: Vec<[f64; 2]> = (i - 2..i + 2).map(|k| [u[k], t[k]]).collect();
-            let weight = |a: usize, b: usize| match a == b {
-                true => 1.0,
-                false => -points[b][0] / (points[a][0] - points[b][0]),
+            let weight = |a: usize, b: usize| {
+                if a == b {
+                    1.0
+                } else {
+                    -points[b][0] / (points[a][0] - points[b][0])
+                }
             };
             (0..4)
                 .map(|a| points[a][1] * (0..4).map(|b| weight(a, b)).product::<f64>())

@@ -108,9 +108,10 @@ impl Memory {
 
     /// The memory of an element.
     pub fn of(&self, element: usize) -> &[f64] {
-        match self.values.is_empty() {
-            true => &[],
-            false => &self.values[self.starts[element]..self.starts[element + 1]],
+        if self.values.is_empty() {
+            &[]
+        } else {
+            &self.values[self.starts[element]..self.starts[element + 1]]
         }
     }
 

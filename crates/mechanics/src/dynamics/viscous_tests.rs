@@ -189,9 +189,10 @@ fn a_plate_that_is_stretched_at_once_relaxes_as_in_closed_form() {
                 .sum();
             for (now, force) in history.times().into_iter().zip(force) {
                 let beta = share / (1.0 - share);
-                let expected = match relaxed {
-                    false => 1.0 + beta * (-now / time).exp(),
-                    true => 1.0,
+                let expected = if !relaxed {
+                    1.0 + beta * (-now / time).exp()
+                } else {
+                    1.0
                 };
                 let error = (force / long / expected - 1.0).abs();
                 assert!(error < 1e-6, "{name}, {relaxed}, {now} s: {error:.1e}");

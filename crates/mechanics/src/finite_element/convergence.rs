@@ -31,9 +31,10 @@ pub struct Richardson {
 pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
     let (error, order) = of_distances((coarse - middle).abs(), (middle - fine).abs());
     let monotone = (coarse - middle) * (middle - fine) > 0.0;
-    let (error, order) = match monotone {
-        true => (error, order),
-        false => (error.max((fine - middle).abs()), None),
+    let (error, order) = if monotone {
+        (error, order)
+    } else {
+        (error.max((fine - middle).abs()), None)
     };
     let believed = order.filter(|order| *order >= LOWEST_ORDER);
     let extrapolated = believed.map_or(fine, |order| fine + (fine - middle) / (order.exp2() - 1.0));
@@ -59,9 +60,10 @@ pub fn corner_exponent(angle: f64) -> f64 {
     let [mut low, mut high] = [0.5, 1.0];
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        match (middle * angle).sin() + middle * angle.sin() > 0.0 {
-            true => low = middle,
-            false => high = middle,
+        if (middle * angle).sin() + middle * angle.sin() > 0.0 {
+            low = middle
+        } else {
+            high = middle
         }
     }
     low
@@ -82,9 +84,10 @@ pub fn of_distances(before: f64, last: f64) -> (f64, Option<f64>) {
     let ratio = before / last;
     let highest = HIGHEST_ORDER.exp2();
     let least = before / (highest * (highest - 1.0));
-    match ratio > 1.0 && ratio.is_finite() {
-        true => ((last / (ratio - 1.0)).max(least), Some(ratio.log2())),
-        false => (last.max(least), None),
+    if ratio > 1.0 && ratio.is_finite() {
+        ((last / (ratio - 1.0)).max(least), Some(ratio.log2()))
+    } else {
+        (last.max(least), None)
     }
 }
 

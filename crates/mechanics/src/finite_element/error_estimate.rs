@@ -116,9 +116,10 @@ impl EnergyError {
 
     /// 100 η/‖u_h‖ in %; NaN where points are lacking.
     pub fn percent(&self) -> f64 {
-        match self.is_complete {
-            true => 100.0 * (self.squared() / self.norm_squared).sqrt(),
-            false => f64::NAN,
+        if self.is_complete {
+            100.0 * (self.squared() / self.norm_squared).sqrt()
+        } else {
+            f64::NAN
         }
     }
 

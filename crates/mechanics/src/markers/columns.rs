@@ -100,10 +100,7 @@ pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Opti
 pub fn required(table: &Table, names: Names) -> Result<(usize, Option<String>), Error> {
     find(table, names).ok_or_else(|| {
         let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
-        let found = match found.iter().all(|name| name.is_empty()) {
-            true => "the columns have no names".to_owned(),
-            false => format!("the file has {}", found.join(", ")),
-        };
+        let found = if found.iter().all(|name| name.is_empty()) { "the columns have no names".to_owned() } else { format!("the file has {}", found.join(", ")) };
         let message = format!("there is no column `{}`: {found}", plainly(names));
         let hint = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with your own unit, or assign them: \
                     `gelbench correct` takes --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
@@ -227,9 +224,10 @@ pub fn check_all(
         .into_iter()
         .map(fault)
         .collect();
-    match faults.is_empty() {
-        true => Ok(()),
-        false => Err(Error::Input(faults)),
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Input(faults))
     }
 }
 
@@ -297,10 +295,10 @@ pub fn check_flat(
     let motion = displacements.map(largest).into_iter().fold(0.0, f64::max);
     for column in out_of_plane(table, names, ignored) {
         let name = &table.columns[column].name;
-        let [off, most, what] = match find(table, names[1]).is_some_and(|(lift, _)| lift == column)
-        {
-            true => [largest(column) / motion, largest(column), motion],
-            false => [span(column) / size, span(column), size],
+        let [off, most, what] = if find(table, names[1]).is_some_and(|(lift, _)| lift == column) {
+            [largest(column) / motion, largest(column), motion]
+        } else {
+            [span(column) / size, span(column), size]
         };
         if off > FLAT {
             let message = format!(

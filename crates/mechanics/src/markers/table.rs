@@ -101,9 +101,10 @@ impl<'a> Reader<'a> {
         chosen: &FoundColumns<Role>,
         reading: &ReadSettings,
     ) -> Result<Self, Error> {
-        let layout = match chosen.any(&Role::LENGTHS) {
-            true => &NAMED,
-            false => recognise(table),
+        let layout = if chosen.any(&Role::LENGTHS) {
+            &NAMED
+        } else {
+            recognise(table)
         };
         let head = |role: Role, names: Names| match chosen.of(role) {
             Some(index) => Some((index, columns::unit_of(table, index))),

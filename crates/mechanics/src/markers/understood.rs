@@ -45,12 +45,11 @@ impl Understood {
 
     /// Origin and axes in words.
     pub fn axes(&self) -> &'static str {
-        match self.turned_up {
-            true => {
-                "In the file y points down, as in an image; here y and uy are turned up: the origin is that of the file, such as the \
-                 upper left corner of the image, and points below it have negative y."
-            }
-            false => "Origin and axes are those of the file, with y assumed to point up.",
+        if self.turned_up {
+            "In the file y points down, as in an image; here y and uy are turned up: the origin is that of the file, such as the \
+             upper left corner of the image, and points below it have negative y."
+        } else {
+            "Origin and axes are those of the file, with y assumed to point up."
         }
     }
 

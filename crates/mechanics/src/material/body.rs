@@ -156,9 +156,10 @@ impl<L: BodyLaw> BodySheet<L> {
             plane,
             series: [first, 0.0, 0.0, 0.0, 0.0],
         };
-        match plane == PlaneState::Stress && first.is_finite() {
-            true => sheet.with_series(),
-            false => sheet,
+        if plane == PlaneState::Stress && first.is_finite() {
+            sheet.with_series()
+        } else {
+            sheet
         }
     }
 

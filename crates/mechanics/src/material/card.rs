@@ -267,13 +267,15 @@ impl Card {
 
 /// Reads the viscous part of a material from its section.
 pub fn read_viscosity(section: &Section) -> ViscousMaterial {
-    let shear_viscosity = match section.has("shear") {
-        true => section.quantity("shear", Dimension::Viscosity, Bound::NonNegative),
-        false => 0.0,
+    let shear_viscosity = if section.has("shear") {
+        section.quantity("shear", Dimension::Viscosity, Bound::NonNegative)
+    } else {
+        0.0
     };
-    let terms = match section.has("relaxation") {
-        true => section.tables("relaxation"),
-        false => Vec::new(),
+    let terms = if section.has("relaxation") {
+        section.tables("relaxation")
+    } else {
+        Vec::new()
     };
     let term = |term: &Section| {
         let read = Relaxation {
@@ -289,9 +291,10 @@ pub fn read_viscosity(section: &Section) -> ViscousMaterial {
         section.fault("relaxation", "the shares must add up to less than 1", hint);
     }
     let range = |key: &'static str, dimension, bound| {
-        let values = match section.has(key) {
-            true => section.quantities(key, dimension, bound),
-            false => return None,
+        let values = if section.has(key) {
+            section.quantities(key, dimension, bound)
+        } else {
+            return None;
         };
         match values[..] {
             [low, high] if low <= high => Some([low, high]),

@@ -62,9 +62,10 @@ impl<const LOGARITHM: bool> BodyLaw for CompressibleNeoHooke<LOGARITHM> {
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
         let lame = self.lame_modulus;
-        let energy = match LOGARITHM {
-            true => VolumeEnergy::Logarithmic,
-            false => VolumeEnergy::SimoTaylor,
+        let energy = if LOGARITHM {
+            VolumeEnergy::Logarithmic
+        } else {
+            VolumeEnergy::SimoTaylor
         };
         let volume = energy.derivatives::<LOGARITHM>(at.volume_change(), at.volume());
         chains(self.shear_modulus, at, volume.map(|u| lame * u))

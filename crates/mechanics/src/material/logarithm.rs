@@ -79,9 +79,10 @@ mod tests {
             1e-12, -1e-9, 1e-5, -1e-3, 0.1, -0.2, 0.29, 0.31, -0.31, 0.7, 3.0, -0.9,
         ] {
             // y² ∫ −t/(1 + y t) dt by its series where that converges quickly.
-            let expected: f64 = match f64::abs(y) < 0.5 {
-                true => (2..200).rev().map(|n| -(-y).powi(n) / f64::from(n)).sum(),
-                false => y.ln_1p() - y,
+            let expected: f64 = if f64::abs(y) < 0.5 {
+                (2..200).rev().map(|n| -(-y).powi(n) / f64::from(n)).sum()
+            } else {
+                y.ln_1p() - y
             };
             let error = (logarithm_beyond_first_order(y) / expected - 1.0).abs();
             assert!(error < 4e-15, "{y}: {error:.1e}");

@@ -136,16 +136,18 @@ impl Network {
         }
         loop {
             // Fractions of any size are found to the same relative precision.
-            let middle = match low < 0.1 * high {
-                true => (low * high).sqrt(),
-                false => 0.5 * (low + high),
+            let middle = if low < 0.1 * high {
+                (low * high).sqrt()
+            } else {
+                0.5 * (low + high)
             };
             if middle <= low || middle >= high {
                 return middle;
             }
-            match self.stress(middle) > 0.0 {
-                true => low = middle,
-                false => high = middle,
+            if self.stress(middle) > 0.0 {
+                low = middle
+            } else {
+                high = middle
             }
         }
     }
@@ -330,9 +332,10 @@ mod tests {
         let [mut low, mut high] = [0.2, 10.0];
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
-            match balance(middle) > 0.0 {
-                true => high = middle,
-                false => low = middle,
+            if balance(middle) > 0.0 {
+                high = middle
+            } else {
+                low = middle
             }
         }
         let network = Network {

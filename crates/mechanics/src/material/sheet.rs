@@ -125,9 +125,10 @@ impl Kinematics {
     #[inline]
     pub fn new(h: &PlaneTensor) -> Result<Self, Inadmissible> {
         let kinematics = Self::unchecked(h);
-        match kinematics.is_admissible() {
-            true => Ok(kinematics),
-            false => Err(Inadmissible),
+        if kinematics.is_admissible() {
+            Ok(kinematics)
+        } else {
+            Err(Inadmissible)
         }
     }
 

@@ -57,13 +57,15 @@ impl Softening {
     pub fn read(section: &Section) -> Self {
         let optional = |key: &'static str| section.has(key);
         let r = section.number("r", Self::R);
-        let m = match optional("m") || !optional("beta") {
-            true => section.quantity("m", Dimension::Stress, Bound::NonNegative),
-            false => 0.0,
+        let m = if optional("m") || !optional("beta") {
+            section.quantity("m", Dimension::Stress, Bound::NonNegative)
+        } else {
+            0.0
         };
-        let beta = match optional("beta") {
-            true => section.number("beta", Bound::NonNegative),
-            false => 0.0,
+        let beta = if optional("beta") {
+            section.number("beta", Bound::NonNegative)
+        } else {
+            0.0
         };
         if m == 0.0 && beta == 0.0 {
             let hint = "m is the energy over which the softening sets in, such as \"0.01 MPa\"";

@@ -65,11 +65,10 @@ impl ViscousMaterial {
     /// A sentence on the viscous effects that equilibria leave out; `None` without viscosity.
     pub fn left_out(&self) -> Option<String> {
         let at_once = self.relaxation_function(0.0);
-        let sudden = match self.relaxation.is_empty() {
-            true => String::new(),
-            false => {
-                format!("; the stress right after a sudden load is {at_once:.4} times as large")
-            }
+        let sudden = if self.relaxation.is_empty() {
+            String::new()
+        } else {
+            format!("; the stress right after a sudden load is {at_once:.4} times as large")
         };
         (!self.is_none()).then(|| {
             format!("the card's viscosity is ignored: results are for quasi-static (infinitely slow) loading{sudden}")

@@ -35,9 +35,10 @@ impl Mesh {
                 _ => CellShape::Triangle6,
             };
             let first = self.squared_length([a.node, c.node]);
-            let (pieces, diagonal) = match first <= self.squared_length([b.node, d.node]) {
-                true => ([[a, b, c], [a, c, d]], [a, c]),
-                false => ([[a, b, d], [b, c, d]], [b, d]),
+            let (pieces, diagonal) = if first <= self.squared_length([b.node, d.node]) {
+                ([[a, b, c], [a, c, d]], [a, c])
+            } else {
+                ([[a, b, d], [b, c, d]], [b, d])
             };
             if let Some(centre) = self.cell(cell).get(8) {
                 halved.put_between(diagonal.map(|point| point.node), *centre);
@@ -70,12 +71,13 @@ impl Mesh {
                 finer.keep(cell);
             }
         }
-        finer.finish(
-            |finer, edge| match halved.contains(&key(edge[0], edge[1])) {
-                true => finer.halves(edge),
-                false => vec![edge.to_vec()],
-            },
-        )
+        finer.finish(|finer, edge| {
+            if halved.contains(&key(edge[0], edge[1])) {
+                finer.halves(edge)
+            } else {
+                vec![edge.to_vec()]
+            }
+        })
     }
 
     fn squared_length(&self, [a, b]: Edge) -> f64 {

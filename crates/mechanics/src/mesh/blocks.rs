@@ -92,9 +92,10 @@ impl Builder {
             }
             let place = (block.map)([i as f64 / (2 * nx) as f64, j as f64 / (2 * ny) as f64]);
             let sides = [j == 0, i == 2 * nx, j == 2 * ny, i == 0];
-            let node = match sides.contains(&true) {
-                true => builder.node(place),
-                false => builder.inner_node(place),
+            let node = if sides.contains(&true) {
+                builder.node(place)
+            } else {
+                builder.inner_node(place)
             };
             *known = Some(node);
             for (name, on) in block.sides.iter().zip(sides) {

@@ -43,13 +43,14 @@ impl Mesh {
         found.extend(sides.faults());
         found.extend(touching::faults(&sides, allowed));
         // These three checks may find the same fault from another side.
-        let beyond = match found.is_empty() {
-            true => vec![
+        let beyond = if found.is_empty() {
+            vec![
                 parts::hinges(&sides, allowed),
                 touching::overlaps(self),
                 cells::badly_shaped(self),
-            ],
-            false => Vec::new(),
+            ]
+        } else {
+            Vec::new()
         };
         found.extend(parts::parts(&sides, allowed));
         found.extend(beyond.into_iter().flatten());

@@ -69,18 +69,20 @@ impl Grid {
     fn line(self, axis: usize, step: usize, steps: usize) -> f64 {
         let size = self.size[axis];
         if self.grading == 1.0 || step == steps {
-            return match step == steps {
-                true => size,
-                false => size * step as f64 / steps as f64,
+            return if step == steps {
+                size
+            } else {
+                size * step as f64 / steps as f64
             };
         }
         let from_near = |step: usize| {
             let share = 2.0 * step as f64 / steps as f64;
             0.5 * size * share.powf(self.grading)
         };
-        match 2 * step <= steps {
-            true => from_near(step),
-            false => size - from_near(steps - step),
+        if 2 * step <= steps {
+            from_near(step)
+        } else {
+            size - from_near(steps - step)
         }
     }
 
@@ -94,9 +96,10 @@ impl Grid {
     /// Length and width of a cell in mm.
     pub(super) fn cell_size(self, cell: usize) -> [f64; 2] {
         let place = [cell / self.cells[1], cell % self.cells[1]];
-        [0, 1].map(|axis| match self.is_equal() {
-            true => self.size[axis] / self.cells[axis] as f64,
-            false => {
+        [0, 1].map(|axis| {
+            if self.is_equal() {
+                self.size[axis] / self.cells[axis] as f64
+            } else {
                 let line = |line: usize| self.node_line(axis, line, 1);
                 line(place[axis] + 1) - line(place[axis])
             }
@@ -117,9 +120,10 @@ impl Grid {
         }
         let (places, cell) = (lobatto(self.together), part / degree);
         let within = (part % degree) as f64 / degree as f64;
-        let share = match within == 0.0 {
-            true => places[cell],
-            false => places[cell] + (places[cell + 1] - places[cell]) * within,
+        let share = if within == 0.0 {
+            places[cell]
+        } else {
+            places[cell] + (places[cell + 1] - places[cell]) * within
         };
         from + (self.line(axis, block + 1, blocks) - from) * share
     }

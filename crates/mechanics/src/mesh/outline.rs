@@ -281,14 +281,13 @@ impl Outline {
         let lines: Vec<Polygon> = self.lines().map(|line| Polygon(line)).collect();
         points.extend(lattice::inside(&lines, &points, size));
         let (nodes, triangles) = fill(&points, &edges);
-        let linear = match shape.is_triangle() {
-            true => {
-                let cells = triangles
-                    .iter()
-                    .map(|nodes| (CellShape::Triangle3, nodes.to_vec()));
-                Mesh::new(nodes, cells)
-            }
-            false => quadrilaterals(nodes, &triangles),
+        let linear = if shape.is_triangle() {
+            let cells = triangles
+                .iter()
+                .map(|nodes| (CellShape::Triangle3, nodes.to_vec()));
+            Mesh::new(nodes, cells)
+        } else {
+            quadrilaterals(nodes, &triangles)
         };
         let mut mesh = match shape.degree() {
             1 => linear,

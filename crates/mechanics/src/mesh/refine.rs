@@ -235,9 +235,10 @@ impl<'a> Subdivision<'a> {
         };
         let pieces = |cells: &[usize]| -> Vec<usize> {
             let own = |piece: &usize| cells.binary_search(&self.parents[*piece]).is_ok();
-            match cells.is_empty() {
-                true => Vec::new(),
-                false => (0..self.parents.len()).filter(own).collect(),
+            if cells.is_empty() {
+                Vec::new()
+            } else {
+                (0..self.parents.len()).filter(own).collect()
             }
         };
         let groups = self.mesh.groups().iter().map(|(name, group)| {

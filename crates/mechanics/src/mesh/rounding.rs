@@ -178,9 +178,10 @@ impl Mesh {
         };
         let found: Vec<Polygon> = self.groups().iter().filter_map(of_group).collect();
         let named = |polygon: &&Polygon| polygon.group != "boundary";
-        match found.iter().any(|polygon| named(&polygon)) {
-            true => found.iter().filter(named).cloned().collect(),
-            false => found,
+        if found.iter().any(|polygon| named(&polygon)) {
+            found.iter().filter(named).cloned().collect()
+        } else {
+            found
         }
     }
 

@@ -68,9 +68,10 @@ impl BoundaryProblem {
             let all = Constraints::of(mesh, &self.supports);
             faults = all.map_or_else(|fault| vec![fault], |all| free_motions(mesh, &all));
         }
-        match faults.is_empty() {
-            true => Ok(()),
-            false => Err(faults),
+        if faults.is_empty() {
+            Ok(())
+        } else {
+            Err(faults)
         }
     }
 

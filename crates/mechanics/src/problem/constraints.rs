@@ -171,9 +171,12 @@ impl Constraints {
 
     /// Records that a support holds a group along some axes.
     pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
-        let nodes = |holds: bool| match holds {
-            true => group.nodes.iter().copied().collect(),
-            false => BTreeSet::new(),
+        let nodes = |holds: bool| {
+            if holds {
+                group.nodes.iter().copied().collect()
+            } else {
+                BTreeSet::new()
+            }
         };
         self.holders.push(Holder {
             hold: Hold {

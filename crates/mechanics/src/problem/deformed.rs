@@ -136,9 +136,10 @@ impl DeformedSheet {
     }
 
     fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<Place, PointFault> {
-        match self.mesh.outside(point) <= ON_THE_EDGE {
-            true => Ok(self.mesh.locate(point)),
-            false => Err(PointFault::Outside { x, y }),
+        if self.mesh.outside(point) <= ON_THE_EDGE {
+            Ok(self.mesh.locate(point))
+        } else {
+            Err(PointFault::Outside { x, y })
         }
     }
 }

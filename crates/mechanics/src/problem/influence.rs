@@ -53,9 +53,10 @@ impl Model<'_> {
     /// The number of tangents that each thread takes one after the other.
     fn in_turn(&self, count: usize) -> usize {
         let unknowns = 2 * self.mesh.nodes.len();
-        let at_once = match self.linear_solver().is_multigrid(unknowns) {
-            true => 1,
-            false => (SIDE_BY_SIDE / unknowns.max(1)).clamp(1, rayon::current_num_threads()),
+        let at_once = if self.linear_solver().is_multigrid(unknowns) {
+            1
+        } else {
+            (SIDE_BY_SIDE / unknowns.max(1)).clamp(1, rayon::current_num_threads())
         };
         count.div_ceil(at_once).max(1)
     }

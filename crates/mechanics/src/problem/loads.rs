@@ -126,13 +126,14 @@ pub fn dead_forces(
     thickness: f64,
 ) -> Result<Vec<f64>, Diagnostic> {
     let group = named("load", mesh, name)?;
-    let need_edges = |what: &str| match group.edges.is_empty() {
-        true => {
+    let need_edges = |what: &str| {
+        if group.edges.is_empty() {
             let reason = format!("has no edges of the boundary, which {what} needs");
             let hint = "a load of kind \"force\" is spread over the lines and nodes of any group";
             Err(refused("load", name, &reason).hint(hint))
+        } else {
+            Ok(())
         }
-        false => Ok(()),
     };
     let mut forces = vec![0.0; 2 * mesh.nodes.len()];
     match load {

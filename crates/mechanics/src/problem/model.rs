@@ -162,9 +162,10 @@ impl<'a> Model<'a> {
         &'b self,
         potential: Box<dyn Potential + 'b>,
     ) -> Box<dyn Potential + 'b> {
-        match self.constraints.ties.is_empty() {
-            true => potential,
-            false => Box::new(TiedPotential::new(potential, &self.constraints.ties)),
+        if self.constraints.ties.is_empty() {
+            potential
+        } else {
+            Box::new(TiedPotential::new(potential, &self.constraints.ties))
         }
     }
 

@@ -143,9 +143,10 @@ impl Reactions<'_> {
         const JUDGED: f64 = 1e-7;
         let (model, u) = (self.model, &self.state.displacement);
         let at_rest = vec![0.0; u.len()];
-        let body = match model.energy.is_objective() {
-            true => Body::new(model.mesh, u),
-            false => Body::new(model.mesh, &at_rest),
+        let body = if model.energy.is_objective() {
+            Body::new(model.mesh, u)
+        } else {
+            Body::new(model.mesh, &at_rest)
         };
         let supports = body.resultant(&self.forces);
         let loads = model.loads.resultant(self.state.factor, u, &body);

@@ -156,9 +156,10 @@ impl<'a> Bodies<'a> {
         let columns: Vec<_> = free
             .map(|i| eigen.eigenvectors.column(i).into_owned())
             .collect();
-        match columns.is_empty() {
-            true => DMatrix::zeros(count, 0),
-            false => DMatrix::from_columns(&columns),
+        if columns.is_empty() {
+            DMatrix::zeros(count, 0)
+        } else {
+            DMatrix::from_columns(&columns)
         }
     }
 
@@ -209,9 +210,12 @@ impl<'a> Bodies<'a> {
         let [x, y] = [self.centre[0] - by * turn[1], self.centre[1] + by * turn[0]];
         let decimals = decimals_for(0.1 * self.size);
         // No minus sign before a zero.
-        let tidy = |x: f64| match x.abs() < 0.5 * 10_f64.powi(-(decimals as i32)) {
-            true => 0.0,
-            false => x,
+        let tidy = |x: f64| {
+            if x.abs() < 0.5 * 10_f64.powi(-(decimals as i32)) {
+                0.0
+            } else {
+                x
+            }
         };
         format!("({:.decimals$}, {:.decimals$}) mm", tidy(x), tidy(y))
     }
@@ -230,9 +234,10 @@ impl<'a> Bodies<'a> {
             .filter(|(_, group)| own(&group.nodes))
             .map(|(name, _)| format!("`{name}`"));
         let names: Vec<_> = names.collect();
-        let hint = match names.is_empty() {
-            true => "attach it to the rest of the mesh, or leave it out".to_owned(),
-            false => format!("add a support on one of its groups {}", names.join(", ")),
+        let hint = if names.is_empty() {
+            "attach it to the rest of the mesh, or leave it out".to_owned()
+        } else {
+            format!("add a support on one of its groups {}", names.join(", "))
         };
         let message = format!("{part} can {motion} without strain: no support prevents it");
         Diagnostic::error("support", message).hint(hint)

@@ -161,16 +161,18 @@ impl Potential for SheetEnergy {
     }
 
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        match self.history.is_empty() {
-            true => self.add_virgin_forces(u, forces),
-            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
+        if self.history.is_empty() {
+            self.add_virgin_forces(u, forces)
+        } else {
+            evaluate_by_elements(self, u, forces, None).map(|_| ())
         }
     }
 
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
-        match self.history.is_empty() {
-            true => self.evaluate_virgin(u, forces, take),
-            false => evaluate_by_elements(self, u, forces, take),
+        if self.history.is_empty() {
+            self.evaluate_virgin(u, forces, take)
+        } else {
+            evaluate_by_elements(self, u, forces, take)
         }
     }
 

@@ -45,15 +45,16 @@ impl BoundaryProblem {
         {
             return Ok(None);
         }
-        let found = match self.supports.iter().all(|(_, support)| support.rests()) {
-            true => Diagnostic::warning(
+        let found = if self.supports.iter().all(|(_, support)| support.rests()) {
+            Diagnostic::warning(
                 "support",
                 "no support moves and no load acts: the sheet stays at rest",
-            ),
-            false => Diagnostic::error(
+            )
+        } else {
+            Diagnostic::error(
                 "support",
                 "the supports move the sheet as a rigid body and no load acts: nothing strains it, and every force is zero",
-            ),
+            )
         };
         let hint = "hold one more group, such as the opposite side with kind = \"clamp\", move the supports apart, or give a group a [[load]]";
         Ok(Some(found.hint(hint)))

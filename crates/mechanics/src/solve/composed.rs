@@ -29,26 +29,27 @@ impl Potential for After<'_> {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        match self.history.is_empty() {
-            true => self.energy.evaluate_element(element, u, local),
-            false => {
-                let history = self.history;
-                self.energy.evaluate_after(element, u, local, history)
-            }
+        if self.history.is_empty() {
+            self.energy.evaluate_element(element, u, local)
+        } else {
+            let history = self.history;
+            self.energy.evaluate_after(element, u, local, history)
         }
     }
 
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        match self.history.is_empty() {
-            true => self.energy.add_forces(u, forces),
-            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
+        if self.history.is_empty() {
+            self.energy.add_forces(u, forces)
+        } else {
+            evaluate_by_elements(self, u, forces, None).map(|_| ())
         }
     }
 
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
-        match self.history.is_empty() {
-            true => self.energy.evaluate(u, forces, take),
-            false => evaluate_by_elements(self, u, forces, take),
+        if self.history.is_empty() {
+            self.energy.evaluate(u, forces, take)
+        } else {
+            evaluate_by_elements(self, u, forces, take)
         }
     }
 

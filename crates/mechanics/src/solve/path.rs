@@ -206,9 +206,10 @@ impl<'a> Path<'a> {
             } else {
                 start + step.copysign(rest)
             };
-            let least = match self.is_guess() {
-                true => SHORTEST_GUESS * (factor - begin).abs(),
-                false => SHORTEST * aim.abs(),
+            let least = if self.is_guess() {
+                SHORTEST_GUESS * (factor - begin).abs()
+            } else {
+                SHORTEST * aim.abs()
             };
             let shortest = 0.5 * (aim - start).abs() <= at_rest.max(least);
             // A step that would be halved after a shift anyway is given up at the shift.

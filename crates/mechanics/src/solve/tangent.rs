@@ -78,9 +78,10 @@ impl Tangent {
         if !self.factorised && !self.iterative.as_mut().is_some_and(Iterative::is_definite) {
             shifted = self.replace_by_factor()?;
         }
-        match shifted {
-            true => Err(SolveFault::NotPositiveDefinite),
-            false => Ok(residual),
+        if shifted {
+            Err(SolveFault::NotPositiveDefinite)
+        } else {
+            Ok(residual)
         }
     }
 

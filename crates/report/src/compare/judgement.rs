@@ -86,9 +86,10 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
         return Judgement::Exact("exact but for rounding");
     }
     if own_error <= OWN_SHARE * deviation {
-        return match deviation <= limit {
-            true => Judgement::Pass,
-            false => Judgement::Fail,
+        return if deviation <= limit {
+            Judgement::Pass
+        } else {
+            Judgement::Fail
         };
     }
     if deviation + own_error / OWN_SHARE <= limit {
@@ -105,9 +106,10 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
 /// The judgement where the reference's own error is too large, and why.
 fn too_coarse(own_error: f64, told: String, remedy: &str) -> Judgement {
     Judgement::CannotBeJudged {
-        reason: match own_error.is_finite() {
-            true => told,
-            false => "the reference's own error is not known".to_owned(),
+        reason: if own_error.is_finite() {
+            told
+        } else {
+            "the reference's own error is not known".to_owned()
         },
         remedy: remedy.to_owned(),
     }

@@ -80,9 +80,10 @@ pub enum Stroke {
 /// points of both signs, else first.
 pub fn from_rest(points: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = points.into_iter().collect();
-    let rest = match points.is_sorted_by_key(|[x, _]| *x) {
-        true => points.partition_point(|[x, _]| *x < 0.0),
-        false => 0,
+    let rest = if points.is_sorted_by_key(|[x, _]| *x) {
+        points.partition_point(|[x, _]| *x < 0.0)
+    } else {
+        0
     };
     if points.get(rest).is_none_or(|[x, _]| *x != 0.0) {
         points.insert(rest, [0.0; 2]);

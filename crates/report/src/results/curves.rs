@@ -66,9 +66,10 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
         let stress = |stretch: f64| Mode::Uniaxial.nominal_stress(&*card.law, stretch - 1.0);
         let points = stretches.map(|stretch| [stretch, stress(stretch)]);
         // A colour that is used again is dashed.
-        let stroke = match index < PALETTE.len() {
-            true => Stroke::Solid,
-            false => Stroke::Dashed,
+        let stroke = if index < PALETTE.len() {
+            Stroke::Solid
+        } else {
+            Stroke::Dashed
         };
         Line::new(&card.name, points, PALETTE[index % PALETTE.len()], stroke)
     };

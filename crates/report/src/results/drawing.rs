@@ -81,9 +81,10 @@ pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
     }
     let named = parts.into_iter().map(|(group, names)| NamedLines {
         name: names.join(" = "),
-        lines: match group.edges.is_empty() {
-            false => edge_lines(&group.edges, &mesh.nodes),
-            true => points(group, mesh),
+        lines: if !group.edges.is_empty() {
+            edge_lines(&group.edges, &mesh.nodes)
+        } else {
+            points(group, mesh)
         },
     });
     let mut groups: Vec<NamedLines> = named.collect();

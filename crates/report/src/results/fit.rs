@@ -142,9 +142,10 @@ impl Drawn {
         let left_out = thinned(left_out.collect());
         if !left_out.is_empty() {
             let points = left_out.iter().map(|one| [group.stretch(one), one.stress]);
-            let label = match self.points.is_empty() {
-                true => "left out: slack, holds, other cycles",
-                false => "",
+            let label = if self.points.is_empty() {
+                "left out: slack, holds, other cycles"
+            } else {
+                ""
             };
             self.bands
                 .push(Line::new(label, points, LEFT_OUT, Stroke::Points));

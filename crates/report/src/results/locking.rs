@@ -55,7 +55,8 @@ pub fn reason(law: &dyn HyperelasticLaw) -> Option<String> {
 
 /// The warning about models whose cells lock, each with its remedy; `None` where there are none, or where the sheet's area can change.
 pub fn warning(law: &dyn HyperelasticLaw, locking: &[(&str, &str)]) -> Option<String> {
-    let (names, remedies): (Vec<&str>, Vec<&str>) = locking.iter().copied().unzip();
+    let (names, mut remedies): (Vec<&str>, Vec<&str>) = locking.iter().copied().unzip();
+    remedies.dedup();
     let models = match &names[..] {
         [] => return None,
         [one] => format!("{one} is"),

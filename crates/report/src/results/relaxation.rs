@@ -139,9 +139,10 @@ pub(super) fn relaxation_picture(fit: &Fit, relaxed: &Relaxed, tests: &[TestData
         .over_time
         .push(Line::new("fitted", [], INK, Stroke::Solid));
     let time = || {
-        let scale = match logarithmic {
-            true => Scale::Logarithmic,
-            false => Scale::Linear,
+        let scale = if logarithmic {
+            Scale::Logarithmic
+        } else {
+            Scale::Linear
         };
         Axis::new("time since the first row [s]", scale)
     };

@@ -98,9 +98,10 @@ impl LocalState {
 
 /// P₃₃ in MPa of the Cauchy stress σ₃₃ = `stress`: J σ₃₃; of a law of small strains, whose stresses are one, σ₃₃ itself.
 fn nominal_across(law: &dyn HyperelasticLaw, kinematics: &Kinematics, stress: f64) -> f64 {
-    match law.is_objective() {
-        true => kinematics.area_ratio() * stress,
-        false => stress,
+    if law.is_objective() {
+        kinematics.area_ratio() * stress
+    } else {
+        stress
     }
 }
 

@@ -141,9 +141,10 @@ impl Division {
                 1 => 1,
                 _ => finest.clamp(2, 8),
             };
-            let (locals, triangles) = match shape.is_triangle() {
-                true => divided_triangle(across),
-                false => divided_square(across),
+            let (locals, triangles) = if shape.is_triangle() {
+                divided_triangle(across)
+            } else {
+                divided_square(across)
             };
             let values = locals.iter().map(|local| shape.values(*local));
             Part {

@@ -70,9 +70,10 @@ fn stress(
     };
     let (_, long) = law.stress(&kinematics);
     let now = second_piola_kirchhoff(&kinematics, &long);
-    let branches = match memory.is_empty() {
-        true => vec![[0.0; 3]; material.relaxation.len()],
-        false => material.branches(memory, now, elapsed),
+    let branches = if memory.is_empty() {
+        vec![[0.0; 3]; material.relaxation.len()]
+    } else {
+        material.branches(memory, now, elapsed)
     };
     let q = [0, 1, 2].map(|i| branches.iter().map(|q| q[i]).sum());
     *memory = now

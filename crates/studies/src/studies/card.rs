@@ -106,9 +106,10 @@ fn warn_of_volume(section: &Section<'_>, card: &Card) {
 
 /// What the section chooses with `sheet`; plane stress where it says nothing.
 fn plane_state(section: &Section<'_>) -> Option<PlaneState> {
-    match section.has(SHEET) {
-        true => section.choice(SHEET, &PlaneState::NAMES),
-        false => Some(PlaneState::Stress),
+    if section.has(SHEET) {
+        section.choice(SHEET, &PlaneState::NAMES)
+    } else {
+        Some(PlaneState::Stress)
     }
 }
 

@@ -58,9 +58,12 @@ pub fn ready(study: Study) -> PreparedStudy {
 fn outcome(study: &Study, results: &Results) -> Outcome {
     let requirements = results.requirements(study);
     let warnings = warnings::warnings(study, results);
-    let figures = || match study.output.plots {
-        true => figures::figures(study, results),
-        false => Vec::new(),
+    let figures = || {
+        if study.output.plots {
+            figures::figures(study, results)
+        } else {
+            Vec::new()
+        }
     };
     let (figures, mut grids) = rayon::join(figures, || vtk::grids(study, results));
     let mut explored = Vec::new();

@@ -147,9 +147,10 @@ impl Beside {
 
     /// In words, without times: these differ from run to run, and nothing that is written down may hang on them.
     fn verdict(&self) -> String {
-        let accuracy = match self.departure() <= EQUAL {
-            true => "as accurate as",
-            false => "less accurate than",
+        let accuracy = if self.departure() <= EQUAL {
+            "as accurate as"
+        } else {
+            "less accurate than"
         };
         let [own, other] = [&self.corrected, &self.elements].map(|way| way.name);
         format!("{own}: {accuracy} {other}")

@@ -250,9 +250,10 @@ fn row(subject: &Subject, kind: Kind, trials: &[Trial]) -> Vec<String> {
     row.push(number(mean(
         trials.iter().map(|trial| trial.effective_points),
     )));
-    row.push(match subject.fitted == subject.law {
-        true => number(covered(trials)),
-        false => "–".to_owned(),
+    row.push(if subject.fitted == subject.law {
+        number(covered(trials))
+    } else {
+        "–".to_owned()
     });
     row
 }

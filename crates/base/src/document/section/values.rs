@@ -22,9 +22,10 @@ impl<'a> Section<'a> {
 
     /// A text that may be missing, and is empty then.
     pub fn optional_text(&self, key: &'static str) -> String {
-        match self.has(key) {
-            true => self.text(key),
-            false => String::new(),
+        if self.has(key) {
+            self.text(key)
+        } else {
+            String::new()
         }
     }
 
@@ -275,9 +276,10 @@ impl<'a> Section<'a> {
             _ => false,
         };
         // Among percentages a bare number is one too, or forgotten.
-        let most = match items.iter().any(in_percent) {
-            true => 0.0,
-            false => most,
+        let most = if items.iter().any(in_percent) {
+            0.0
+        } else {
+            most
         };
         let items = items.iter();
         items

@@ -48,11 +48,12 @@ pub fn choose(head: &Head, test: Option<Test>) -> Chosen {
             choice.roles[column] = stated(head, column, *quantity);
         }
     }
-    match columns.iter().all(|column| column.name.is_empty()) {
-        true => choice.order(),
-        false => [Kind::Strain, Kind::Stress, Kind::Time]
+    if columns.iter().all(|column| column.name.is_empty()) {
+        choice.order()
+    } else {
+        [Kind::Strain, Kind::Stress, Kind::Time]
             .into_iter()
-            .for_each(|kind| choice.of_names(kind)),
+            .for_each(|kind| choice.of_names(kind))
     }
     let Choice {
         roles,
@@ -272,11 +273,12 @@ impl Choice<'_> {
             ranges.push(range.trim_end().to_owned());
         }
         let written = written.join(",");
-        let quoted = match written
+        let quoted = if written
             .contains(|letter: char| !letter.is_alphanumeric() && !"=,_".contains(letter))
         {
-            true => format!("\"{written}\""),
-            false => written,
+            format!("\"{written}\"")
+        } else {
+            written
         };
         format!("--columns {quoted} ({})", ranges.join(", "))
     }
@@ -286,9 +288,10 @@ impl Choice<'_> {
         let columns = &self.head.table.columns;
         let head = columns[column].head();
         let alike = columns.iter().filter(|other| other.head() == head).count();
-        match head.is_empty() || alike > 1 || head.contains([',', '"', '\\', '$', '`', ';']) {
-            true => (column + 1).to_string(),
-            false => head,
+        if head.is_empty() || alike > 1 || head.contains([',', '"', '\\', '$', '`', ';']) {
+            (column + 1).to_string()
+        } else {
+            head
         }
     }
 }

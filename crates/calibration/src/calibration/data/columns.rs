@@ -20,9 +20,10 @@ pub fn ratio(head: &Head, column: usize, measure: StrainColumn) -> Faulty<f64> {
     let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
     let begins_at_rest = || values.fold(f64::INFINITY, f64::min) < AT_REST;
     let unit = head.setting("strain unit", named.unit.as_deref())?;
-    match unit.is_none() && measure == StrainColumn::Stretch && begins_at_rest() {
-        true => Ok(1.0),
-        false => head.factor("strain unit", named, Dimension::Ratio),
+    if unit.is_none() && measure == StrainColumn::Stretch && begins_at_rest() {
+        Ok(1.0)
+    } else {
+        head.factor("strain unit", named, Dimension::Ratio)
     }
 }
 
@@ -181,9 +182,10 @@ impl TableReading {
         for kind in [Kind::Strain, Kind::Stress, Kind::Time, Kind::Other] {
             for (index, role) in of_kind(roles, kind) {
                 let column = &head.table.columns[index];
-                let name = match column.written.is_empty() {
-                    true => format!("column {}", index + 1),
-                    false => format!("`{}`", column.written),
+                let name = if column.written.is_empty() {
+                    format!("column {}", index + 1)
+                } else {
+                    format!("`{}`", column.written)
                 };
                 match kind {
                     Kind::Other => found.unread.push(name),

@@ -90,9 +90,10 @@ impl Layout {
 
     /// The strains of an observation along an axis: the strain across a strip is not known.
     fn along(&self, axis: usize, [first, second]: [f64; 2]) -> [f64; 2] {
-        match self.test == Test::Uniaxial && axis == 1 {
-            true => [f64::NAN, first],
-            false => [first, second],
+        if self.test == Test::Uniaxial && axis == 1 {
+            [f64::NAN, first]
+        } else {
+            [first, second]
         }
     }
 
@@ -109,9 +110,10 @@ impl Layout {
                 let hint = "stretches are greater than zero; is the column a strain?";
                 return Err(head.fault(place.clone(), message, hint));
             }
-            let observations = match part.rows.contains(&index) {
-                true => &mut kept,
-                false => &mut left_out,
+            let observations = if part.rows.contains(&index) {
+                &mut kept
+            } else {
+                &mut left_out
             };
             if part.remarks.is_empty() && part.rows.contains(&index) {
                 turns.add(index, first);
@@ -195,9 +197,10 @@ impl Layout {
         let of_strain = |(column, factor): &Scaled| {
             let read = |value: f64| self.strain.to_nominal(value * factor);
             let strains = own(*column);
-            match strains.is_commanded(&measured) {
-                true => 0.0,
-                false => strains.rounding(&read),
+            if strains.is_commanded(&measured) {
+                0.0
+            } else {
+                strains.rounding(&read)
             }
         };
         let stresses = self.stresses.iter();

@@ -118,9 +118,10 @@ impl MeasuredRows {
     fn warnings(&self, table: &Table) -> Vec<Diagnostic> {
         /// A share of equal rows that is not due to chance.
         const MANY: f64 = 0.2;
-        let repeated = match self.repeated as f64 > MANY * self.kept.len() as f64 {
-            true => self.repeated,
-            false => 0,
+        let repeated = if self.repeated as f64 > MANY * self.kept.len() as f64 {
+            self.repeated
+        } else {
+            0
         };
         let told = [
             (

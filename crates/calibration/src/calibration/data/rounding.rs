@@ -68,9 +68,10 @@ impl WrittenColumn {
         let change = |pair: &[usize]| {
             let [a, b] = [pair[0], pair[1]];
             let change = self.values[b] - self.values[a];
-            match change.abs() > 1.5 * self.steps[a].max(self.steps[b]) {
-                true => change,
-                false => 0.0,
+            if change.abs() > 1.5 * self.steps[a].max(self.steps[b]) {
+                change
+            } else {
+                0.0
             }
         };
         [

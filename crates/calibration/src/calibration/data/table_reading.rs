@@ -34,16 +34,18 @@ impl TableReading {
                 unit,
                 divided_by,
             } = own;
-            match divided_by.is_empty() {
-                true => format!("{quantity} from {column} [{unit}]"),
-                false => format!("{quantity} from {column} [{unit}] over {divided_by}"),
+            if divided_by.is_empty() {
+                format!("{quantity} from {column} [{unit}]")
+            } else {
+                format!("{quantity} from {column} [{unit}] over {divided_by}")
             }
         });
         let columns: Vec<_> = columns.collect();
         let [first, last] = self.lines;
-        let unread = match self.unread.is_empty() {
-            true => String::new(),
-            false => format!("; not read: {}", self.unread.join(", ")),
+        let unread = if self.unread.is_empty() {
+            String::new()
+        } else {
+            format!("; not read: {}", self.unread.join(", "))
         };
         format!("{}; lines {first} to {last}{unread}", columns.join(", "))
     }

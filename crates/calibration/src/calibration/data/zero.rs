@@ -215,9 +215,10 @@ fn golden(value: &dyn Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     const SHARE: f64 = 0.618_033_988_749_894_9;
     for _ in 0..30 {
         let (a, b) = (high - SHARE * (high - low), low + SHARE * (high - low));
-        match value(a) < value(b) {
-            true => high = b,
-            false => low = a,
+        if value(a) < value(b) {
+            high = b
+        } else {
+            low = a
         }
     }
     0.5 * (low + high)

@@ -206,9 +206,10 @@ pub fn ordered(parameters: &[Parameter], bounds: &[[f64; 2]], values: Vec<f64>) 
     let mut terms: Vec<&[f64]> = of_law.chunks(of_law.len() / count).collect();
     terms.sort_by(|a, b| b[1].total_cmp(&a[1]));
     let ordered = [&terms.concat(), others].concat();
-    match holds(bounds, &ordered) {
-        true => ordered,
-        false => values,
+    if holds(bounds, &ordered) {
+        ordered
+    } else {
+        values
     }
 }
 

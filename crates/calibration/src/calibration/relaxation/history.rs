@@ -82,10 +82,7 @@ impl History {
                 if states.is_empty() {
                     continue;
                 }
-                let states = match gathered {
-                    true => gather(states),
-                    false => states,
-                };
+                let states = if gathered { gather(states) } else { states };
                 all.push(Self::new(test, states, data.rise));
             }
         }
@@ -177,17 +174,19 @@ fn times(data: &TestData) -> Result<&[f64], Error> {
 fn add_steps(nodes: &mut Vec<Node>, to: Observation, elapsed: f64) {
     let from = nodes[nodes.len() - 1].observation;
     let change = (to.strains[to.axis] - from.strains[to.axis]).abs();
-    let steps = match elapsed > 0.0 {
-        true => (change / FINE).ceil().clamp(1.0, 1000.0),
-        false => 1.0,
+    let steps = if elapsed > 0.0 {
+        (change / FINE).ceil().clamp(1.0, 1000.0)
+    } else {
+        1.0
     };
     for step in 1..=steps as usize {
         let share = step as f64 / steps;
         let strains = [0, 1].map(|axis| {
             let (start, end) = (from.strains[axis], to.strains[axis]);
-            match step as f64 == steps {
-                true => end,
-                false => start + share * (end - start),
+            if step as f64 == steps {
+                end
+            } else {
+                start + share * (end - start)
             }
         });
         nodes.push(Node {

@@ -83,9 +83,10 @@ fn a_ramp_and_hold_of_one_maxwell_element_is_the_closed_form() {
     let found = followed(&strains, "", &series(&[(share, tau)]));
     for ([t, x], stress) in strains.iter().zip(found) {
         let on_ramp = |t: f64| beta * top * tau / rise * -(-t / tau).exp_m1();
-        let q = match *t <= rise {
-            true => on_ramp(*t),
-            false => on_ramp(rise) * (-(t - rise) / tau).exp(),
+        let q = if *t <= rise {
+            on_ramp(*t)
+        } else {
+            on_ramp(rise) * (-(t - rise) / tau).exp()
         };
         let expected = (1.0 + x) * (s_of(*t) + q);
         assert!(

@@ -52,9 +52,12 @@ fn other_size(measured: &[Measured], residual: &DVector<f64>, is_relative: bool)
     let rows = measured.iter().zip(residual.iter());
     let stresses: Vec<f64> = rows.map(|(one, own)| one.modelled(*own).abs()).collect();
     let least = SMALLEST_SHARE * stresses.iter().copied().fold(0.0, f64::max);
-    DVector::from_fn(measured.len(), |row, _| match is_relative {
-        true => measured[row].weight,
-        false => stresses[row].max(least),
+    DVector::from_fn(measured.len(), |row, _| {
+        if is_relative {
+            measured[row].weight
+        } else {
+            stresses[row].max(least)
+        }
     })
 }
 

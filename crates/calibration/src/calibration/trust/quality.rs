@@ -142,9 +142,10 @@ pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighti
                 strains: one.strains.map(|x| x * (1.0 + strain / size.max(strain))),
                 ..*one
             };
-            let by_strain = match strain > 0.0 {
-                true => test.stress_of(law, &moved) - test.stress_of(law, one),
-                false => 0.0,
+            let by_strain = if strain > 0.0 {
+                test.stress_of(law, &moved) - test.stress_of(law, one)
+            } else {
+                0.0
             };
             let nothing = NOTHING * test.largest_stress;
             let square = stress * stress + nothing * nothing;
@@ -176,9 +177,10 @@ pub fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<Stabl
 /// AICc of −2 ln L, n and k; infinite where there are too few rows.
 pub fn aicc(surprise: f64, n: f64, k: f64) -> f64 {
     let left = n - k - 1.0;
-    match left > 0.0 {
-        true => surprise + 2.0 * k + 2.0 * k * (k + 1.0) / left,
-        false => f64::INFINITY,
+    if left > 0.0 {
+        surprise + 2.0 * k + 2.0 * k * (k + 1.0) / left
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -116,14 +116,13 @@ impl WeightedResiduals<'_> {
                     "the stresses of the {} {what} are {factors} times those of the law, which is more than the noise of each",
                     each.len()
                 );
-                Some(match stated {
-                    true => {
-                        format!("this law does not explain the specimen: {differ}; try another law")
-                    }
-                    false => format!(
+                Some(if stated {
+                    format!("this law does not explain the specimen: {differ}; try another law")
+                } else {
+                    format!(
                         "{differ}. Either this law does not explain them, or they are specimens that differ: the residuals of both look alike. State \
-                         which: `--one-specimen`, or `# specimen name: NAME` in each file"
-                    ),
+                     which: `--one-specimen`, or `# specimen name: NAME` in each file"
+                    )
                 })
             }
         }
@@ -177,11 +176,10 @@ fn specimens_differ(factors: &[f64], has_intervals: bool) -> String {
         .map(|factor| (factor - mean).powi(2))
         .sum::<f64>();
     let of_mean = 100.0 * (spread / (count - 1.0) / count).sqrt();
-    let then = match has_intervals {
-        true => "The intervals apply to these specimens only",
-        false => {
-            "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law"
-        }
+    let then = if has_intervals {
+        "The intervals apply to these specimens only"
+    } else {
+        "This alone makes the residuals of a joint fit systematic: fit each specimen by itself to judge the law"
     };
     format!(
         "the specimens differ by more than the noise of each: they are {} times as stiff as the law. {then}; their mean gives the \

@@ -68,12 +68,13 @@ impl Verdict {
                 test.statistic
             )
         });
-        let unequal = match self.noise_ratio > 1.0 {
-            true => format!(
+        let unequal = if self.noise_ratio > 1.0 {
+            format!(
                 "; in one test it is {:.1} times larger than in another, which the intervals take into account",
                 self.noise_ratio
-            ),
-            false => String::new(),
+            )
+        } else {
+            String::new()
         };
         let pattern = percent(self.pattern_probability.unwrap_or(f64::NAN));
         match self.answer {
@@ -288,9 +289,10 @@ fn orders(curves: &[Rows]) -> Vec<Vec<Curve>> {
         let even = b.gaps.iter().all(|gap| (1.0 / EVEN..=EVEN).contains(gap));
         even && (a.rows == b.rows || falling())
     };
-    match files.iter().zip(&strains).all(alike) {
-        true => vec![files],
-        false => vec![files, strains],
+    if files.iter().zip(&strains).all(alike) {
+        vec![files]
+    } else {
+        vec![files, strains]
     }
 }
 
@@ -314,9 +316,10 @@ fn smooth_functions(curves: &[Rows], rows: usize, estimates: usize) -> DMatrix<f
             columns.push(column);
         }
     }
-    match columns.is_empty() {
-        true => DMatrix::zeros(rows, 0),
-        false => DMatrix::from_columns(&columns),
+    if columns.is_empty() {
+        DMatrix::zeros(rows, 0)
+    } else {
+        DMatrix::from_columns(&columns)
     }
 }
 

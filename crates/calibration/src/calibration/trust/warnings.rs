@@ -21,14 +21,11 @@ pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Riva
         let pairs = parameters.iter().zip(&rival.values);
         let values = pairs.map(|(parameter, value)| format!("{} = {value:.4}", parameter.key));
         let values = values.collect::<Vec<_>>().join(", ");
-        match rival.worse <= NEARLY {
-            true => format!("the fit is not unique: the sum of squares of {values} is at most 5 % larger"),
-            false => format!(
-                "the fit is not unique: the sum of squares of {values} is {:.0} % larger, which the noise of so few independent points does not \
-                 exclude; intervals belong to the fit that was taken",
-                100.0 * rival.worse
-            ),
-        }
+        if rival.worse <= NEARLY { format!("the fit is not unique: the sum of squares of {values} is at most 5 % larger") } else { format!(
+            "the fit is not unique: the sum of squares of {values} is {:.0} % larger, which the noise of so few independent points does not \
+             exclude; intervals belong to the fit that was taken",
+            100.0 * rival.worse
+        ) }
     });
     away.into_iter()
         .chain(uncertain(quality, parameters))
@@ -120,9 +117,10 @@ fn unstable(range: &StableRange) -> Option<String> {
 
 fn predicted(quality: &Quality) -> Option<String> {
     let untested: Vec<_> = quality.untested.iter().map(|mode| mode.name()).collect();
-    let only = match !quality.untested.contains(&Mode::Uniaxial) && untested.len() == 2 {
-        true => "uniaxial only: ",
-        false => "",
+    let only = if !quality.untested.contains(&Mode::Uniaxial) && untested.len() == 2 {
+        "uniaxial only: "
+    } else {
+        ""
     };
     let untested = untested.join(" and ");
     (!untested.is_empty())

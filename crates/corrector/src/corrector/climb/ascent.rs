@@ -81,17 +81,14 @@ impl Ascent {
         field: &Field,
         interpolated: &Field,
     ) -> [f64; 2] {
-        let size = match fine.grid.has_cubics() {
-            true => {
-                let mut change = field.onto(&fine.grid, &coarse.grid);
-                change.add(-1.0, &self.field);
-                change.size()
-            }
-            false => {
-                let mut change = field.clone();
-                change.add(-1.0, interpolated);
-                fine.size_of(&change)
-            }
+        let size = if fine.grid.has_cubics() {
+            let mut change = field.onto(&fine.grid, &coarse.grid);
+            change.add(-1.0, &self.field);
+            change.size()
+        } else {
+            let mut change = field.clone();
+            change.add(-1.0, interpolated);
+            fine.size_of(&change)
         };
         [size, self.ratios.measured([self.size, size], self.ratio)]
     }
@@ -195,9 +192,10 @@ impl Climb<'_> {
         field: &mut Field,
     ) -> Result<Iteration, SolveFault> {
         let finest = index + 1 == self.levels.len();
-        let tolerance = match finest {
-            true => self.settings.tolerance,
-            false => ON_THE_WAY * self.settings.tolerance,
+        let tolerance = if finest {
+            self.settings.tolerance
+        } else {
+            ON_THE_WAY * self.settings.tolerance
         };
         let (expected, ratio) = (ascent.ratio * ascent.size, ascent.ratio);
         let enough = |first: f64, left: f64| {

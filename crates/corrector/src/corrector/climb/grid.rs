@@ -229,9 +229,10 @@ impl Field {
     pub fn onto(&self, grid: &Grid, finer: &Grid) -> Self {
         let [along_x, along_y] = [0, 1].map(|axis| {
             let [nodes, places] = [grid, finer].map(|grid| &grid.coordinates[axis]);
-            match grid.has_cubics() {
-                true => Interpolation::of_elements(nodes, places, grid.degree),
-                false => Interpolation::cubic(nodes, places),
+            if grid.has_cubics() {
+                Interpolation::of_elements(nodes, places, grid.degree)
+            } else {
+                Interpolation::cubic(nodes, places)
             }
         });
         let mut field = Self::zeros(finer);

@@ -333,9 +333,10 @@ impl Level {
             against += own;
             curvature += change;
         }
-        let share = match curvature > 0.0 {
-            true => (-against / curvature).min(2.0),
-            false => 1.0,
+        let share = if curvature > 0.0 {
+            (-against / curvature).min(2.0)
+        } else {
+            1.0
         };
         for axis in [0, 1] {
             let changed = [&mut u.components[axis], &mut self.residual.components[axis]];

@@ -52,9 +52,10 @@ impl Part {
         let (read, read_after) = halves(read, |numbers| numbers.split_at(middle));
         let before = || self.sweep(changed, read, work);
         let after = || after.sweep(changed_after, read_after, work);
-        let (sums, more) = match self.threaded {
-            true => join(before, after),
-            false => (before(), after()),
+        let (sums, more) = if self.threaded {
+            join(before, after)
+        } else {
+            (before(), after())
         };
         std::array::from_fn(|k| sums[k] + more[k])
     }

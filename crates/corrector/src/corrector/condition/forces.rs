@@ -213,9 +213,10 @@ fn stiffness_change<'a>(
         direction[*unknown] += weight;
     }
     let most = largest(&direction);
-    let step = match most > 0.0 {
-        true => SHARE * largest(u).max(LEAST * extent(assembly)) / most,
-        false => 1.0,
+    let step = if most > 0.0 {
+        SHARE * largest(u).max(LEAST * extent(assembly)) / most
+    } else {
+        1.0
     };
     let at = |step: f64| internal_forces(potential, assembly, &moved(u, step, &direction));
     let ((_, up), (_, down)) = (at(step)?, at(-step)?);

@@ -126,9 +126,10 @@ pub enum EdgeCondition {
 impl Knowledge {
     /// The measured forces that the field includes.
     pub(in crate::estimation) fn measured_forces(&self) -> &[MeasuredForce] {
-        match self.forces_are_checks {
-            true => &[],
-            false => &self.forces,
+        if self.forces_are_checks {
+            &[]
+        } else {
+            &self.forces
         }
     }
 
@@ -172,12 +173,13 @@ impl Knowledge {
             );
         }
         let positive = |noise: f64| noise > 0.0 && noise.is_finite();
-        match self.noise.is_none_or(positive) {
-            true => Ok(()),
-            false => refuse(
+        if self.noise.is_none_or(positive) {
+            Ok(())
+        } else {
+            refuse(
                 "the noise is not positive".into(),
                 "leave it out to have it estimated",
-            ),
+            )
         }
     }
 }

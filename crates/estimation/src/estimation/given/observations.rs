@@ -69,9 +69,10 @@ impl Observations {
             let fault = format!(
                 "{found} of {count} markers lie on the mesh, and at least three are needed"
             );
-            let hint = match found == count {
-                true => "leave this frame out, or find out why its markers were lost",
-                false => "check the units and the origins of markers and mesh",
+            let hint = if found == count {
+                "leave this frame out, or find out why its markers were lost"
+            } else {
+                "check the units and the origins of markers and mesh"
             };
             return Err(Diagnostic::error("", fault).hint(hint));
         }

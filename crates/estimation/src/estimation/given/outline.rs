@@ -103,9 +103,10 @@ fn labels(mesh: &Mesh, groups: &[&str]) -> Result<BTreeMap<usize, usize>, Diagno
         let Some(group) = mesh.groups().get(*name) else {
             let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
             let fault = Diagnostic::error("", format!("the mesh has no group `{name}`"));
-            return Err(fault.hint(match known.is_empty() {
-                true => "the mesh has no groups at all".to_owned(),
-                false => format!("its groups are {}", known.join(", ")),
+            return Err(fault.hint(if known.is_empty() {
+                "the mesh has no groups at all".to_owned()
+            } else {
+                format!("its groups are {}", known.join(", "))
             }));
         };
         let within = |edge: &&Vec<usize>| {

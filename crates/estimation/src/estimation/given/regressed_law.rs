@@ -90,9 +90,10 @@ impl RegressedLaw {
             let hint = "name those to be estimated, or all";
             return fault("no parameter is to be estimated".into(), hint);
         }
-        match law.is_law_of(card) {
-            true => Ok(law),
-            false => Err(beyond()),
+        if law.is_law_of(card) {
+            Ok(law)
+        } else {
+            Err(beyond())
         }
     }
 
@@ -166,13 +167,13 @@ impl RegressedLaw {
         if !stresses.all(|one| self.chosen.iter().any(|chosen| chosen.key == one.key)) {
             return None;
         }
-        let values = self
-            .chosen
-            .iter()
-            .map(|parameter| match parameter.is_stress() {
-                true => factor * parameter.value,
-                false => parameter.value,
-            });
+        let values = self.chosen.iter().map(|parameter| {
+            if parameter.is_stress() {
+                factor * parameter.value
+            } else {
+                parameter.value
+            }
+        });
         Some(self.beginning_at(&values.collect::<Vec<_>>()))
     }
 

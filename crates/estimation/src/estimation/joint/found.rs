@@ -92,9 +92,10 @@ impl ForceScatter {
     /// # References
     /// R. T. Birge, Phys. Rev. 40, 207 (1932), doi:10.1103/PhysRev.40.207
     pub fn widening(&self) -> f64 {
-        match self.freedom >= 1.0 {
-            true => (self.misfit / self.freedom).max(1.0),
-            false => 1.0,
+        if self.freedom >= 1.0 {
+            (self.misfit / self.freedom).max(1.0)
+        } else {
+            1.0
         }
     }
 
@@ -132,9 +133,10 @@ impl JointEstimate {
     /// C. M. Hurvich, C.-L. Tsai, Biometrika 76, 297 (1989), doi:10.1093/biomet/76.2.297
     pub fn information_criterion(&self) -> f64 {
         let (k, n) = (self.effective_parameters, self.independent);
-        match n - k - 1.0 > 0.0 {
-            true => self.deviance + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0),
-            false => f64::INFINITY,
+        if n - k - 1.0 > 0.0 {
+            self.deviance + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
+        } else {
+            f64::INFINITY
         }
     }
 

@@ -222,9 +222,10 @@ impl Judged<'_> {
                     noise.correlation.independent(sites.places())
                 });
             let variance: f64 = found.variances.variance;
-            let markers_deviance = match observations.known_noise {
-                true => found.misfit(&found) * independent / (2.0 * markers),
-                false => independent * variance.ln(),
+            let markers_deviance = if observations.known_noise {
+                found.misfit(&found) * independent / (2.0 * markers)
+            } else {
+                independent * variance.ln()
             };
             let effective = found.fit.effective;
             let variances = found.variances.clone();

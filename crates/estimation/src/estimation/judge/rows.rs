@@ -48,9 +48,10 @@ impl Rows {
             return None;
         }
         let scale = |marker: &usize| {
-            let trust = match sound[*marker] > 0.0 {
-                true => sound[*marker],
-                false => 1.0,
+            let trust = if sound[*marker] > 0.0 {
+                sound[*marker]
+            } else {
+                1.0
             };
             let weights = [0, 1].map(|axis| observations.weights[2 * marker + axis]);
             weights.map(|weight| (weight * trust / found.variances.sound).sqrt())
@@ -113,11 +114,12 @@ pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> 
     const FALSE_ALARMS: f64 = 1e-3;
     let limit = chi_squared_limit(2.0, FALSE_ALARMS);
     let rows = squares(&fit.residual, weights).zip(&variances.trust);
-    let trust = |(square, trust): (f64, &f64)| match *trust >= TRUSTED
-        && square / variances.sound <= limit
-    {
-        true => *trust,
-        false => 0.0,
+    let trust = |(square, trust): (f64, &f64)| {
+        if *trust >= TRUSTED && square / variances.sound <= limit {
+            *trust
+        } else {
+            0.0
+        }
     };
     rows.map(trust).collect()
 }

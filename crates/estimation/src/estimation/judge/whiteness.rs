@@ -125,10 +125,12 @@ fn deviation(places: usize, pairs: &Pairs) -> f64 {
     // Both components have the same neighbours.
     let first: f64 = pairs
         .iter()
-        .map(|[i, j]| match mutual.contains(&[*j, *i]) {
-            true => 0.5 * (2.0 * weight).powi(2),
-            // The pair (j, i) has the same sum.
-            false => weight.powi(2),
+        .map(|[i, j]| {
+            if mutual.contains(&[*j, *i]) {
+                0.5 * (2.0 * weight).powi(2)
+            } else {
+                weight.powi(2)
+            }
         })
         .sum::<f64>()
         * 2.0;

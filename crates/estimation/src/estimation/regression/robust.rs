@@ -88,9 +88,10 @@ impl Robust {
             };
         }
         let own = robust_deviation(distances.iter().copied()) * (2.0 * count / freedom).sqrt();
-        let scale = match known && own <= CONTRADICTED {
-            true => 1.0,
-            false => own,
+        let scale = if known && own <= CONTRADICTED {
+            1.0
+        } else {
+            own
         };
         let scale = scale.max(f64::MIN_POSITIVE);
         let (mut trust, mut slope, mut squares) = (Vec::new(), 0.0, 0.0);

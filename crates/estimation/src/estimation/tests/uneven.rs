@@ -38,9 +38,12 @@ fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     let outwards = |[x, _]: [f64; 2]| [0.02 * (1.0 + 3.0 * (x / 30.0 - 1.0).powi(2)); 2];
     let along = |[x, _]: [f64; 2]| [0.02 * (1.0 + 4.0 * x / SIZE[0]); 2];
-    let margin = |[_, y]: [f64; 2]| match y == 0.0 || y == SIZE[1] {
-        true => [0.06; 2],
-        false => [0.02; 2],
+    let margin = |[_, y]: [f64; 2]| {
+        if y == 0.0 || y == SIZE[1] {
+            [0.06; 2]
+        } else {
+            [0.02; 2]
+        }
     };
     let aslant = |_: [f64; 2]| [0.1, 0.02];
     let sizes: [&dyn Fn([f64; 2]) -> [f64; 2]; 4] = [&outwards, &along, &margin, &aslant];

@@ -55,9 +55,10 @@ fn root(function: impl Fn(f64) -> f64) -> f64 {
     let [mut low, mut high] = [0.2, 5.0];
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        match function(middle) >= 0.0 {
-            true => high = middle,
-            false => low = middle,
+        if function(middle) >= 0.0 {
+            high = middle
+        } else {
+            low = middle
         }
     }
     0.5 * (low + high)

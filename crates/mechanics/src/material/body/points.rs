@@ -70,9 +70,10 @@ impl<S: Copy> Lanes<S> {
         }
         let admissible = inverted == 0;
         let shapes = sheet.shapes(&area_change, &z);
-        let volume_root_change = match admissible {
-            true => sheet.at(&area_change, &z, &shapes),
-            false => [f64::NAN; LANES],
+        let volume_root_change = if admissible {
+            sheet.at(&area_change, &z, &shapes)
+        } else {
+            [f64::NAN; LANES]
         };
         Self {
             gradients,

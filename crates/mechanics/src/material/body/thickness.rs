@@ -142,9 +142,10 @@ impl<L: BodyLaw> BodySheet<L> {
             if middle <= low || middle >= high {
                 break;
             }
-            match slope(middle) < 0.0 {
-                true => low = middle,
-                false => high = middle,
+            if slope(middle) < 0.0 {
+                low = middle
+            } else {
+                high = middle
             }
         }
         high
@@ -164,9 +165,10 @@ fn rising(
     let (mut above, mut end) = (0, PIECES);
     while above < end {
         let middle = usize::midpoint(above, end);
-        match off(middle) < 0.0 {
-            true => above = middle + 1,
-            false => end = middle,
+        if off(middle) < 0.0 {
+            above = middle + 1
+        } else {
+            end = middle
         }
     }
     let mut below = above;
@@ -176,10 +178,7 @@ fn rising(
         if value(piece) < 0.0 && value(piece + 1) >= 0.0 {
             return Some([place(piece), place(piece + 1)]);
         }
-        match down {
-            true => below -= 1,
-            false => above += 1,
-        }
+        if down { below -= 1 } else { above += 1 }
     }
     None
 }

@@ -43,9 +43,10 @@ impl ParameterUncertainty {
         }
         let covariance = DMatrix::from_fn(count, count, |row, column| {
             let (more, less) = (row.max(column), row.min(column));
-            let correlation = match more == less {
-                true => 1.0,
-                false => correlations[more * (more - 1) / 2 + less],
+            let correlation = if more == less {
+                1.0
+            } else {
+                correlations[more * (more - 1) / 2 + less]
             };
             deviations[row] * correlation * deviations[column]
         });

@@ -34,9 +34,10 @@ impl Card {
             }
             (_, false) => section.quantity(bulk, Dimension::Stress, Bound::Positive),
         };
-        let energy = match section.has("energy") {
-            true => section.choice("energy", &VolumeEnergy::NAMES),
-            false => None,
+        let energy = if section.has("energy") {
+            section.choice("energy", &VolumeEnergy::NAMES)
+        } else {
+            None
         };
         section.unknown_keys();
         let volume = Volume {

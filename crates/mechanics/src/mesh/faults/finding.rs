@@ -98,8 +98,9 @@ fn digits(value: f64) -> String {
     }
     let place = 4 - value.abs().log10().floor() as i32;
     let text = format!("{value:.*}", place.clamp(0, 12) as usize);
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }

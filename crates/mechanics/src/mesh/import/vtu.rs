@@ -290,9 +290,10 @@ impl<'a> XmlFile<'a> {
             let values: Result<Vec<f64>, _> = numbers.take(count + 1).map(str::parse).collect();
             let values =
                 values.map_err(|_| named("contains something that is not a number".into()))?;
-            return match values.len() == count {
-                true => Ok(values),
-                false => Err(named(format!("does not have {count} values")).into()),
+            return if values.len() == count {
+                Ok(values)
+            } else {
+                Err(named(format!("does not have {count} values")).into())
             };
         }
         let bytes = self.bytes(array, count * width);

@@ -70,8 +70,9 @@ pub fn corner(point: [f64; 2], sides: [Option<SideLine>; 2], near: f64) -> [f64;
             .crossing(other)
             .unwrap_or_else(|| (one.nearest(start) + other.nearest(start)) / 2.0),
     };
-    match (moved - start).norm() < near {
-        true => moved.into(),
-        false => point,
+    if (moved - start).norm() < near {
+        moved.into()
+    } else {
+        point
     }
 }

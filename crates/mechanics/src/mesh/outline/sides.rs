@@ -141,9 +141,10 @@ fn chains(begins_at_corner: &[bool], closed: bool) -> Vec<Vec<usize>> {
             _ => chains.push(vec![i]),
         }
     }
-    match closed && chains.len() < 2 {
-        true => (0..count).map(|i| vec![i]).collect(),
-        false => chains,
+    if closed && chains.len() < 2 {
+        (0..count).map(|i| vec![i]).collect()
+    } else {
+        chains
     }
 }
 

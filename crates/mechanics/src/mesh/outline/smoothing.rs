@@ -90,17 +90,15 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         .map(|(from, to)| {
             let own = part(line, kept[*from], kept[*to]);
             let is_one_edge = (from + 1) % count == *to;
-            match is_one_edge && (is_straight[*from] || bulge(&own) < BULGE * spacing) {
-                true => (vec![own[0]], SideLine::of(&own, spacing)),
-                false => (open_curve(&own, near, spacing), None),
+            if is_one_edge && (is_straight[*from] || bulge(&own) < BULGE * spacing) {
+                (vec![own[0]], SideLine::of(&own, spacing))
+            } else {
+                (open_curve(&own, near, spacing), None)
             }
         })
         .collect();
     let found = joined(parts, near);
-    match found.len() < 3 {
-        true => plain(),
-        false => found,
-    }
+    if found.len() < 3 { plain() } else { found }
 }
 
 /// The points of a part but for its last one, and its line where it is straight and points lie about it.
@@ -271,9 +269,10 @@ impl Followed<'_> {
 
     /// Arc lengths from the first point on, a step apart.
     fn steps(&self, step: f64) -> Vec<f64> {
-        let end = match self.is_closed {
-            true => self.whole,
-            false => self.at[self.at.len() - 1],
+        let end = if self.is_closed {
+            self.whole
+        } else {
+            self.at[self.at.len() - 1]
         };
         let count = (end / step).ceil().max(1.0) as usize;
         let last = count - usize::from(self.is_closed);

@@ -276,9 +276,10 @@ fn edges_are_nearest_to_all_markers_of_their_rows() {
         for [[a, b], [c, d]] in polygon::Polygon(outer).edges() {
             let [x, y] = [(a + c) / 2.0, (b + d) / 2.0];
             // Four of the deviations 0.2/√31 and 0.2/√11 mm.
-            let (off, far) = match (c - a).abs() > (d - b).abs() {
-                true => (y.min(50.0 - y), 0.15),
-                false => (x.min(150.0 - x), 0.25),
+            let (off, far) = if (c - a).abs() > (d - b).abs() {
+                (y.min(50.0 - y), 0.15)
+            } else {
+                (x.min(150.0 - x), 0.25)
             };
             assert!(off.abs() < far, "{seed}: {outer:?}");
         }

@@ -24,13 +24,14 @@ impl Shape {
             });
         }
         let [least, most] = self.extremes();
-        match most <= MOST_RATIO * least {
-            true => Ok(()),
-            false => Err(Misfit {
+        if most <= MOST_RATIO * least {
+            Ok(())
+        } else {
+            Err(Misfit {
                 measure: "shape",
                 reason: "its dimensions differ by a factor of more than 100,000",
                 limit: 0.0,
-            }),
+            })
         }
     }
 
@@ -107,9 +108,10 @@ impl Misfit {
     pub fn remedy(&self) -> String {
         let unit = if self.measure == "angle" { "deg" } else { "mm" };
         // Three decimals on the safe side.
-        let limit = match self.limit < 0.0 {
-            true => (1e3 * -self.limit).ceil() / 1e3,
-            false => (1e3 * self.limit).floor() / 1e3,
+        let limit = if self.limit < 0.0 {
+            (1e3 * -self.limit).ceil() / 1e3
+        } else {
+            (1e3 * self.limit).floor() / 1e3
         };
         let relation = match (self.limit < 0.0, limit > 0.0) {
             (true, _) => "more",

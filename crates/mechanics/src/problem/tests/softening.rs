@@ -57,12 +57,13 @@ fn a_homogeneous_strip_follows_its_load_history_as_the_closed_form() {
             for state in &states {
                 let l: f64 = 1.0 + state.factor;
                 // W₀ and P₀ of neo-Hooke in uniaxial and in equibiaxial tension.
-                let [density, stress] = match both {
-                    false => [C10 * (l * l + 2.0 / l - 3.0), 2.0 * C10 * (l - l.powi(-2))],
-                    true => [
+                let [density, stress] = if !both {
+                    [C10 * (l * l + 2.0 / l - 3.0), 2.0 * C10 * (l - l.powi(-2))]
+                } else {
+                    [
                         C10 * (2.0 * l * l + l.powi(-4) - 3.0),
                         2.0 * C10 * (l - l.powi(-5)),
-                    ],
+                    ]
                 };
                 most = most.max(density);
                 let [factor, _] = SOFTENING.factor(density, most);

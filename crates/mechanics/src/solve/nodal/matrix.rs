@@ -81,9 +81,10 @@ impl NodalMatrix {
         let mut take = |element: usize, stiffness: &[f64]| {
             let pairs = elements.of(element);
             let unknowns = potential.element_unknowns(element);
-            match pairs.is_empty() {
-                true => add_each(blocks, rows, unknowns, stiffness),
-                false => add_pairs(blocks, pairs, unknowns.len(), stiffness),
+            if pairs.is_empty() {
+                add_each(blocks, rows, unknowns, stiffness)
+            } else {
+                add_pairs(blocks, pairs, unknowns.len(), stiffness)
             }
         };
         let energy = potential.evaluate(u, residual, Some(&mut take));

@@ -173,9 +173,10 @@ fn chosen<'a>(table: &'a Table, choices: &[Choice]) -> Result<Vec<&'a Vec<f64>>,
             all.sort_by(f64::total_cmp);
             all.dedup();
             let all: Vec<String> = all.iter().take(12).map(f64::to_string).collect();
-            let (what, option) = match TIME.contains(&&*table.columns[*column].name) {
-                true => ("time", "--time"),
-                false => ("load factor", "--factor"),
+            let (what, option) = if TIME.contains(&&*table.columns[*column].name) {
+                ("time", "--time")
+            } else {
+                ("load factor", "--factor")
             };
             let message = format!("{} has no rows for the {what} {wanted}", table.source.name);
             let hint = format!("choose one that it has with {option}: {}", all.join(", "));

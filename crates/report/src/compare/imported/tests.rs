@@ -330,9 +330,10 @@ fn a_motion_of_the_whole_body_is_told_from_a_strain() {
     let row = |[x, y]: [f64; 2], moved: bool| {
         let [ux, uy] = field([x, y]);
         let (x_now, y_now) = (x + ux, y + uy);
-        let [dx, dy] = match moved {
-            true => [offset[0] - turn * y_now, offset[1] + turn * x_now],
-            false => [0.02 * x, -0.02 * y],
+        let [dx, dy] = if moved {
+            [offset[0] - turn * y_now, offset[1] + turn * x_now]
+        } else {
+            [0.02 * x, -0.02 * y]
         };
         format!("{x},{y},{},{}\n", ux - dx, uy - dy)
     };

@@ -227,9 +227,10 @@ fn output(model: &Model, deck: &mut Deck) {
         }
         return;
     }
-    let at = match is_one_step(model) {
-        true => format!("TIME POINTS={FACTORS}"),
-        false => "FREQUENCY=1000".to_owned(),
+    let at = if is_one_step(model) {
+        format!("TIME POINTS={FACTORS}")
+    } else {
+        "FREQUENCY=1000".to_owned()
     };
     deck.line(&format!("*NODE FILE, OUTPUT=2D, {at}"));
     deck.line("U");

@@ -103,9 +103,10 @@ impl Range {
             bottom
         };
         let low = low.max(top - DECADES);
-        let (low, high) = match top - low > 1e-6 {
-            true => (low, top),
-            false => (low - 0.5, top + 0.5),
+        let (low, high) = if top - low > 1e-6 {
+            (low, top)
+        } else {
+            (low - 0.5, top + 0.5)
         };
         Self {
             low,

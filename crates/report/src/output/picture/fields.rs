@@ -87,9 +87,10 @@ impl FieldFigure {
         let room = layout.bar()[0] - LEFT - 4.0;
         for (index, panel) in self.panels.iter().enumerate() {
             let place = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
-            let label = match look.is_printed() {
-                true => short(&panel.label, 14, room),
-                false => &panel.label,
+            let label = if look.is_printed() {
+                short(&panel.label, 14, room)
+            } else {
+                &panel.label
             };
             pen.write(label, place, look.text(14), HPos::Left)?;
             if index == 0 && !panel.surface.rest.is_empty() && !look.is_narrow() {
@@ -139,9 +140,12 @@ impl FieldFigure {
             .iter()
             .filter(|(at, _)| !(range.is_signed && at.abs() < 1e-12));
         let levels: Vec<f64> = levels.map(|(at, _)| self.scale.value(*at)).collect();
-        let share = |value: f64| match value.is_nan() {
-            true => f64::NAN,
-            false => range.share(self.scale.position(value).unwrap_or(range.low)),
+        let share = |value: f64| {
+            if value.is_nan() {
+                f64::NAN
+            } else {
+                range.share(self.scale.position(value).unwrap_or(range.low))
+            }
         };
         for (index, panel) in self.panels.iter().enumerate() {
             let place = |place: [f64; 2]| layout.place(index, place);

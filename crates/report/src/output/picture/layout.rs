@@ -60,9 +60,10 @@ impl Heading {
     fn least_width(&self) -> f64 {
         const APART: f64 = 24.0;
         let title = self.lines.iter().map(|line| text_width(line, self.size));
-        let beside = match self.is_beside && !self.quantity.is_empty() {
-            true => APART + text_width(&self.quantity, 13),
-            false => 0.0,
+        let beside = if self.is_beside && !self.quantity.is_empty() {
+            APART + text_width(&self.quantity, 13)
+        } else {
+            0.0
         };
         LEFT + title.fold(0.0, f64::max) + beside + EDGE
     }

@@ -57,9 +57,10 @@ impl Frame {
     fn new(chart: &LineChart, height: u32, look: Look) -> Self {
         let width = look.points(WIDTH);
         let room = f64::from(width) - 88.0 - 14.0;
-        let title = match look.is_printed() {
-            true => lines(&chart.title, Self::title_size(look), room),
-            false => vec![chart.title.clone()],
+        let title = if look.is_printed() {
+            lines(&chart.title, Self::title_size(look), room)
+        } else {
+            vec![chart.title.clone()]
         };
         if !look.is_narrow() {
             return Self {
@@ -89,9 +90,10 @@ impl Frame {
 
     /// Chart and names.
     fn split<'a>(&self, area: &Area<'a>) -> (Area<'a>, Area<'a>) {
-        match self.look.is_narrow() {
-            true => area.split_vertically(FINE * self.chart.1),
-            false => area.split_horizontally(FINE * self.chart.0),
+        if self.look.is_narrow() {
+            area.split_vertically(FINE * self.chart.1)
+        } else {
+            area.split_horizontally(FINE * self.chart.0)
         }
     }
 

@@ -128,41 +128,46 @@ impl Look {
 
     /// Behind everything.
     pub fn paper(self) -> RGBColor {
-        match self.is_dark() {
-            true => RGBColor(18, 20, 24),
-            false => WHITE,
+        if self.is_dark() {
+            RGBColor(18, 20, 24)
+        } else {
+            WHITE
         }
     }
 
     /// Text and axes.
     pub fn ink(self) -> RGBColor {
-        match self.is_dark() {
-            true => RGBColor(232, 232, 232),
-            false => RGBColor(38, 38, 38),
+        if self.is_dark() {
+            RGBColor(232, 232, 232)
+        } else {
+            RGBColor(38, 38, 38)
         }
     }
 
     /// Grid lines.
     pub fn pale(self) -> RGBColor {
-        match self.is_dark() {
-            true => RGBColor(58, 62, 70),
-            false => RGBColor(225, 225, 225),
+        if self.is_dark() {
+            RGBColor(58, 62, 70)
+        } else {
+            RGBColor(225, 225, 225)
         }
     }
 
     /// A band behind lines.
     pub fn band(self) -> RGBColor {
-        match self.is_dark() {
-            true => RGBColor(34, 44, 58),
-            false => RGBColor(229, 237, 246),
+        if self.is_dark() {
+            RGBColor(34, 44, 58)
+        } else {
+            RGBColor(229, 237, 246)
         }
     }
 
     /// Outlines at rest.
     pub fn rest(self) -> RGBColor {
-        match self.is_dark() {
-            true => RGBColor(150, 150, 150),
-            false => RGBColor(120, 120, 120),
+        if self.is_dark() {
+            RGBColor(150, 150, 150)
+        } else {
+            RGBColor(120, 120, 120)
         }
     }
 

@@ -130,9 +130,10 @@ impl Numbers {
 /// The power of ten that numbers far from one are written with; zero for others.
 pub(super) fn common_exponent(largest: f64) -> i32 {
     let exponent = largest.log10().floor();
-    match exponent.is_finite() && !(-2.0..5.0).contains(&exponent) {
-        true => exponent as i32,
-        false => 0,
+    if exponent.is_finite() && !(-2.0..5.0).contains(&exponent) {
+        exponent as i32
+    } else {
+        0
     }
 }
 

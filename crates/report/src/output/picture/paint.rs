@@ -114,10 +114,10 @@ impl Painter<'_> {
 }
 
 fn colour(table: &[RGBColor], share: f64) -> RGBColor {
-    match share.is_nan() {
-        true => UNKNOWN,
-        // A cast ends at the limits of its type.
-        false => table[((share * table.len() as f64) as usize).min(table.len() - 1)],
+    if share.is_nan() {
+        UNKNOWN
+    } else {
+        table[((share * table.len() as f64) as usize).min(table.len() - 1)]
     }
 }
 

@@ -44,9 +44,10 @@ impl Raster {
 
     /// All points that are at one place on an axis are in its first division.
     fn place(from_start: f64, step: f64) -> usize {
-        match step > 0.0 {
-            true => (from_start / step) as usize,
-            false => 0,
+        if step > 0.0 {
+            (from_start / step) as usize
+        } else {
+            0
         }
     }
 }

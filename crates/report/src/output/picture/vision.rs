@@ -52,9 +52,10 @@ impl Vision {
 
 /// The light of a share of sRGB.
 fn linear(share: f64) -> f64 {
-    match share <= 0.04045 {
-        true => share / 12.92,
-        false => ((share + 0.055) / 1.055).powf(2.4),
+    if share <= 0.04045 {
+        share / 12.92
+    } else {
+        ((share + 0.055) / 1.055).powf(2.4)
     }
 }
 
@@ -63,9 +64,12 @@ fn lab([red, green, blue]: Light) -> [f64; 3] {
     let x = (0.4124 * red + 0.3576 * green + 0.1805 * blue) / 0.9505;
     let y = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
     let z = (0.0193 * red + 0.1192 * green + 0.9505 * blue) / 1.089;
-    let curve = |t: f64| match t > 0.008856 {
-        true => t.cbrt(),
-        false => 7.787 * t + 16.0 / 116.0,
+    let curve = |t: f64| {
+        if t > 0.008856 {
+            t.cbrt()
+        } else {
+            7.787 * t + 16.0 / 116.0
+        }
     };
     let [x, y, z] = [x, y, z].map(curve);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]

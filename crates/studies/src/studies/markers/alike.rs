@@ -100,9 +100,10 @@ fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         [product + dot(a, b), of_a + dot(a, a), of_b + dot(b, b)]
     });
-    match of_a * of_b > 0.0 {
-        true => product / (of_a * of_b).sqrt(),
-        false => 0.0,
+    if of_a * of_b > 0.0 {
+        product / (of_a * of_b).sqrt()
+    } else {
+        0.0
     }
 }
 

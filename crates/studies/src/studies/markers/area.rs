@@ -62,9 +62,10 @@ pub fn name(mesh: &mut Mesh, areas: &[(String, Area)]) -> Result<(), Error> {
             mesh.name_nodes(name, &nodes);
         }
     }
-    match faults.is_empty() {
-        true => Ok(()),
-        false => Err(Error::Input(faults)),
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Input(faults))
     }
 }
 

@@ -132,9 +132,10 @@ impl Conditions {
                 faults.push(fault.hint("name it once"));
             }
         }
-        match faults.is_empty() {
-            true => Ok(()),
-            false => Err(Error::Input(faults)),
+        if faults.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::Input(faults))
         }
     }
 
@@ -299,9 +300,10 @@ fn read(root: &Section) -> Conditions {
     }
     if root.has("force") {
         for section in &root.tables("force") {
-            match section.has("column") && !section.has("force") {
-                true => conditions.force_columns.push(force_column(section)),
-                false => conditions.forces.push(force(section)),
+            if section.has("column") && !section.has("force") {
+                conditions.force_columns.push(force_column(section))
+            } else {
+                conditions.forces.push(force(section))
             }
         }
     }

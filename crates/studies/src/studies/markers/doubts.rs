@@ -173,10 +173,7 @@ const EXTRAPOLATED: &str = "stresses and forces there are extrapolated, which no
 /// Moves the end of an interval on the side of `by`.
 fn widen(estimate: &mut Estimate, by: f64) {
     let [low, high] = &mut estimate.interval;
-    match by < 0.0 {
-        true => *low += by,
-        false => *high += by,
-    }
+    if by < 0.0 { *low += by } else { *high += by }
 }
 
 /// The noise that was stated, where the data contradict it.
@@ -217,12 +214,11 @@ fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
 
 fn edges(estimate: &FieldEstimate) -> Option<Doubt> {
     let found = estimate.contradiction.as_ref()?;
-    let which = match found.edges.is_empty() {
-        true => "all edges together".to_owned(),
-        false => {
-            let edges: Vec<&str> = found.edges.iter().map(|(name, _)| name.as_str()).collect();
-            edges.join(", ")
-        }
+    let which = if found.edges.is_empty() {
+        "all edges together".to_owned()
+    } else {
+        let edges: Vec<&str> = found.edges.iter().map(|(name, _)| name.as_str()).collect();
+        edges.join(", ")
     };
     let message = format!(
         "the data contradict the stated condition on {which}: releasing it reduces the misfit by an amount that noise alone would reach with probability {}",

@@ -124,11 +124,14 @@ impl Pictures<'_> {
             "misfit [mm]",
             marker_squares(frame, lengths),
         );
-        let caption = |of: &str| match estimate.has_intervals() {
-            true => format!("Standard error of the {of} from the noise of the markers."),
-            false => format!(
-                "Spread of the {of} if all residuals were noise: the data are not explained, so this is no measure of the error."
-            ),
+        let caption = |of: &str| {
+            if estimate.has_intervals() {
+                format!("Standard error of the {of} from the noise of the markers.")
+            } else {
+                format!(
+                    "Spread of the {of} if all residuals were noise: the data are not explained, so this is no measure of the error."
+                )
+            }
         };
         [
             Figure::new(

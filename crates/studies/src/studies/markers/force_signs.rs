@@ -26,9 +26,10 @@ pub fn check<'a>(
         (expected * force.force < 0.0).then(|| told(force, expected))
     };
     let faults: Vec<Diagnostic> = forces.into_iter().filter_map(contradicts).collect();
-    match faults.is_empty() {
-        true => Ok(()),
-        false => Err(Error::Input(faults)),
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Input(faults))
     }
 }
 

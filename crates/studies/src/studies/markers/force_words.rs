@@ -46,19 +46,18 @@ pub fn basis(field: &MarkerStudy, found: &FieldEstimate) -> Option<String> {
     if !found.is_given_the_law || !found.has_intervals() {
         return None;
     }
-    Some(match found.law_deviations.is_empty() {
-        true => format!(
+    Some(if found.law_deviations.is_empty() {
+        format!(
             "Forces and stresses are given the card `{name}`, which records no uncertainty: its relative error in stiffness is one of theirs \
-             that no interval includes, and that only a measured force shows (--force)."
-        ),
-        false => {
-            let all = found.law_deviations.iter().flatten();
-            let most = all.fold(0.0, |most: f64, one| most.max(*one));
-            format!(
-                "Intervals of forces and stresses include the uncertainty that the card `{name}` records, up to ± {} N; that another law may fit \
-                 as well is not in it.",
-                decimals(found.reach * most, 4)
-            )
-        }
+         that no interval includes, and that only a measured force shows (--force)."
+        )
+    } else {
+        let all = found.law_deviations.iter().flatten();
+        let most = all.fold(0.0, |most: f64, one| most.max(*one));
+        format!(
+            "Intervals of forces and stresses include the uncertainty that the card `{name}` records, up to ± {} N; that another law may fit \
+             as well is not in it.",
+            decimals(found.reach * most, 4)
+        )
     })
 }

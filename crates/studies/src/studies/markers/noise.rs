@@ -28,9 +28,12 @@ pub fn remarks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> 
 }
 
 fn unevenness(estimate: &FieldEstimate) -> Option<String> {
-    let range = |[low, high]: [f64; 2]| match high - low > 1e-6 * high {
-        true => format!("{low:.2e} to {high:.2e} mm"),
-        false => format!("{low:.2e} mm"),
+    let range = |[low, high]: [f64; 2]| {
+        if high - low > 1e-6 * high {
+            format!("{low:.2e} to {high:.2e} mm")
+        } else {
+            format!("{low:.2e} mm")
+        }
     };
     let [x, y] = estimate.noise_range?.map(range);
     Some(format!(

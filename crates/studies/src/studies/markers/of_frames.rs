@@ -29,9 +29,10 @@ fn warning(all: &[usize], kind: &[OfFrame]) -> Option<Diagnostic> {
     let last = kind.last()?;
     let numbers: Vec<usize> = kind.iter().map(|one| one.frame).collect();
     let differs = kind.iter().any(|one| one.message != last.message);
-    let example = match differs {
-        true => format!(", as frame {}", last.frame),
-        false => String::new(),
+    let example = if differs {
+        format!(", as frame {}", last.frame)
+    } else {
+        String::new()
     };
     let frames = if numbers.len() == 1 {
         "frame"

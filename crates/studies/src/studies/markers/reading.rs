@@ -43,9 +43,10 @@ fn row(taken: &ColumnTaken) -> Vec<String> {
 
 /// The layout, for the terminal.
 pub fn short(understood: &Understood) -> String {
-    let turned = match understood.turned_up {
-        true => ", y turned up",
-        false => "",
+    let turned = if understood.turned_up {
+        ", y turned up"
+    } else {
+        ""
     };
     format!("{}{turned}", understood.layout)
 }

@@ -38,12 +38,13 @@ impl MarkerStudy {
                 return Ok(study);
             }
             let coarse = |reason: &str| {
-                let still = match asked {
-                    true => "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned(),
-                    false => format!(
+                let still = if asked {
+                    "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned()
+                } else {
+                    format!(
                         "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error",
                         100.0 * share
-                    ),
+                    )
                 };
                 Diagnostic::warning("", format!("{still}: {reason}"))
             };

@@ -201,13 +201,10 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks.extend(scale.map(Block::paragraph));
     blocks.extend(field.unknown_gap.map(|gap| {
         let free = estimates.iter().any(|estimate| estimate.growth > 0.0);
-        let then = match free {
-            true => format!(
-                "intervals of forces and moduli, and errors of displacement and stress, include an edge up to {} mm farther out than the mesh",
-                decimals(gap, 4)
-            ),
-            false => "no edge is free, so forces and their intervals are those through the outline of the mesh".to_owned(),
-        };
+        let then = if free { format!(
+            "intervals of forces and moduli, and errors of displacement and stress, include an edge up to {} mm farther out than the mesh",
+            decimals(gap, 4)
+        ) } else { "no edge is free, so forces and their intervals are those through the outline of the mesh".to_owned() };
         Block::paragraph(format!("The specimen's edge is known only from the markers: {then}."))
     }));
     if field.regressed.is_some() {
@@ -280,9 +277,10 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             .to_owned(),
             decimals(residual_rms(estimate), 5),
             format!("{:.1}", estimate.effective_parameters),
-            match estimate.has_intervals() {
-                true => decimals(largest_error(estimate), 5),
-                false => "no interval".to_owned(),
+            if estimate.has_intervals() {
+                decimals(largest_error(estimate), 5)
+            } else {
+                "no interval".to_owned()
             },
             estimate.whiteness.as_ref().map_or(String::new(), |found| {
                 format!(
@@ -317,9 +315,10 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.parameters.iter().map(move |(key, unit, found)| {
-            let error = match estimate.has_intervals() {
-                true => decimals(found.standard_error, 6),
-                false => String::new(),
+            let error = if estimate.has_intervals() {
+                decimals(found.standard_error, 6)
+            } else {
+                String::new()
             };
             vec![
                 frame.number.to_string(),
@@ -352,9 +351,10 @@ fn edges(field: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
         let chosen = outcome.probability.map(|p| format!("{p:.3}"));
         vec![
             outcome.edge.clone(),
-            match outcome.length > 0.0 {
-                true => format!("{:.3}", outcome.length),
-                false => "on the sheet".to_owned(),
+            if outcome.length > 0.0 {
+                format!("{:.3}", outcome.length)
+            } else {
+                "on the sheet".to_owned()
             },
             known(&outcome.condition),
             chosen.unwrap_or_default(),

@@ -38,9 +38,10 @@ fn changes(estimate: &FieldEstimate) -> Vec<Changed<'_>> {
 /// In % of the force; in N where the force is less, such as that of a closed edge in balance.
 fn amount(own: &Changed) -> String {
     let share = own.change / own.force.value.abs();
-    let by = match share < 1.0 {
-        true => format!("{:.2} %", 100.0 * share),
-        false => format!("{} N", number(own.change)),
+    let by = if share < 1.0 {
+        format!("{:.2} %", 100.0 * share)
+    } else {
+        format!("{} N", number(own.change))
     };
     format!("{} along {} by {by}", own.edge, own.axis)
 }
@@ -48,12 +49,13 @@ fn amount(own: &Changed) -> String {
 /// What such an error changes in a frame, for a report.
 pub fn paragraph(estimate: &FieldEstimate, deviation: f64) -> Option<String> {
     let changed: Vec<String> = changes(estimate).iter().map(amount).collect();
-    let held = match deviation > 0.0 {
-        true => format!(
+    let held = if deviation > 0.0 {
+        format!(
             "intervals include a standard deviation of the scale of {:.3} %",
             100.0 * deviation
-        ),
-        false => "no interval includes this unless it is stated with --scale-error".to_owned(),
+        )
+    } else {
+        "no interval includes this unless it is stated with --scale-error".to_owned()
     };
     (!changed.is_empty()).then(|| {
         format!(

@@ -12,9 +12,12 @@ use crate::studies::markers::MarkerStudy;
 /// A row of a table; a number that is none leaves its field empty.
 fn row(text: &mut String, first: &[usize], values: &[f64]) {
     let first = first.iter().map(ToString::to_string);
-    let values = values.iter().map(|value| match value.is_finite() {
-        true => format!("{value:.9e}"),
-        false => String::new(),
+    let values = values.iter().map(|value| {
+        if value.is_finite() {
+            format!("{value:.9e}")
+        } else {
+            String::new()
+        }
     });
     let fields: Vec<String> = first.chain(values).collect();
     let _ = writeln!(text, "{}", fields.join(","));
@@ -22,9 +25,10 @@ fn row(text: &mut String, first: &[usize], values: &[f64]) {
 
 /// The name of a standard error; where the data are not explained it is none, and the name says so.
 fn error(estimate: &FieldEstimate) -> &'static str {
-    match estimate.has_intervals() {
-        true => "standard_error",
-        false => "spread_not_explained",
+    if estimate.has_intervals() {
+        "standard_error"
+    } else {
+        "spread_not_explained"
     }
 }
 
@@ -112,9 +116,12 @@ pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     head.push("verdict".to_owned());
     let mut records = vec![head];
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
-        let explained = |value: f64| match estimate.has_intervals() {
-            true => format!("{value:.9e}"),
-            false => String::new(),
+        let explained = |value: f64| {
+            if estimate.has_intervals() {
+                format!("{value:.9e}")
+            } else {
+                String::new()
+            }
         };
         for force in &estimate.forces {
             let mut record = vec![frame.number.to_string(), force.edge.clone()];

@@ -68,13 +68,10 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
             format!("largest misfit near ({x}, {y}) mm: mean residual ({ux}, {uy}) mm\n")
         });
         if found.verdict.trials.is_empty() {
-            text += match found.holds_mesh_error {
-                true => {
-                    "no alternative tried (edges, forces, stiffness, law, finer mesh) improves the fit\n"
-                }
-                false => {
-                    "no alternative tried (edges, forces, stiffness, law) improves the fit; a finer mesh could not be tried: use smaller cells\n"
-                }
+            text += if found.holds_mesh_error {
+                "no alternative tried (edges, forces, stiffness, law, finer mesh) improves the fit\n"
+            } else {
+                "no alternative tried (edges, forces, stiffness, law) improves the fit; a finer mesh could not be tried: use smaller cells\n"
             };
         }
         text +=
@@ -129,13 +126,14 @@ fn reasons(verdict: &Verdict) -> String {
 }
 
 fn words(trial: &Trial) -> String {
-    match trial.left.is_finite() {
-        true => format!(
+    if trial.left.is_finite() {
+        format!(
             "{}: the residual would be {} mm",
             trial.alternative.words(),
             decimals(trial.left, 5)
-        ),
-        false => trial.alternative.words(),
+        )
+    } else {
+        trial.alternative.words()
     }
 }
 
@@ -196,9 +194,10 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
             frame.number
         )));
         let rows = found.verdict.trials.iter().map(|trial| {
-            let left = match trial.left.is_finite() {
-                true => decimals(trial.left, 5),
-                false => String::new(),
+            let left = if trial.left.is_finite() {
+                decimals(trial.left, 5)
+            } else {
+                String::new()
             };
             vec![
                 trial.alternative.words(),

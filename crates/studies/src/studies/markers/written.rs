@@ -188,17 +188,18 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
         [xx, xy, yx, yy, 0.0]
     });
     let thickness = cells.map(|cell| cell.thickness_error);
-    let [of_displacement, of_stress, of_thickness] = match estimate.is_explained() {
-        true => [
+    let [of_displacement, of_stress, of_thickness] = if estimate.is_explained() {
+        [
             "displacement_standard_error_mm",
             "nominal_stress_standard_error_MPa",
             "thickness_standard_error_mm",
-        ],
-        false => [
+        ]
+    } else {
+        [
             "displacement_spread_not_explained_mm",
             "nominal_stress_spread_not_explained_MPa",
             "thickness_spread_not_explained_mm",
-        ],
+        ]
     };
     grid.with([nodal(of_displacement, &estimate.displacement_error)])
         .with_in_cells([

@@ -143,9 +143,10 @@ impl MovingPlate {
     /// Differences of second order where the numbers of cells allow them.
     fn scheme(&self) -> DifferenceScheme {
         let pairs = DifferenceScheme::Biquadratic.side();
-        match self.cells.iter().all(|count| count.is_multiple_of(pairs)) {
-            true => DifferenceScheme::Biquadratic,
-            false => DifferenceScheme::Gauss,
+        if self.cells.iter().all(|count| count.is_multiple_of(pairs)) {
+            DifferenceScheme::Biquadratic
+        } else {
+            DifferenceScheme::Gauss
         }
     }
 }

@@ -144,9 +144,10 @@ fn stress_figures(plate: &MovingPlate, times: &[f64], shown: &[PlateMotion]) -> 
 /// A time without trailing zeros.
 fn brief(time: f64) -> String {
     let text = number(time);
-    match text.contains('.') && !text.contains('e') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }
 

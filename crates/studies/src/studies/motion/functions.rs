@@ -220,15 +220,17 @@ pub fn read_stiffness(section: &Section) -> Option<SpringLaw> {
 /// η(·) of dashpots.
 pub fn read_damping(section: &Section) -> Option<DashpotLaw> {
     let function = read_function(section, Dimension::Viscosity);
-    let by_rate = match section.has("of") {
-        true => section.choice("of", &[("stretch", false), ("stretch rate", true)]),
-        false => Some(true),
+    let by_rate = if section.has("of") {
+        section.choice("of", &[("stretch", false), ("stretch rate", true)])
+    } else {
+        Some(true)
     };
     section.unknown_keys();
     let one = ScalarFunction::constant(1.0);
-    let (by_stretch, by_rate) = match by_rate? {
-        true => (one, function?),
-        false => (function?, one),
+    let (by_stretch, by_rate) = if by_rate? {
+        (one, function?)
+    } else {
+        (function?, one)
     };
     Some(DashpotLaw::Viscosity {
         by_stretch,

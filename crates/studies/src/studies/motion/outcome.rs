@@ -255,16 +255,18 @@ fn checks(
         )
     };
     let [of_springs, of_corrected] = deviations;
-    let (name, last) = match of_corrected.displacement.is_empty() {
-        true => (MASS_SPRING.name, of_springs),
-        false => (CORRECTED.name, of_corrected),
+    let (name, last) = if of_corrected.displacement.is_empty() {
+        (MASS_SPRING.name, of_springs)
+    } else {
+        (CORRECTED.name, of_corrected)
     };
     let compared = last.displacement.len();
     let until = times(models)[..compared].last().copied();
     let until = until.unwrap_or_default();
-    let over = match until < plate.time.duration * (1.0 - 1e-9) {
-        true => format!("up to {} s", number(until)),
-        false => "over all instants".to_owned(),
+    let over = if until < plate.time.duration * (1.0 - 1e-9) {
+        format!("up to {} s", number(until))
+    } else {
+        "over all instants".to_owned()
     };
     let deviation = |quantity: &str, limit: f64, value: f64, own: Option<f64>| {
         let own = own.unwrap_or(f64::NAN);

@@ -25,9 +25,10 @@ pub struct PlateMotion<'a> {
 /// The instants of the model that has more of them: all, unless both ended before.
 pub fn times(models: &[ModelMotion; 2]) -> Vec<f64> {
     let [springs, elements] = models.each_ref().map(|model| model.history.times());
-    match springs.len() < elements.len() {
-        true => elements,
-        false => springs,
+    if springs.len() < elements.len() {
+        elements
+    } else {
+        springs
     }
 }
 

@@ -107,9 +107,10 @@ const SMALLER: &str = "take a shorter duration, longer intervals or fewer cells"
 
 /// All tables of a kind; none where the study has none.
 fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T) -> Vec<T> {
-    match root.has(key) {
-        true => root.tables(key).iter().map(read).collect(),
-        false => Vec::new(),
+    if root.has(key) {
+        root.tables(key).iter().map(read).collect()
+    } else {
+        Vec::new()
     }
 }
 
@@ -221,13 +222,15 @@ fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
         settings: LatticeSettings {
             area_term: section.flag("area_term"),
         },
-        springs: match section.has("stiffness") {
-            true => read_stiffness(&section.section("stiffness")),
-            false => Some(SpringLaw::Material),
+        springs: if section.has("stiffness") {
+            read_stiffness(&section.section("stiffness"))
+        } else {
+            Some(SpringLaw::Material)
         },
-        dashpots: match section.has("damping") {
-            true => read_damping(&section.section("damping")),
-            false => Some(DashpotLaw::Material(viscosity.clone())),
+        dashpots: if section.has("damping") {
+            read_damping(&section.section("damping"))
+        } else {
+            Some(DashpotLaw::Material(viscosity.clone()))
         },
     };
     section.unknown_keys();
@@ -243,9 +246,12 @@ fn read_tolerances(section: &Section, grip: Option<&GripMotion>) -> Tolerances {
     let is_driven =
         grip.is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
-    let of_driven = |key| match is_driven && !section.has(key) {
-        true => DRIVEN_PERCENT,
-        false => percent(key),
+    let of_driven = |key| {
+        if is_driven && !section.has(key) {
+            DRIVEN_PERCENT
+        } else {
+            percent(key)
+        }
     };
     let tolerances = Tolerances {
         energy_percent: percent("energy"),

@@ -129,14 +129,15 @@ fn forces(plate: &MovingPlate) -> String {
         };
         format!("({fx}, {fy}) N at ({x}, {y}) mm, {time}")
     };
-    match plate.forces.is_empty() {
-        true => "none".into(),
-        false => plate
+    if plate.forces.is_empty() {
+        "none".into()
+    } else {
+        plate
             .forces
             .iter()
             .map(force)
             .collect::<Vec<_>>()
-            .join("; "),
+            .join("; ")
     }
 }
 

@@ -195,9 +195,10 @@ fn force(results: &Results) -> Drawing {
         with_points(lines.map(line), 2),
     );
     let differences = force_differences(results);
-    match differences.lines.is_empty() {
-        true => forces.into(),
-        false => Drawing::Charts(vec![(forces, 400), (differences, 320)]),
+    if differences.lines.is_empty() {
+        forces.into()
+    } else {
+        Drawing::Charts(vec![(forces, 400), (differences, 320)])
     }
 }
 

@@ -122,9 +122,10 @@ impl Study {
     pub fn describe(&self) -> String {
         let [nx, ny] = self.cells;
         let [fx, fy] = self.reference.cells;
-        let graded = match self.reference.grading > 1.0 {
-            true => format!(" graded by {}", self.reference.grading),
-            false => String::new(),
+        let graded = if self.reference.grading > 1.0 {
+            format!(" graded by {}", self.reference.grading)
+        } else {
+            String::new()
         };
         let stretches = match self.problem.stretches.len() {
             1 => "1 stretch".to_owned(),

@@ -263,9 +263,10 @@ fn reference_cells(size: [f64; 2], lattice: [usize; 2], is_graded: bool) -> [usi
     let short = if size[0] < size[1] { 0 } else { 1 };
     let m = lattice[short] as f64;
     let equal = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
-    let n = match is_graded {
-        true => equal.max(MOST_ACROSS.min(2.4 * m)),
-        false => equal,
+    let n = if is_graded {
+        equal.max(MOST_ACROSS.min(2.4 * m))
+    } else {
+        equal
     };
     let over = |axis: usize| (n * (size[axis] / size[short]).sqrt()).ceil() as usize;
     [0, 1].map(|axis| over(axis).next_multiple_of(4).min(MOST_CELLS))

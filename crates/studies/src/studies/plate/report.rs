@@ -36,13 +36,14 @@ fn introduction(study: &Study, results: &Results) -> String {
          the corrected field on {}, and the finite elements that both are compared with: {}.",
         study.problem.thickness,
         study.card.title,
-        match study.corrector.is_graded() {
-            false => "the same nodes".to_owned(),
-            true => format!(
+        if !study.corrector.is_graded() {
+            "the same nodes".to_owned()
+        } else {
+            format!(
                 "as many cells that become smaller towards the clamped corners (graded by {}), to whose nodes the springs' field \
-                 is interpolated",
+             is interpolated",
                 study.corrector.grading
-            ),
+            )
         },
         results.finest().model.describe()
     )
@@ -52,9 +53,10 @@ fn introduction(study: &Study, results: &Results) -> String {
 fn reached(results: &Results) -> Option<Block> {
     let row = |(name, model): (&str, usize)| {
         let reached = results.reached(model);
-        let stretches = match reached.is_empty() {
-            true => "–".to_owned(),
-            false => at_stretches(reached),
+        let stretches = if reached.is_empty() {
+            "–".to_owned()
+        } else {
+            at_stretches(reached)
         };
         vec![name.to_owned(), stretches]
     };

@@ -45,9 +45,10 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
 /// What is said of the states of the finite elements, or of those of the corrected field where there are none.
 fn of_states(study: &Study, results: &Results) -> Vec<String> {
     let finest = results.finest();
-    let model = match finest.solution.states.is_empty() {
-        true => 1,
-        false => 2,
+    let model = if finest.solution.states.is_empty() {
+        1
+    } else {
+        2
     };
     let steps = 0..results.comparison.len();
     let states = steps.filter_map(|step| {
@@ -91,9 +92,10 @@ fn instability(results: &Results) -> Option<String> {
 fn imbalance(study: &Study, results: &Results) -> Vec<String> {
     let told = |(model, name): (usize, &str)| {
         let (relative, stretch) = results.worst_balance(model)?;
-        let limit = match name == CORRECTED.name && study.corrector.climb.is_some() {
-            true => BALANCED_BY_CLIMB,
-            false => BALANCED,
+        let limit = if name == CORRECTED.name && study.corrector.climb.is_some() {
+            BALANCED_BY_CLIMB
+        } else {
+            BALANCED
         };
         (relative > limit).then(|| {
             format!(

@@ -21,8 +21,8 @@ fn shown(models: &Models) -> Option<usize> {
 }
 
 /// Pictures of the largest load factor of which most can be shown; `expected` are the finite elements' displacements at
-/// the lattice's nodes.
-pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec<Figure> {
+/// the nodes of springs and corrected field.
+pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<Vec<f64>>; 2]) -> Vec<Figure> {
     let lattice = &models.on_lattice.springs.mesh;
     let figure = |what: &str, caption: String, drawing| {
         Figure::new(format!("{}_{what}.png", specimen.name), caption, drawing)
@@ -48,10 +48,14 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
     let displacement = FieldFigure::new(title, "displacement [mm]", fields(3).map(size));
     let mut figures = vec![figure("displacement", caption, displacement.into())];
     figures.extend(stress_figures(specimen, models, step));
-    let compared = expected.get(step).filter(|_| fields(2).next().is_some());
-    if let Some(v) = compared {
-        // Springs and corrected springs.
-        let distances = fields(2).map(|(name, mesh, u)| Panel::distance(name, mesh, u, v));
+    let compared = named.iter().zip(expected);
+    let compared = compared.filter_map(|(model, expected)| {
+        let u = model.solution.displacement(step)?;
+        let v = expected.get(step)?;
+        Some(Panel::distance(model.name, &model.solution.mesh, u, v))
+    });
+    let distances: Vec<Panel> = compared.collect();
+    if !distances.is_empty() {
         let title = format!("Distance to the finite elements at {at}");
         let caption = format!("{title}.");
         let distance = FieldFigure::new(title, "distance [mm]", distances).logarithmic();
@@ -196,8 +200,13 @@ fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure
     ))
 }
 
-/// The fields of each model, as far as it goes; `expected` are the finite elements' displacements at the lattice's nodes.
-pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec<GridSeries> {
+/// The fields of each model, as far as it goes; `expected` are the finite elements' displacements at the nodes of springs and
+/// corrected field.
+pub fn grids(
+    specimen: &Specimen,
+    models: &Models,
+    expected: &[Vec<Vec<f64>>; 2],
+) -> Vec<GridSeries> {
     let (on_lattice, reference) = (&models.on_lattice, &models.reference);
     let field = |solution: &Solution, step: usize| {
         let (past, u) = (solution.past(step), &solution.states[step].displacement);
@@ -209,7 +218,7 @@ pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec
         (reached > 0).then(|| GridSeries::steps(name, steps))
     };
     let (uncorrected, corrected) = (&on_lattice.uncorrected, &on_lattice.corrected);
-    let on_lattice_of = |name, model: &Solution| {
+    let compared = |name, model: &Solution, expected: &[Vec<f64>]| {
         series(name, model.reached(), &|step| {
             let u = &model.states[step].displacement;
             let difference = expected.get(step).map(|v| Array::to_finite_elements(u, v));
@@ -226,8 +235,8 @@ pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec
         field(&reference.finest, step).with_in_cells(error)
     });
     let all = [
-        on_lattice_of(MASS_SPRING.key, uncorrected),
-        on_lattice_of(CORRECTED.key, corrected),
+        compared(MASS_SPRING.key, uncorrected, &expected[0]),
+        compared(CORRECTED.key, corrected, &expected[1]),
         springs,
         elements,
     ];

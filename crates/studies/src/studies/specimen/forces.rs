@@ -172,9 +172,12 @@ fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> Vec<String> {
     const ROUNDING: f64 = 1e-12;
     let [x, y, turning] = state.carried();
     let [u, v] = state.displacement;
-    let shown = |value: f64, scale: f64| match value.abs() < ROUNDING * scale {
-        true => number(0.0),
-        false => number(value),
+    let shown = |value: f64, scale: f64| {
+        if value.abs() < ROUNDING * scale {
+            number(0.0)
+        } else {
+            number(value)
+        }
     };
     let forces = [(x, force), (y, force), (turning, moment)];
     let forces = forces.map(|(value, scale)| shown(value, scale));

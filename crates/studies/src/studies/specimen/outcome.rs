@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::files::{figures, grids};
 use super::headline::headline;
 use super::problem::Specimen;
-use super::results::lattice::Start;
+use super::results::lattice::{OnLattice, Start};
 use super::results::models::{Models, NamedSolution};
 use super::results::verdict::{Deviation, checks};
 use super::warnings::warnings;
@@ -121,39 +121,44 @@ pub fn is_open(specimen: &Specimen, models: &Models) -> bool {
 fn deviations(
     specimen: &Specimen,
     models: &Models,
-    expected: &[Vec<f64>],
+    expected: &[Vec<Vec<f64>>; 2],
 ) -> Vec<Option<Deviation>> {
     let steps = 0..specimen.factors.len();
     steps
-        .map(|step| deviation(models, step, expected.get(step)?))
+        .map(|step| deviation(models, step, expected.each_ref().map(|of| of.get(step))))
         .collect()
 }
 
-/// The finite elements' displacements at the lattice's nodes, at the load factors that they reach.
-fn expected(models: &Models) -> Vec<Vec<f64>> {
-    let (reference, lattice) = (&models.reference, &models.on_lattice.springs.mesh);
-    let states = reference.finest.states.iter();
-    states
-        .map(|state| {
-            reference
-                .finest
-                .mesh
-                .displacement_on(&state.displacement, lattice)
-        })
-        .collect()
+/// The finite elements' displacements at the nodes of springs and corrected field, at the load factors that they reach.
+fn expected(models: &Models) -> [Vec<Vec<f64>>; 2] {
+    let finest = &models.reference.finest;
+    let OnLattice {
+        uncorrected,
+        corrected,
+        ..
+    } = &models.on_lattice;
+    [&uncorrected.mesh, &corrected.mesh].map(|mesh| {
+        let states = finest.states.iter();
+        states
+            .map(|state| finest.mesh.displacement_on(&state.displacement, mesh))
+            .collect()
+    })
 }
 
 /// Deviations from the expected field, where there is a corrected one.
-fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation> {
+fn deviation(
+    models: &Models,
+    step: usize,
+    [by_springs, by_corrected]: [Option<&Vec<f64>>; 2],
+) -> Option<Deviation> {
     let reference = &models.reference;
-    let lattice = &models.on_lattice.springs.mesh;
     let what = &reference.measured;
     let measured = what.at(&reference.finest, step)?;
     let none_of = what.none_of(&reference.finest, step);
     let is_none = |solved: &Solution| none_of.is_some() && what.none_of(solved, step).is_some();
-    let of = |solved: &Solution| {
+    let of = |solved: &Solution, expected: &[f64]| {
         let field = &solved.states.get(step)?.displacement;
-        let displacement = area_weighted_percent(lattice, field, expected);
+        let displacement = area_weighted_percent(&solved.mesh, field, expected);
         let value = what.at(solved, step)?;
         let deviation = match none_of {
             _ if is_none(solved) => 0.0,
@@ -164,8 +169,8 @@ fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation
     };
     Some(Deviation {
         measures_none: is_none(&models.on_lattice.corrected),
-        springs: of(&models.on_lattice.uncorrected),
-        corrected: of(&models.on_lattice.corrected)?,
+        springs: of(&models.on_lattice.uncorrected, by_springs?),
+        corrected: of(&models.on_lattice.corrected, by_corrected?)?,
         own: [
             reference.displacement_percent(step).unwrap_or(f64::NAN),
             reference.measured_percent(step).unwrap_or(f64::NAN),
@@ -175,9 +180,10 @@ fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation
 
 /// The deviation of a value from another one in % of it; two zeros do not deviate.
 fn percent(value: f64, expected: f64) -> f64 {
-    match value == expected {
-        true => 0.0,
-        false => 100.0 * (value / expected - 1.0),
+    if value == expected {
+        0.0
+    } else {
+        100.0 * (value / expected - 1.0)
     }
 }
 
@@ -190,7 +196,8 @@ fn row(
 ) -> Vec<String> {
     let reference = &models.reference;
     let text = |value: Option<f64>, digits: usize| {
-        value.map_or("–".into(), |value| format!("{value:.digits$}"))
+        let known = value.filter(|value| !value.is_nan());
+        known.map_or("–".into(), |value| format!("{value:.digits$}"))
     };
     let springs = |which: usize| deviation.and_then(|own| Some(own.springs?[which]));
     let corrected = |which: usize| deviation.map(|own| own.corrected[which]);
@@ -231,15 +238,18 @@ fn head(models: &Models) -> Vec<String> {
 }
 
 fn introduction(models: &Models) -> String {
-    let lattice = &models.on_lattice.springs.mesh;
+    let OnLattice {
+        springs, corrected, ..
+    } = &models.on_lattice;
     let measured = &models.reference.measured;
     format!(
-        "Deviations from the finite elements ({}) at {} nodes of the lattice ({}). Displacements are relative L2 norms, weighted by area. They are \
-         judged by the own error of the finite elements' displacement at these nodes; the own error of the field is the larger of this error and the \
-         error at all nodes of the finite elements. The measured quantity is {}; its {} axis is that of the larger component or of the given load.",
+        "Deviations from the finite elements ({}) at the nodes of the springs' lattice ({}) and of the corrected field ({}). Displacements are \
+         relative L2 norms, weighted by area. They are judged by the own error of the finite elements' displacement at the nodes of the corrected \
+         field; the own error of the field is the larger of this error and the error at all nodes of the finite elements. The measured quantity is \
+         {}; its {} axis is that of the larger component or of the given load.",
         models.reference.describe(),
-        lattice.nodes.len(),
-        lattice.describe(),
+        springs.mesh.describe(),
+        corrected.mesh.describe(),
         measured.describe(),
         measured.axis_name(),
     )

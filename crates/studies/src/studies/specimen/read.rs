@@ -185,9 +185,12 @@ const LARGE_FACTOR: f64 = 5.0;
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
     let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
-    let falls = factors.windows(2).any(|pair| match remembers {
-        true => pair[1] == pair[0],
-        false => pair[1] <= pair[0],
+    let falls = factors.windows(2).any(|pair| {
+        if remembers {
+            pair[1] == pair[0]
+        } else {
+            pair[1] <= pair[0]
+        }
     });
     if remembers && falls {
         let message = "must differ from one to the next";

@@ -30,11 +30,12 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
         Block::Paragraph(text),
         Block::table(&["supported group", "support"], supports),
     ];
-    blocks.push(match loads.is_empty() {
-        true => Block::Paragraph(
+    blocks.push(if loads.is_empty() {
+        Block::Paragraph(
             "There are no loads besides the motions and forces of the supports.".into(),
-        ),
-        false => Block::table(&["loaded group", "load"], loads),
+        )
+    } else {
+        Block::table(&["loaded group", "load"], loads)
     });
     blocks
 }

@@ -25,12 +25,10 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         .into_iter()
         .collect();
     let [_, corrected, finite_elements] = models.named();
-    let remedies = [specimen.outline.unlocking(), locking::SECOND_DEGREE];
-    let locking = [corrected, finite_elements].into_iter().zip(remedies);
-    let locking = locking.filter(|(model, _)| locking::locks(&model.solution.mesh));
-    let locking: Vec<_> = locking
-        .map(|(model, remedy)| (model.name, remedy))
-        .collect();
+    let locking = [corrected, finite_elements].into_iter();
+    let locking = locking.filter(|model| locking::locks(&model.solution.mesh));
+    let locking = locking.map(|model| (model.name, locking::SECOND_DEGREE));
+    let locking: Vec<_> = locking.collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     let left_out = specimen.card.viscosity.left_out();
     all.extend(left_out.map(|told| format!("{told}.")));

@@ -56,13 +56,15 @@ fn check(
     };
     let climbed = climb.correct(stretch).map_err(|fault| fault.to_string())?;
     let distance = distance(&climbed, &expected);
-    let limit = match climbed.discretisation_error.is_nan() {
-        true => 1e-5 * climbed.field.size(),
-        false => 0.1 * climbed.discretisation_error,
+    let limit = if climbed.discretisation_error.is_nan() {
+        1e-5 * climbed.field.size()
+    } else {
+        0.1 * climbed.discretisation_error
     };
-    match distance <= limit {
-        true => Ok(climbed),
-        false => Err(format!("{}: {distance:e} mm of {limit:e} mm", climbed.way)),
+    if distance <= limit {
+        Ok(climbed)
+    } else {
+        Err(format!("{}: {distance:e} mm of {limit:e} mm", climbed.way))
     }
 }
 

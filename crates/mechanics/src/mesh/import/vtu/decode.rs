@@ -52,9 +52,10 @@ pub struct Header<'a> {
 
 impl Header<'_> {
     pub fn next(&mut self) -> Result<usize, Unreadable> {
-        let (kind, width) = match self.numbers.wide_header {
-            true => ("UInt64", 8),
-            false => ("UInt32", 4),
+        let (kind, width) = if self.numbers.wide_header {
+            ("UInt64", 8)
+        } else {
+            ("UInt32", 4)
         };
         let (own, rest) = self.bytes.split_at_checked(width).ok_or("is cut off")?;
         self.bytes = rest;
@@ -89,9 +90,10 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable>
             break;
         }
     }
-    match data.len() == wanted {
-        true => Ok(data),
-        false => Err(format!("does not have the {wanted} bytes that belong to it").into()),
+    if data.len() == wanted {
+        Ok(data)
+    } else {
+        Err(format!("does not have the {wanted} bytes that belong to it").into())
     }
 }
 

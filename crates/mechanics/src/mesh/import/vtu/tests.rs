@@ -70,9 +70,10 @@ impl Written {
             }
             data.extend(bytes);
         }
-        let parts = match self.way.compressed {
-            false => vec![self.size(data.len()), data],
-            true => self.blocks(&data),
+        let parts = if !self.way.compressed {
+            vec![self.size(data.len()), data]
+        } else {
+            self.blocks(&data)
         };
         let stored: Vec<u8> = match (self.way.format, self.way.encoding) {
             ("appended", "raw") => parts.concat(),

@@ -21,9 +21,10 @@ impl Exported {
         let (_, after) = text.split_once("HYPERELASTIC, ").unwrap();
         let (keyword, _) = after.split_once('\n').unwrap();
         let keyword = keyword.split(", LOCAL").next().unwrap();
-        let directions = match text.contains("*ORIENTATION") {
-            true => numbers(text, "*ORIENTATION").split_off(2),
-            false => Vec::new(),
+        let directions = if text.contains("*ORIENTATION") {
+            numbers(text, "*ORIENTATION").split_off(2)
+        } else {
+            Vec::new()
         };
         let data = match keyword {
             "MARLOW" => numbers(text, "*UNIAXIAL TEST DATA"),

@@ -56,15 +56,16 @@ pub fn with_values(card: &Card, estimate: &JointEstimate, specimens: &str) -> Re
         let read = found.parameter(parameter.key).unwrap_or(f64::NAN);
         (read - estimate.value).abs() <= 1e-12 * estimate.value.abs()
     };
-    match estimate.with_keys().all(holds) {
-        true => Ok(found),
-        false => Err(Error::input(
+    if estimate.with_keys().all(holds) {
+        Ok(found)
+    } else {
+        Err(Error::input(
             format!(
                 "the parameters of the card `{}` cannot be replaced",
                 card.name
             ),
             "write them as a table [parameters] with one key a line",
-        )),
+        ))
     }
 }
 

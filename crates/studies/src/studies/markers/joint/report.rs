@@ -104,9 +104,10 @@ fn ranking_lines(study: &JointStudy, found: &JointResults) -> String {
 }
 
 fn error_words(error: f64) -> String {
-    match error.is_finite() {
-        true => format!("{error:.3}"),
-        false => "none".to_owned(),
+    if error.is_finite() {
+        format!("{error:.3}")
+    } else {
+        "none".to_owned()
     }
 }
 
@@ -279,20 +280,22 @@ fn first_value(card: &Card, key: &str) -> String {
 }
 
 fn intervals(estimate: &JointEstimate, explained: bool) -> String {
-    match explained {
-        true => format!(
+    if explained {
+        format!(
             "Outlying markers get Tukey's weights, unless the conditions state otherwise. Intervals follow the profile \
-             likelihood of all frames, with the noise estimated in each. Residuals of a marker in consecutive frames \
-             correlate by {:.2}, and frames count for less accordingly. The intervals include a common error of 1 % of all forces without a stated \
-             deviation, a stated error of the picture scale, and a scatter of forces beyond the stated one. {}",
+         likelihood of all frames, with the noise estimated in each. Residuals of a marker in consecutive frames \
+         correlate by {:.2}, and frames count for less accordingly. The intervals include a common error of 1 % of all forces without a stated \
+         deviation, a stated error of the picture scale, and a scatter of forces beyond the stated one. {}",
             estimate.common,
-            match estimate.holds_mesh_error {
-                true => "They include the discretisation error of the meshes, from the same equations on cells half as large.",
-                false => "They do not include the discretisation error, because one mesh has too many cells to be refined: they are too \
-                          narrow where that error is not small compared with the noise.",
+            if estimate.holds_mesh_error {
+                "They include the discretisation error of the meshes, from the same equations on cells half as large."
+            } else {
+                "They do not include the discretisation error, because one mesh has too many cells to be refined: they are too \
+        narrow where that error is not small compared with the noise."
             }
-        ),
-        false => "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned(),
+        )
+    } else {
+        "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned()
     }
 }
 

@@ -51,9 +51,10 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
             "The departure before the correction is the model error of the springs; the correction removes it. What remains is the discretisation \
              error of the corrector's finite differences on {}{}, and the finite elements' own discretisation error, estimated from three meshes. A \
              deviation is judged only where the finite elements' own error is at most a tenth of it, or ten times this error would not change the verdict.",
-            match study.corrector.is_graded() {
-                true => "the nodes of its graded cells",
-                false => "the lattice's nodes",
+            if study.corrector.is_graded() {
+                "the nodes of its graded cells"
+            } else {
+                "the lattice's nodes"
             },
             match study.corrector.scheme {
                 DifferenceScheme::Gauss =>
@@ -117,12 +118,13 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
             meshes[0],
             meshes[1],
             meshes[2],
-            match study.reference.grading > 1.0 {
-                true => format!(
+            if study.reference.grading > 1.0 {
+                format!(
                     ", graded by {} towards the corners",
                     study.reference.grading
-                ),
-                false => String::new(),
+                )
+            } else {
+                String::new()
             }
         )),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),

@@ -16,9 +16,10 @@ pub fn quantity(value: Option<f64>, places: usize) -> String {
 
 /// A figure as a power of ten; a dash where it is none.
 pub fn power(value: f64) -> String {
-    match value.is_nan() {
-        true => "–".into(),
-        false => format!("{value:.1e}"),
+    if value.is_nan() {
+        "–".into()
+    } else {
+        format!("{value:.1e}")
     }
 }
 

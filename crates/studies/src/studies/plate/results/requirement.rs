@@ -58,9 +58,10 @@ impl Results {
         let judged = compared().filter(|(_, step)| step.corrected.is_some());
         let own = judged.map(|(step, _)| (measure.own)(self, step).unwrap_or(f64::NAN));
         let own_error = worst(own, f64::max);
-        let judgement = match study.is_its_own_reference() {
-            true => its_own_reference(),
-            false => judge(deviation, own_error, measure.limit, REMEDY),
+        let judgement = if study.is_its_own_reference() {
+            its_own_reference()
+        } else {
+            judge(deviation, own_error, measure.limit, REMEDY)
         };
         let missing = self.stretches_without(|step| step.corrected.is_none());
         let judgement =
@@ -77,12 +78,13 @@ impl Results {
             Some(([before, after], own(step)))
         };
         let pairs: Vec<_> = self.comparison.iter().filter_map(pair).collect();
-        let judged = pairs
-            .iter()
-            .map(|(pair, own)| match study.is_its_own_reference() {
-                true => its_own_reference(),
-                false => judge_correction(*pair, *own, 100.0 - limit, REMEDY),
-            });
+        let judged = pairs.iter().map(|(pair, own)| {
+            if study.is_its_own_reference() {
+                its_own_reference()
+            } else {
+                judge_correction(*pair, *own, 100.0 - limit, REMEDY)
+            }
+        });
         let judgement = judged.max_by_key(severity).unwrap_or(Judgement::Fail);
         let missing = self.stretches_without(|step| step.pair().is_none());
         let rounding = |([before, _], own): &([f64; 2], f64)| {
@@ -138,9 +140,12 @@ fn its_own_reference() -> Judgement {
 
 /// The largest or smallest value; not a number when one of them is none.
 fn worst(values: impl Iterator<Item = f64>, pick: fn(f64, f64) -> f64) -> f64 {
-    let either = |a: f64, b: f64| match a.is_nan() || b.is_nan() {
-        true => f64::NAN,
-        false => pick(a, b),
+    let either = |a: f64, b: f64| {
+        if a.is_nan() || b.is_nan() {
+            f64::NAN
+        } else {
+            pick(a, b)
+        }
     };
     values.reduce(either).unwrap_or(f64::NAN)
 }

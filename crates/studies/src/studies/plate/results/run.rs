@@ -269,9 +269,12 @@ impl<'a> Run<'a> {
         let remembers = plate.law.softening().is_some();
         let mut correct = |(step, stretch): (usize, &f64)| {
             let affine = || plate.affine(mesh, *stretch);
-            let on_nodes = |field: &[f64]| match settings.is_graded() {
-                true => springs.mesh.displacement_on(field, mesh),
-                false => field.to_vec(),
+            let on_nodes = |field: &[f64]| {
+                if settings.is_graded() {
+                    springs.mesh.displacement_on(field, mesh)
+                } else {
+                    field.to_vec()
+                }
             };
             let data = springs.displacement(step).map_or_else(affine, on_nodes);
             let own = corrector.take()?;

@@ -139,29 +139,37 @@ impl Outline {
         }
     }
 
-    /// The lattice's mesh after coarser ones of the same shape, each with half the cells across, rounded up; that of a file is alone.
-    pub fn lattices(&self) -> Vec<Mesh> {
+    /// The mesh of the corrected field: the finite elements with about as many nodes as the lattice.
+    pub fn corrected_mesh(&self) -> Mesh {
+        self.reference_mesh(0)
+    }
+
+    /// The mesh of the corrected field after coarser ones of the same shape, each with half the cells across; that of a file is alone.
+    pub fn nested_meshes(&self) -> Vec<Mesh> {
         /// Cells across from which on a mesh has a coarser one.
         const FEWEST: usize = 6;
         let Self::Shape {
             shape,
             cells,
-            lattice,
+            element,
             ..
         } = self
         else {
-            return vec![self.lattice()];
+            return vec![self.corrected_mesh()];
         };
         let coarser = |cells: &usize| (*cells >= FEWEST).then(|| cells.div_ceil(2));
-        let cells = std::iter::successors(Some(*cells), coarser);
-        let mut meshes: Vec<Mesh> = cells.map(|cells| shape.mesh(cells, *lattice)).collect();
+        let coarsest = coarsest_cells(*cells, *element);
+        let cells = std::iter::successors(Some(coarsest), coarser);
+        let mut meshes: Vec<Mesh> = cells
+            .map(|cells| shape.mesh_halved(cells, 0, *element))
+            .collect();
         meshes.reverse();
         meshes
     }
 
     /// The mesh of the finite elements of a level: each has cells of half the size of those of the one before. At level 2
     /// they are half as large as the lattice's where they are quadratic, and a quarter where they are linear or the mesh is
-    /// that of a file, so that their error is small compared with that of the corrected field.
+    /// that of a file, so that their error is small compared with that of the corrected field, whose mesh is that of level 0.
     pub fn reference_mesh(&self, level: usize) -> Mesh {
         match self {
             Self::Shape {
@@ -169,14 +177,7 @@ impl Outline {
                 cells,
                 element,
                 ..
-            } => {
-                let coarsest = if element.degree() == 2 {
-                    cells / 2
-                } else {
-                    *cells
-                };
-                shape.mesh_halved(coarsest, level, *element)
-            }
+            } => shape.mesh_halved(coarsest_cells(*cells, *element), level, *element),
             Self::File { mesh, .. } => {
                 let refined = (0..level).fold((**mesh).clone(), |mesh, _| mesh.refined());
                 self.elements_on(&refined)
@@ -251,19 +252,6 @@ impl Outline {
         }
     }
 
-    /// What helps a corrected field whose cells lock.
-    pub fn unlocking(&self) -> &'static str {
-        match self {
-            Self::Shape { lattice, .. } if !lattice.is_triangle() => {
-                "Take `lattice = \"triangles\"` for the corrected field"
-            }
-            _ => {
-                "The corrected field uses the cells of the mesh: rely on finite elements of the second degree, or divide quadrilaterals into four \
-                 triangles that meet in the middle"
-            }
-        }
-    }
-
     /// A refined mesh with its sides on the outline; that of a file is the one of its mesh.
     pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
         if let Self::Shape { shape, .. } = self {
@@ -273,12 +261,21 @@ impl Outline {
     }
 }
 
+/// Cells across a shape of the coarsest finite elements, which have about as many nodes as a lattice of so many cells.
+fn coarsest_cells(cells: usize, element: CellShape) -> usize {
+    match element.degree() {
+        1 => cells,
+        _ => cells / 2,
+    }
+}
+
 /// A place without what rounding has left of it, compared with the size of the mesh.
 fn without_rounding(place: f64, size: f64) -> f64 {
     const ROUNDING: f64 = 1e-12;
-    match place.abs() < ROUNDING * size {
-        true => 0.0,
-        false => format!("{place:.11e}").parse().unwrap_or(place),
+    if place.abs() < ROUNDING * size {
+        0.0
+    } else {
+        format!("{place:.11e}").parse().unwrap_or(place)
     }
 }
 
@@ -334,30 +331,7 @@ fn describe(shape: Shape) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{HALVINGS, Outline, without_rounding};
-    use crate::mesh::{CellShape, Shape};
-
-    #[test]
-    fn advice_against_locking_has_keys_that_the_study_has() {
-        let strip = Shape::Strip { size: [20.0, 10.0] };
-        let element = CellShape::Quad9;
-        let shape = |lattice| Outline::Shape {
-            shape: strip,
-            cells: 4,
-            lattice,
-            element,
-        };
-        let file = Outline::File {
-            mesh: Box::new(strip.mesh(4, CellShape::Quad4)),
-            element,
-            polygons: false,
-            halvings: HALVINGS,
-        };
-        assert!(shape(CellShape::Quad4).unlocking().contains("lattice"));
-        for other in [shape(CellShape::Triangle3), file] {
-            assert!(!other.unlocking().contains("lattice"));
-        }
-    }
+    use super::without_rounding;
 
     #[test]
     fn places_are_told_without_what_rounding_left() {

@@ -65,9 +65,10 @@ fn read_mesh(section: &Section, import: &Import) -> Option<(Mesh, Exemptions)> {
     let merge_nodes = section
         .has("merge_nodes")
         .then(|| section.quantity("merge_nodes", Dimension::Length, Bound::Positive));
-    let names = match section.has("allowed") {
-        true => section.texts("allowed"),
-        false => Vec::new(),
+    let names = if section.has("allowed") {
+        section.texts("allowed")
+    } else {
+        Vec::new()
     };
     let allowed = Exemptions::of_names(names.iter().map(String::as_str));
     if let Err(unknown) = &allowed {

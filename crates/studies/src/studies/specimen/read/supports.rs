@@ -208,9 +208,10 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
                 .iter()
                 .flatten()
                 .all(|along| along.slope == [0.0; 2]);
-            match even {
-                true => Support::Displacement(displacement.map(|along| Some(along?.at_origin))),
-                false => Support::LinearDisplacement(displacement),
+            if even {
+                Support::Displacement(displacement.map(|along| Some(along?.at_origin)))
+            } else {
+                Support::LinearDisplacement(displacement)
             }
         }
         2 => Support::Roller,

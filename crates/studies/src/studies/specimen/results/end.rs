@@ -98,9 +98,10 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
     for end in ends {
         outcome.ended(&end.error());
         let Some(last) = end.last else { continue };
-        let file = match last.between {
-            true => format!("{}.vtu", last.file),
-            false => "–".to_owned(),
+        let file = if last.between {
+            format!("{}.vtu", last.file)
+        } else {
+            "–".to_owned()
         };
         rows.push(vec![
             end.model,

@@ -1,4 +1,4 @@
-//! Springs and corrected springs on the lattice of a specimen, each as far as its path goes.
+//! Springs on the lattice of a specimen and their correction, each as far as its path goes.
 
 use super::end::End;
 use crate::corrector::nested::{NestedCorrection, NestedMeshes};
@@ -33,14 +33,14 @@ pub enum Start {
     Nested,
     /// At the springs' field, with what the correction had changed at the load factor before.
     Springs,
-    /// At the equilibrium of the lattice's cells, which Newton's method reached from rest in load steps; ū is the
+    /// At the equilibrium of the elements, which Newton's method reached from rest in load steps; ū is the
     /// springs' field.
     LoadSteps,
     /// The same, where the springs have no field: ū is that equilibrium itself, and nothing is left to correct.
     Alone,
 }
 
-/// Springs and corrected springs on the lattice.
+/// Springs on the lattice, and the corrected field on the mesh of the coarsest finite elements.
 pub struct OnLattice {
     /// The lattice.
     pub springs: MassSpring,
@@ -109,22 +109,29 @@ impl OnLattice {
     ) -> Result<Self, Error> {
         let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
         progress.tell("corrector");
-        let nested = correct_nested(specimen, &springs.mesh, progress)?;
-        Self::correct(specimen, springs, uncorrected, nested, ends, progress)
+        let mesh = specimen.outline.corrected_mesh();
+        let nested = correct_nested(specimen, &mesh, progress)?;
+        Self::correct(
+            specimen,
+            &mesh,
+            (springs, uncorrected),
+            nested,
+            ends,
+            progress,
+        )
     }
 
     /// Corrects the springs where nested meshes do not lead.
     fn correct(
         specimen: &Specimen,
-        springs: MassSpring,
-        uncorrected: Solution,
+        mesh: &Mesh,
+        (springs, uncorrected): (MassSpring, Solution),
         nested: Vec<NestedCorrection>,
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        let lattice = &springs.mesh;
-        let energy = specimen.problem.finite_elements(lattice);
-        let model = specimen.on(lattice, &energy)?.named("corrector");
+        let energy = specimen.problem.finite_elements(mesh);
+        let model = specimen.on(mesh, &energy)?.named("corrector");
         let (states, discretisation_errors) = nested
             .into_iter()
             .map(|field| (field.state, field.discretisation_error))
@@ -146,19 +153,19 @@ impl OnLattice {
 /// The corrections on nested meshes at the load factors, as far as they lead; none where the study has no such meshes.
 fn correct_nested(
     specimen: &Specimen,
-    lattice: &Mesh,
+    mesh: &Mesh,
     progress: Progress,
 ) -> Result<Vec<NestedCorrection>, Error> {
-    if !specimen.is_nested(2 * lattice.nodes.len()) {
+    if !specimen.is_nested(2 * mesh.nodes.len()) {
         return Ok(Vec::new());
     }
-    let meshes = specimen.outline.lattices();
+    let meshes = specimen.outline.nested_meshes();
     let nested = NestedMeshes::new(&specimen.problem, &meshes);
     let mut fields = Vec::new();
     for factor in &specimen.factors {
         match nested.correct(*factor) {
             Ok(field) => fields.push(field),
-            // The rest goes by load steps on the lattice, which state how far they came.
+            // The rest goes by load steps, which state how far they came.
             Err(Error::Solve { .. }) => break,
             Err(other) => return Err(other),
         }
@@ -174,16 +181,16 @@ pub fn solve_corrected(
     progress: Progress,
 ) -> Result<Solution, Error> {
     progress.tell("corrector");
-    let lattice = specimen.outline.lattice();
-    let nested = correct_nested(specimen, &lattice, progress)?;
+    let mesh = specimen.outline.corrected_mesh();
+    let nested = correct_nested(specimen, &mesh, progress)?;
     if nested.len() == specimen.factors.len() {
-        let energy = specimen.problem.finite_elements(&lattice);
-        let model = specimen.on(&lattice, &energy)?;
+        let energy = specimen.problem.finite_elements(&mesh);
+        let model = specimen.on(&mesh, &energy)?;
         let states = nested.into_iter().map(|field| field.state);
         return Ok(Solution::new(&model, &specimen.groups(), states.collect()));
     }
-    let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
-    let found = OnLattice::correct(specimen, springs, uncorrected, nested, ends, progress)?;
+    let springs = solve_springs(specimen, ends, progress)?;
+    let found = OnLattice::correct(specimen, &mesh, springs, nested, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of(MASS_SPRING.name));
     Ok(found.corrected)
@@ -194,7 +201,7 @@ struct Corrections<'a> {
     specimen: &'a Specimen,
     model: &'a Model<'a>,
     progress: Progress<'a>,
-    /// The equilibria of the lattice's cells by load steps from rest, once they are wanted.
+    /// The equilibria of the elements by load steps from rest, once they are wanted.
     steps: Option<Result<Vec<State>, PathEnd>>,
 }
 
@@ -217,9 +224,12 @@ impl<'a> Corrections<'a> {
     ) -> (Vec<State>, Vec<Start>) {
         let mut starts = vec![Start::Nested; states.len()];
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
+        let onto_mesh = uncorrected.mesh.interpolation_on(self.model.mesh);
         let factors = self.specimen.factors.iter().enumerate();
         for (step, factor) in factors.skip(starts.len()) {
             let springs = uncorrected.displacement(step);
+            let springs = springs.map(|u| onto_mesh.apply(u));
+            let springs = springs.as_deref();
             let history = states.last().map(|before| self.model.remembered(before));
             let history = history.unwrap_or_default();
             let (factor, history) = (*factor, &*history);

@@ -29,7 +29,7 @@ pub struct Reference {
     pub(super) all_halved: Option<Solution>,
     /// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
     pub(super) outline: Option<Vec<OutlineChange>>,
-    /// The displacement's own error at each load factor without that of the outline, in relative L2 in %: at the nodes of the lattice, and at all of
+    /// The displacement's own error at each load factor without that of the outline, in relative L2 in %: at the nodes of the corrected field, and at all of
     /// the finest mesh.
     pub(super) displacement: Vec<Option<f64>>,
     pub(super) of_all_nodes: Vec<Option<f64>>,
@@ -39,7 +39,7 @@ pub struct Reference {
 pub struct OutlineChange {
     /// Of what is measured, in its unit.
     pub measured: f64,
-    /// Of the displacement at the nodes of the lattice, in relative L2 in %.
+    /// Of the displacement at the nodes of the corrected field, in relative L2 in %.
     pub displacement_percent: f64,
 }
 
@@ -215,13 +215,13 @@ impl Reference {
         Some(estimate.energy.percent())
     }
 
-    /// The error of the displacement at the nodes of the lattice at a load factor in relative L2 in %, with that of a file's outline, by which
+    /// The error of the displacement at the nodes of the corrected field at a load factor in relative L2 in %, with that of a file's outline, by which
     /// deviations there are judged; `None` where it is not known.
     pub fn displacement_percent(&self, step: usize) -> Option<f64> {
         self.with_outline(step, *self.displacement.get(step)?)
     }
 
-    /// The same of the field as a whole. At the nodes of the lattice, which several meshes have, quadratic elements are more exact than
+    /// The same of the field as a whole. At the nodes of the corrected field, which several meshes have, quadratic elements are more exact than
     /// elsewhere, and at all of the finest mesh those of a coarser one tell too high an order where a corner's error is left: the larger of
     /// both.
     pub fn field_percent(&self, step: usize) -> Option<f64> {
@@ -241,9 +241,10 @@ impl Reference {
     /// The error of the displacement at each load factor at the nodes of a mesh, without that of a file's outline.
     pub(super) fn errors_at(&self, at: &Mesh) -> Vec<Option<f64>> {
         let is_refined = !self.rounds.is_empty();
-        let others: Vec<&Solution> = match is_refined {
-            true => self.all_halved.iter().collect(),
-            false => self.coarser.iter().collect(),
+        let others: Vec<&Solution> = if is_refined {
+            self.all_halved.iter().collect()
+        } else {
+            self.coarser.iter().collect()
         };
         let all = others.into_iter().chain([&self.finest]);
         let on_nodes: Vec<_> = all
@@ -315,9 +316,10 @@ impl Reference {
         let wanted = Wanted::AtMost(goal.error_percent);
         let source = "the study's goal";
         let check = Check::new(quantity, "%", wanted, source, last.energy_percent);
-        Some(match last.energy_percent.is_nan() {
-            true => check.judged(unknown_energy(), f64::NAN),
-            false => check,
+        Some(if last.energy_percent.is_nan() {
+            check.judged(unknown_energy(), f64::NAN)
+        } else {
+            check
         })
     }
 

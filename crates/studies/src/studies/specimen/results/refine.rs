@@ -68,7 +68,7 @@ impl Reference {
             measured,
             rounds,
         };
-        reference.displacement = reference.errors_at(&specimen.outline.lattice());
+        reference.displacement = reference.errors_at(&specimen.outline.corrected_mesh());
         reference.of_all_nodes = reference.errors_at(&reference.finest.mesh);
         Ok(reference)
     }
@@ -276,13 +276,13 @@ fn outline_changes(
             &halved
         }
     };
-    let lattice = specimen.outline.lattice();
+    let corrected = specimen.outline.corrected_mesh();
     let change = |step| {
-        let [curved, straight] = [&rounded, middle].map(|own| on_nodes_of(&lattice, own, step));
+        let [curved, straight] = [&rounded, middle].map(|own| on_nodes_of(&corrected, own, step));
         Some(OutlineChange {
             measured: whole * (what.at(&rounded, step)? - what.at(middle, step)?),
             displacement_percent: whole.abs()
-                * area_weighted_percent(&lattice, &curved?, &straight?),
+                * area_weighted_percent(&corrected, &curved?, &straight?),
         })
     };
     let steps = 0..rounded.reached().min(middle.reached());

@@ -79,9 +79,10 @@ fn deviation_checks(
         let pairs = pairs.map(|own| [own.corrected[which].abs(), own.own[which]]);
         let [deviation, own] = worst(pairs);
         let nothing = which == 1 && deviations.iter().all(|own| own.measures_none);
-        let judgement = match nothing {
-            true => Judgement::Exact(NOTHING),
-            false => judge(deviation, own, limit, remedy),
+        let judgement = if nothing {
+            Judgement::Exact(NOTHING)
+        } else {
+            judge(deviation, own, limit, remedy)
         };
         let quantity = format!("corrected {name} from the finite elements");
         Check::new(quantity, "%", Wanted::AtMost(limit), SOURCE, deviation).judged(judgement, own)

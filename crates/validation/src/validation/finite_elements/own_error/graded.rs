@@ -82,9 +82,10 @@ impl Series {
     /// Of the order of the force.
     fn check(&self) -> Check {
         let (is_graded, element) = (self.grading > 1.0, self.element.name());
-        let cells = match is_graded {
-            true => format!("graded by {}", self.grading),
-            false => "equal cells".to_owned(),
+        let cells = if is_graded {
+            format!("graded by {}", self.grading)
+        } else {
+            "equal cells".to_owned()
         };
         let order = self.limit(|measures| measures.force).order;
         let what = format!("plate, {element}, {cells}: order of the force");

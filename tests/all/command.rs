@@ -1,0 +1,416 @@
+//! The command as a user meets it: words, files and exit codes.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::common::{SMALL, folder_with, gelbench, machine_report, number, words};
+
+/// The main job: the figures that the README promises, at every stretch.
+#[test]
+fn the_pva_plate_study_reaches_its_accuracy() {
+    let folder = TempDir::new().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let output = folder.path().to_str().unwrap();
+    let done = gelbench(
+        root,
+        &["run", "examples/pva_plate.toml", "--output", output],
+    )
+    .code(0);
+    let printed = words(&done.get_output().stdout);
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    let is_of_folder = |line: &&str| line.contains("files in") || line.starts_with("open ");
+    for line in printed.lines().filter(|line| !is_of_folder(line)) {
+        assert!(readme.contains(line), "the README does not show: {line}");
+    }
+
+    let report = machine_report(folder.path());
+    let steps = report["steps"].as_array().unwrap();
+    let stretches: Vec<f64> = steps.iter().map(|step| number(step, &["at"])).collect();
+    assert_eq!(stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
+    // Converged forces and widths of dolfinx, scikit-fem and FElupe.
+    let published = [
+        [2.49239, 46.55659],
+        [5.98013, 43.75464],
+        [12.87459, 40.71896],
+        [27.17571, 37.69968],
+        [52.16485, 35.27206],
+    ];
+    for (step, [force, width]) in steps.iter().zip(published) {
+        assert!(number(step, &["corrected", "displacement_percent"]) <= 0.1);
+        assert!(number(step, &["corrected", "departure_percent"]) <= 1.0);
+        assert!(number(step, &["corrected", "force_percent"]).abs() <= 0.2);
+        assert!(number(step, &["corrected", "correction_percent"]) >= 95.0);
+        assert!(number(step, &["mass_spring", "departure_percent"]) > 20.0);
+        let own = number(step, &["finite_element", "discretisation_percent"]);
+        assert!(own < 0.01, "{own}");
+        let found = number(step, &["finite_element", "extrapolated_force_N"]);
+        assert!((found / force - 1.0).abs() < 1e-5, "{found} {force}");
+        let found = number(step, &["finite_element", "extrapolated_width_mm"]);
+        assert!((found / width - 1.0).abs() < 1e-6, "{found} {width}");
+        for key in ["max_difference_mm", "force_N", "width_mm"] {
+            assert!(
+                number(step, &["mass_spring", key]) > 0.0
+                    && number(step, &["corrected", key]) > 0.0
+            );
+        }
+    }
+    assert!(number(&report, &["times_s", "corrector"]) > 0.0);
+}
+
+#[test]
+fn the_same_study_gives_the_same_bytes() {
+    let folder = folder_with(SMALL);
+    for output in ["first", "second"] {
+        gelbench(folder.path(), &["run", "small.toml", "--output", output]).code(0);
+    }
+    let mut compared = 0;
+    for part in ["", "vtk"] {
+        for entry in fs::read_dir(folder.path().join("first").join(part)).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            let known = !name.starts_with('.') || name == ".gelbench-manifest.json";
+            assert!(known, "{name} was left behind");
+            // Reports end with a section of times.
+            if path.is_dir() || name.starts_with("report") {
+                continue;
+            }
+            let other = folder.path().join("second").join(part).join(&name);
+            assert_eq!(fs::read(&path).unwrap(), fs::read(other).unwrap(), "{name}");
+            compared += 1;
+        }
+    }
+    assert_eq!(
+        compared,
+        9 + 8 + 1 + 1 + 1,
+        "pictures, VTK files, a view of them, forces and the manifest"
+    );
+    let without_times = |output: &str| {
+        let report = fs::read_to_string(folder.path().join(output).join("report.md")).unwrap();
+        report.split("## Times").next().unwrap().to_owned()
+    };
+    assert_eq!(without_times("first"), without_times("second"));
+}
+
+#[test]
+fn pictures_and_vtk_files_are_what_they_claim() {
+    let folder = folder_with(SMALL);
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    let output = folder.path().join("output/small");
+    for name in [
+        "material",
+        "plates_001",
+        "error_001",
+        "von_mises_001",
+        "largest_principal_stress_001",
+        "errors",
+        "force",
+        "residuals",
+        "estimated_error",
+    ] {
+        let bytes = fs::read(output.join(format!("{name}.png"))).unwrap();
+        assert!(
+            bytes.starts_with(b"\x89PNG") && bytes.len() > 5_000,
+            "{name}"
+        );
+    }
+    let page = fs::read_to_string(output.join("report.html")).unwrap();
+    assert_eq!(page.matches("data:image/png;base64,").count(), 9);
+    for model in ["mass_spring", "springs", "corrected", "finite_element"] {
+        let collection = fs::read_to_string(output.join(format!("vtk/{model}.pvd"))).unwrap();
+        assert!(collection.contains(&format!(
+            "timestep=\"0.2\" part=\"0\" file=\"{model}_001.vtu\""
+        )));
+        let grid = fs::read_to_string(output.join(format!("vtk/{model}_001.vtu"))).unwrap();
+        assert!(grid.contains("UnstructuredGrid") && grid.contains("displacement_mm"));
+    }
+}
+
+#[test]
+fn nothing_of_an_earlier_run_is_left_among_the_files() {
+    let folder = folder_with(&SMALL.replace("[\"20 %\"]", "[0.1, 0.2]"));
+    let output = folder.path().join("output/small");
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    assert!(
+        output.join("plates_002.png").exists() && output.join("vtk/corrected_002.vtu").exists()
+    );
+    fs::write(output.join("notes_002.png"), "mine").unwrap();
+    fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    assert!(
+        !output.join("plates_002.png").exists() && !output.join("vtk/corrected_002.vtu").exists()
+    );
+    assert!(output.join("plates_001.png").exists() && output.join("notes_002.png").exists());
+}
+
+#[test]
+fn a_requirement_that_is_not_met_ends_with_code_1() {
+    let folder = folder_with(&SMALL.replace("\"5 %\"", "\"0.001 %\""));
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
+    assert!(words(&done.get_output().stdout).contains("FAIL displacement"));
+    assert!(folder.path().join("output/small/report.html").exists());
+}
+
+#[test]
+fn faults_of_a_study_are_told_at_once_with_code_2() {
+    let study = SMALL.replace(
+        "cells = [12, 4]\n[load]",
+        "cels = [12, 4]\nthickness = 2\n[load]",
+    );
+    let folder = folder_with(&study.replace("[plate]", "[material]\ncard = \"pva10\"\n[plate]"));
+    let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+    let told = words(&done.get_output().stderr);
+    for expected in [
+        "did you mean `pva-10`",
+        "plate.cels",
+        "did you mean `cells`",
+        "needs a unit",
+        "small.toml:5",
+    ] {
+        assert!(told.contains(expected), "{expected}: {told}");
+    }
+    gelbench(folder.path(), &["run", "small.toml"]).code(2);
+    assert!(!folder.path().join("output").exists(), "nothing is written");
+    gelbench(folder.path(), &["run", "missing.toml"]).code(2);
+    gelbench(folder.path(), &["walk"]).code(2);
+}
+
+/// The report for programs of a study that ended with a code.
+fn report_of(folder: &TempDir) -> Value {
+    machine_report(&folder.path().join("output/small"))
+}
+
+fn judgements(report: &Value) -> Vec<&str> {
+    let requirements = report["requirements"].as_array().unwrap().iter();
+    requirements
+        .map(|requirement| requirement["result"].as_str().unwrap())
+        .collect()
+}
+
+/// Q2 elements on equal cells are the biquadratic scheme on a lattice of twice as many: deviation 0, whatever the error is.
+#[test]
+fn a_plate_compared_with_itself_is_not_judged() {
+    let own = SMALL.replace("cells = [24, 8]", "cells = [12, 4]\ngrading = 1.0");
+    let own = own.replacen("cells = [12, 4]", "cells = [24, 8]", 1);
+    let own = format!("{own}[corrector]\ngrading = 1.0\n");
+    let folder = folder_with(&own);
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert_eq!(printed.matches("cannot be judged").count(), 4, "{printed}");
+    assert!(!printed.contains("pass ") && !printed.contains("FAIL "));
+    assert!(words(&done.get_output().stderr).contains("own equations on the same nodes"));
+    let report = report_of(&folder);
+    assert_eq!(judgements(&report), ["cannot be judged"; 4]);
+    assert_eq!(report["passed"], false);
+    let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();
+    assert!(text.contains("cannot be judged") && text.contains("not been judged in all"));
+}
+
+/// A reference coarser than the lattice is blamed, and not the corrected field.
+#[test]
+fn a_reference_coarser_than_the_lattice_judges_nothing() {
+    let coarse = SMALL.replace("cells = [24, 8]", "cells = [8, 4]\ngrading = 1.0");
+    let coarse = coarse.replacen("cells = [12, 4]", "cells = [48, 16]", 1);
+    let coarse = coarse.replace("\"5 %\"", "\"0.001 %\"");
+    let folder = folder_with(&coarse);
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert!(
+        !printed.contains("FAIL") && !printed.contains("pass "),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("the reference is too coarse") && printed.contains("finite_element.cells"),
+        "{printed}"
+    );
+}
+
+#[test]
+fn where_the_springs_end_the_other_models_are_complete() {
+    for method in ["climb", "direct"] {
+        let study = format!(
+            "{SMALL}\n[mass_spring]\nmax_iterations = 1\n[corrector]\nmethod = \"{method}\"\n"
+        );
+        let folder = folder_with(&study);
+        let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+        let told = words(&done.get_output().stderr);
+        assert!(
+            told.contains("mass-spring (12 × 4 cells) at 20 % stretch") && told.contains("try:"),
+            "{told}"
+        );
+        let report = report_of(&folder);
+        assert_eq!(
+            judgements(&report),
+            ["pass", "pass", "pass", "cannot be judged"]
+        );
+        assert_eq!(report["passed"], false);
+        assert!(report["ends"][0].as_str().unwrap().contains("mass-spring"));
+        let step = &report["steps"][0];
+        assert!(step["mass_spring"].is_null());
+        assert!(number(step, &["corrected", "displacement_percent"]) < 1.0);
+        assert!(number(step, &["finite_element", "force_N"]) > 1.0);
+        let output = folder.path().join("output/small");
+        for (file, there) in [
+            ("vtk/mass_spring_001.vtu", false),
+            ("vtk/mass_spring.pvd", false),
+            ("vtk/corrected_001.vtu", true),
+            ("vtk/finite_element_001.vtu", true),
+            ("plates_001.png", true),
+            ("error_001.png", true),
+        ] {
+            assert_eq!(output.join(file).exists(), there, "{file}");
+        }
+        let text = fs::read_to_string(output.join("report.md")).unwrap();
+        assert!(text.contains("Models that ended early") && text.contains("takes the place of ū"));
+    }
+}
+
+#[test]
+fn where_the_finite_elements_end_springs_and_corrected_field_are_complete() {
+    let folder = folder_with(&SMALL.replace("[24, 8]", "[24, 8]\nmax_iterations = 1"));
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+    assert!(words(&done.get_output().stderr).contains("finite elements (Q2, 24 × 8 cells"));
+    let report = report_of(&folder);
+    assert_eq!(judgements(&report), ["cannot be judged"; 4]);
+    let step = &report["steps"][0];
+    assert!(step["finite_element"].is_null() && step["corrected"]["force_percent"].is_null());
+    assert!(number(step, &["corrected", "force_N"]) > 1.0);
+    assert!(number(step, &["mass_spring", "force_N"]) > 1.0);
+    let output = folder.path().join("output/small");
+    assert!(output.join("plates_001.png").exists() && !output.join("error_001.png").exists());
+}
+
+#[test]
+fn where_no_model_has_a_solution_the_report_says_why_each_ended() {
+    let folder = folder_with(&format!(
+        "{}\n[mass_spring]\nmax_iterations = 1\n[corrector]\nmethod = \"direct\"\nmax_steps = 1\n",
+        SMALL.replace("[24, 8]", "[24, 8]\nmax_iterations = 1")
+    ));
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+    let told = words(&done.get_output().stderr);
+    let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();
+    for model in ["mass-spring (", "finite elements (Q2"] {
+        assert!(
+            told.contains(model) && text.contains(model),
+            "{model}: {told}"
+        );
+    }
+    assert_eq!(judgements(&report_of(&folder)), ["cannot be judged"; 4]);
+    assert!(!folder.path().join("output/small/errors.png").exists());
+}
+
+#[test]
+fn a_compressed_plate_is_computed_and_warned_of() {
+    let folder = folder_with(&SMALL.replace("[\"20 %\"]", "[\"-5 %\", \"-10 %\"]"));
+    let done = gelbench(folder.path(), &["run", "small.toml"]);
+    let printed = words(&done.get_output().stderr);
+    assert!(
+        printed.contains("may wrinkle or buckle") && printed.contains("are critical"),
+        "{printed}"
+    );
+    let report = report_of(&folder);
+    for step in report["steps"].as_array().unwrap() {
+        for model in ["mass_spring", "corrected", "finite_element"] {
+            assert!(number(step, &[model, "force_N"]) < 0.0, "{model}");
+        }
+    }
+    assert!(
+        report["warnings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|warning| { warning.as_str().unwrap().contains("may wrinkle") })
+    );
+    assert_eq!(done.get_output().status.code(), Some(0), "{printed}");
+}
+
+#[test]
+fn the_grips_forces_are_in_balance_and_the_report_says_so() {
+    let folder = folder_with(SMALL);
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    let report = report_of(&folder);
+    for model in ["mass_spring", "corrected", "finite_element"] {
+        let grips = number(&report, &["balance", "models", model, "unbalanced"]);
+        assert!(grips < 1e-9, "{model}: {grips}");
+        let left = number(&report, &["balance", "models", model, "free_nodes"]);
+        assert!(
+            left < if model == "corrected" { 1e-3 } else { 1e-9 },
+            "{model}: {left}"
+        );
+    }
+    let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();
+    assert!(text.contains("Balance of forces and moments") && text.contains("thickness at rest"));
+}
+
+#[test]
+fn a_folder_that_takes_no_files_ends_with_code_4() {
+    let folder = folder_with(SMALL);
+    let done = gelbench(
+        folder.path(),
+        &["run", "small.toml", "--output", "small.toml/out"],
+    )
+    .code(4);
+    assert!(words(&done.get_output().stderr).contains("cannot write small.toml/out"));
+}
+
+#[test]
+fn a_new_study_is_complete_and_is_not_overwritten() {
+    let folder = TempDir::new().unwrap();
+    gelbench(folder.path(), &["new", "mine"]).code(0);
+    let done = gelbench(folder.path(), &["check", "mine.toml"]).code(0);
+    assert!(words(&done.get_output().stdout).contains("no faults"));
+    let done = gelbench(folder.path(), &["new", "mine.toml"]).code(4);
+    assert!(words(&done.get_output().stderr).contains("exists already"));
+}
+
+#[test]
+fn cards_are_listed_and_shown() {
+    let folder = TempDir::new().unwrap();
+    let done = gelbench(folder.path(), &["materials", "list"]).code(0);
+    assert!(words(&done.get_output().stdout).contains("pva-10-cauchy"));
+    let done = gelbench(folder.path(), &["materials", "show", "pva-10"]).code(0);
+    let shown = words(&done.get_output().stdout);
+    assert!(
+        shown.contains("amplitude = 0.0611 MPa") && shown.contains("10.1002/jbm.b.30543"),
+        "{shown}"
+    );
+    gelbench(folder.path(), &["materials", "show", "pva"]).code(2);
+    gelbench(folder.path(), &["materials", "plot", "pva-10"]).code(0);
+    assert!(
+        folder
+            .path()
+            .join("output/materials/pva-10_curves.png")
+            .exists()
+    );
+    let done = gelbench(
+        folder.path(),
+        &["materials", "compare", "pva-10", "neo-hooke"],
+    )
+    .code(0);
+    assert!(words(&done.get_output().stdout).contains("E₀ = 0.136540 MPa"));
+    assert!(
+        folder
+            .path()
+            .join("output/materials/comparison.png")
+            .exists()
+    );
+    let done = gelbench(folder.path(), &["materials", "compare", "pva", "neo"]).code(2);
+    let told = words(&done.get_output().stderr);
+    assert!(
+        told.contains("`pva`") && told.contains("`neo`"),
+        "both are named: {told}"
+    );
+}
+
+#[test]
+fn a_reader_that_has_gone_away_is_no_error() {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("gelbench"));
+    command
+        .args(["materials", "list"])
+        .stdout(std::process::Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+}

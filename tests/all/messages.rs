@@ -1,0 +1,411 @@
+//! What goes wrong in files and on the command line is told with its remedy.
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use crate::common::{SMALL, gelbench, one_line, root};
+
+/// What a command that fails prints, without line breaks.
+fn told(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let done = gelbench(folder, arguments).code(code);
+    one_line(&done.get_output().stderr)
+}
+
+fn contains(told: &str, expected: &[&str]) {
+    for expected in expected {
+        assert!(told.contains(expected), "{expected}: {told}");
+    }
+}
+
+/// What `check` tells of a study.
+fn checked(study: &str, expected: &[&str]) {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("a.toml"), study).unwrap();
+    contains(&told(folder.path(), &["check", "a.toml"], 2), expected);
+}
+
+fn example(name: &str) -> String {
+    fs::read_to_string(root().join("examples").join(name)).unwrap()
+}
+
+#[test]
+fn files_that_are_no_studies_are_told_with_the_command_that_takes_them() {
+    for (file, expected) in [
+        (
+            "examples/measured_plate.csv",
+            "`gelbench correct examples/measured_plate.csv",
+        ),
+        (
+            "examples/spring_dashpot.csv",
+            "`gelbench identify examples/spring_dashpot.csv`",
+        ),
+        (
+            "materials/data/pva_10_uniaxial.csv",
+            "`gelbench materials fit materials/data/pva_10_uniaxial.csv",
+        ),
+        (
+            "materials/pva-10.toml",
+            "`gelbench materials show materials/pva-10.toml`",
+        ),
+        (
+            "examples/measured_plate.toml",
+            "--study examples/measured_plate.toml",
+        ),
+    ] {
+        for command in ["run", "check"] {
+            let told = told(root(), &[command, file], 2);
+            contains(&told, &[file, "not a study", expected]);
+            assert_eq!(told.matches('×').count(), 1, "one message: {told}");
+        }
+    }
+    for kind in ["specimen", "motion"] {
+        let name = if kind == "motion" {
+            "released_plate.toml"
+        } else {
+            "dog_bone.toml"
+        };
+        let study = example(name).replace(&format!("kind = \"{kind}\""), "");
+        checked(&study, &[&format!("add `kind = \"{kind}\"`")]);
+    }
+}
+
+#[test]
+fn ratios_that_may_be_percentages_are_asked_for_in_every_kind_of_study() {
+    let plate = |stretches: &str| SMALL.replace("[\"20 %\"]", stretches);
+    checked(
+        &plate("[15, 30]"),
+        &[
+            "15 means 1500 %",
+            "write \"15 %\", or \"1500 %\" if that is meant",
+            "30 means 3000 %",
+        ],
+    );
+    checked(
+        &plate("[\"15\", \"50 %\"]"),
+        &["15 means 1500 %", "write \"15 %\""],
+    );
+    checked(&plate("[0.15, \"50 %\"]"), &["0.15 means 15 %"]);
+    checked(
+        &SMALL.replace("\"5 %\"", "5.5"),
+        &["tolerances.displacement: 5.5 means 550 %"],
+    );
+    let motion = example("released_plate.toml").replace("stretch = \"10 %\"", "stretch = 10");
+    checked(&motion, &["start.stretch: 10 means 1000 %"]);
+    let card = fs::read_to_string(root().join("materials/pva-10.toml")).unwrap();
+    let table = card
+        .replace("marlow-exponential", "marlow-table")
+        .replace("amplitude = \"0.0611 MPa\"", "strain = [0, 50, 100]")
+        .replace(
+            "exponent = 2.2347",
+            "stress = [\"0 MPa\", \"0.1 MPa\", \"0.3 MPa\"]",
+        )
+        .replace("offset = \"-0.05923 MPa\"", "");
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("a.toml"), table).unwrap();
+    contains(
+        &told(folder.path(), &["materials", "show", "a.toml"], 2),
+        &["100 means 10000 %", "\"100 %\""],
+    );
+    // Load factors are what they say.
+    let folder = TempDir::new().unwrap();
+    let specimen = example("dog_bone.toml").replace("[0.25, 0.5, 0.75, 1.0]", "[1, 10]");
+    fs::write(folder.path().join("a.toml"), specimen).unwrap();
+    gelbench(folder.path(), &["check", "a.toml"]).code(0);
+}
+
+#[test]
+fn numbers_and_units_are_told_alike_in_studies_cards_tables_and_options() {
+    let faults = [
+        ("15,0 cm", "write \"15.0 cm\", with a decimal point"),
+        ("3 inch", "did you mean `in`? Write \"3 in\""),
+        ("15", "as in \"15 mm\""),
+        ("15 N", "write a length such as \"2 mm\""),
+    ];
+    for (text, remedy) in faults {
+        let quoted = format!("\"{text}\"");
+        checked(
+            &SMALL.replace("[plate]", &format!("[plate]\nlength = {quoted}")),
+            &["plate.length", remedy],
+        );
+        let strip = example("strip_with_hole.toml");
+        checked(
+            &strip.replace("thickness = \"2 mm\"", &format!("thickness = {quoted}")),
+            &["specimen.thickness", remedy],
+        );
+        checked(
+            &strip.replace("x = \"45 mm\"", &format!("x = {quoted}")),
+            &[
+                "support[2].x",
+                remedy
+                    .split(" such as")
+                    .next()
+                    .unwrap()
+                    .trim_start_matches("write a length"),
+            ],
+        );
+        let motion = example("released_plate.toml");
+        checked(
+            &motion.replace("length = \"15 cm\"", &format!("length = {quoted}")),
+            &["plate.length", remedy],
+        );
+        let options = [
+            "correct",
+            "examples/measured_plate.csv",
+            "--material",
+            "pva-10",
+            "--thickness",
+            text,
+        ];
+        contains(&told(root(), &options, 2), &["--thickness", remedy]);
+    }
+    let card = fs::read_to_string(root().join("materials/pva-10.toml")).unwrap();
+    let folder = TempDir::new().unwrap();
+    fs::write(
+        folder.path().join("a.toml"),
+        card.replace("0.0611 MPa", "0,0611 mpa"),
+    )
+    .unwrap();
+    let message = told(folder.path(), &["materials", "show", "a.toml"], 2);
+    contains(&message, &["parameters.amplitude", "write \"0.0611 mpa\""]);
+    let table = "# test: uniaxial\nstretch [-],nominal_stress [kpa]\n1,0\n2,1\n";
+    fs::write(folder.path().join("a.csv"), table).unwrap();
+    let message = told(
+        folder.path(),
+        &["materials", "fit", "a.csv", "--law", "yeoh"],
+        2,
+    );
+    contains(&message, &["did you mean `kPa`?"]);
+}
+
+#[test]
+fn values_without_quotes_are_told_with_quotes() {
+    checked(
+        "[plate]\nlength = 15 cm\n",
+        &["a.toml:2", "in quotes: length = \"15 cm\""],
+    );
+    checked(
+        "[load]\nstretches = [15 %, 30 %]\n",
+        &["in quotes: \"15 %\"", "\"30 %\""],
+    );
+}
+
+#[test]
+fn a_file_in_utf_16_is_told_how_to_save_it() {
+    let folder = TempDir::new().unwrap();
+    let wide: Vec<u8> = SMALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for bytes in [[b"\xff\xfe", &*wide].concat(), wide] {
+        fs::write(folder.path().join("a.toml"), bytes).unwrap();
+        let told = told(folder.path(), &["run", "a.toml"], 2);
+        contains(&told, &["written in UTF-16", "save it as UTF-8"]);
+    }
+}
+
+#[test]
+fn units_of_meshes_are_told_by_their_names() {
+    let strip = example("strip_with_hole.toml")
+        .replace("\"strip-with-hole\"", "\"mesh\"\nfile = \"a.msh\"");
+    checked(
+        &strip,
+        &["file_unit: is missing", "add `file_unit = \"mm\"`"],
+    );
+    let with = |unit: &str| strip.replace("\"a.msh\"", &format!("\"a.msh\"\nfile_unit = {unit}"));
+    checked(&with("\"inch\""), &["did you mean `in`?"]);
+    checked(&with("\"furlong\""), &["known units: mm, cm, m"]);
+    checked(&with("1"), &["must be a unit of length", "such as \"mm\""]);
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("a.toml"), with("\"mm\"")).unwrap();
+    let told = told(folder.path(), &["check", "a.toml"], 2);
+    assert!(!told.contains("specimen.file_unit:"), "{told}");
+}
+
+/// The frame 2 of the measured plate.
+fn one_frame(folder: &Path) {
+    let text = example("measured_plate.csv");
+    let rows = text.lines().filter(|line| !line.starts_with("1,"));
+    fs::write(folder.join("one.csv"), rows.collect::<Vec<_>>().join("\n")).unwrap();
+}
+
+#[test]
+fn a_force_with_the_wrong_sign_is_told_before_anything_is_computed() {
+    let folder = TempDir::new().unwrap();
+    one_frame(folder.path());
+    let with = |force: &str| {
+        let options = [
+            "correct",
+            "one.csv",
+            "--material",
+            "pva-10",
+            "--thickness",
+            "2 mm",
+            "--rigid",
+            "left,right",
+            "--force",
+        ];
+        told(folder.path(), &[&options[..], &[force]].concat(), 2)
+    };
+    contains(
+        &with("left x 12.9 N"),
+        &[
+            "force on `left` is 12.9 N along x",
+            "towards -x",
+            "write -12.9 N",
+        ],
+    );
+    contains(&with("right x -12.9 N"), &["towards +x", "write 12.9 N"]);
+}
+
+#[test]
+fn a_force_among_several_frames_is_asked_for_its_frame() {
+    let options = [
+        "correct",
+        "examples/measured_plate.csv",
+        "--material",
+        "pva-10",
+        "--thickness",
+        "2 mm",
+        "--force",
+        "right x 12.9 N",
+    ];
+    let told = told(root(), &options, 2);
+    contains(
+        &told,
+        &[
+            "there are 2 frames",
+            "`frame = 2` under [[force]]",
+            "or correct one frame alone",
+        ],
+    );
+}
+
+#[test]
+fn misspelt_groups_are_told_at_their_place() {
+    let strip = example("strip_with_hole.toml").replacen("\"right\"", "\"rihgt\"", 1);
+    checked(
+        &strip,
+        &["support[2].group", "a.toml:35:9", "did you mean `right`?"],
+    );
+}
+
+#[test]
+fn advice_on_cells_is_taken_by_the_next_check() {
+    let wide = SMALL.replace("[plate]", "[plate]\nwidth = \"37 mm\"");
+    for (cells, advice) in [
+        ("[13, 5]", "[14, 4]"),
+        ("[11, 4]", "[12, 4]"),
+        ("[60, 3]", "[56, 14]"),
+    ] {
+        let study = wide.replacen("[12, 4]", cells, 1);
+        checked(&study, &["plate.cells", &format!("take {advice}")]);
+        let folder = TempDir::new().unwrap();
+        fs::write(
+            folder.path().join("a.toml"),
+            wide.replacen("[12, 4]", advice, 1),
+        )
+        .unwrap();
+        gelbench(folder.path(), &["check", "a.toml"]).code(0);
+    }
+}
+
+#[test]
+fn measures_that_do_not_fit_are_told_at_their_key_with_what_would() {
+    let strip = example("strip_with_hole.toml");
+    let notched = |depth: &str, length: &str| {
+        let notches =
+            format!("\"notched-strip\"\nnotch_depth = \"{depth}\"\nnotch_length = \"{length}\"");
+        strip.replace("\"strip-with-hole\"", &notches)
+    };
+    checked(
+        &notched("20 mm", "60 mm"),
+        &["specimen.notch_depth", "less than \"13.5 mm\""],
+    );
+    checked(
+        &notched("6 mm", "10 mm"),
+        &["specimen.notch_depth", "less than \"4.75 mm\""],
+    );
+    checked(
+        &strip.replace("12 mm", "28 mm"),
+        &["specimen.hole_diameter", "less than \"27 mm\""],
+    );
+    checked(
+        &example("dog_bone.toml").replace("\"4 mm\"", "\"14 mm\""),
+        &["specimen.narrow_width", "less than \"12.5 mm\""],
+    );
+}
+
+#[test]
+fn a_card_with_two_laws_is_told_to_have_one() {
+    let folder = TempDir::new().unwrap();
+    let card = fs::read_to_string(root().join("materials/pva-10-yeoh.toml")).unwrap();
+    let two = card.replacen("law = ", "law = \"gent\"\nlaw = ", 1);
+    let mixed = card.replacen("[data]", "jm = 30.0\n[data]", 1);
+    for (card, expected) in [
+        (two, "a card has one law: remove one"),
+        (
+            mixed,
+            "yeoh has no jm: leave it out, or take another law (gent)",
+        ),
+    ] {
+        fs::write(folder.path().join("a.toml"), card).unwrap();
+        contains(
+            &told(folder.path(), &["materials", "show", "a.toml"], 2),
+            &[expected],
+        );
+    }
+}
+
+#[test]
+fn a_file_in_place_of_a_folder_is_told_and_a_folder_in_place_of_a_file() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    fs::write(path.join("small.toml"), SMALL).unwrap();
+    for output in ["small.toml", "small.toml/deep"] {
+        let told = told(path, &["run", "small.toml", "--output", output], 4);
+        contains(
+            &told,
+            &["small.toml is a file", "name another with --output"],
+        );
+    }
+    fs::create_dir(path.join("there")).unwrap();
+    let data = root().join("materials/data/pva_10_uniaxial.csv");
+    let data = data.to_str().unwrap();
+    let message = told(
+        path,
+        &[
+            "materials",
+            "fit",
+            data,
+            "--law",
+            "yeoh",
+            "--output",
+            "small.toml",
+        ],
+        4,
+    );
+    contains(&message, &["small.toml is a file"]);
+    for command in [["plot", "pva-10"], ["convert", data]] {
+        let message = told(
+            path,
+            &["materials", command[0], command[1], "--output", "there"],
+            4,
+        );
+        contains(&message, &["there: it is a folder"]);
+    }
+}
+
+#[test]
+fn a_comparison_with_another_step_is_told_to_name_the_step() {
+    let told = told(
+        root(),
+        &[
+            "compare",
+            "examples/pva_plate.toml",
+            "examples/measured_plate.csv",
+            "--factor",
+            "50",
+        ],
+        2,
+    );
+    contains(&told, &["a stretch of 5000 %", "write --factor \"50 %\""]);
+}
