@@ -1,6 +1,6 @@
 //! Cases that reproduce the claims of the publication and check gelbench against other codes and against mathematics.
 //!
-//! A case is a study file with a kind of its own (see [`crate::kinds`]): `gelbench run` computes one, `gelbench validate` all.
+//! A case is a study file with a kind of its own (`gelbench::kinds`): `gelbench run` computes one, `gelbench validate` all.
 
 mod case;
 pub mod correction_matrix;

@@ -21,14 +21,13 @@ impl Drop for Taken {
 ///
 /// ```
 /// use std::path::{Path, PathBuf};
-/// use gelbench::document::with_files;
-/// use gelbench::material::Card;
+/// use gelbench_base::document::{read_text, with_files};
 ///
-/// let card = gelbench::material::registry::CARDS[0].1;
-/// let files = [(PathBuf::from("gel.toml"), card.as_bytes().to_vec())];
-/// let read = with_files(files, || Card::load("gel.toml", Path::new("")));
-/// assert_eq!(read.unwrap().law_name, "marlow-exponential");
-/// assert!(Card::load("gel.toml", Path::new("")).is_err());
+/// let files = [(PathBuf::from("gel.toml"), b"law = \"neo-hooke\"".to_vec())];
+/// let read = || read_text(Path::new("gel.toml"), 1_000_000, "give a card");
+/// assert_eq!(with_files(files, read)?, "law = \"neo-hooke\"");
+/// assert!(read().is_err());
+/// # Ok::<(), gelbench_base::error::Error>(())
 /// ```
 pub fn with_files<T>(
     files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>,

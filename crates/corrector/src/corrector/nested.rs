@@ -12,10 +12,10 @@
 //! ```
 //! use std::sync::Arc;
 //!
-//! use gelbench::corrector::nested::NestedMeshes;
-//! use gelbench::material::NeoHooke;
-//! use gelbench::mesh::{CellShape, Mesh, Shape};
-//! use gelbench::problem::{BoundaryProblem, Support};
+//! use gelbench_corrector::corrector::nested::NestedMeshes;
+//! use gelbench_mechanics::material::NeoHooke;
+//! use gelbench_mechanics::mesh::{CellShape, Mesh, Shape};
+//! use gelbench_mechanics::problem::{BoundaryProblem, Support};
 //!
 //! let strip = Shape::StripWithHole { size: [40.0, 20.0], radius: 4.0 };
 //! let meshes: Vec<Mesh> = (0..3).map(|level| strip.mesh(3 << level, CellShape::Quad4)).collect();
@@ -31,7 +31,7 @@
 //! let nested = NestedMeshes::new(&problem, &meshes);
 //! let [half, whole] = [0.5, 1.0].map(|factor| nested.correct(factor));
 //! assert!(whole?.discretisation_error > half?.discretisation_error);
-//! # Ok::<(), gelbench::error::Error>(())
+//! # Ok::<(), gelbench_base::error::Error>(())
 //! ```
 
 use super::climb::{Ratios, geometric_tail};
