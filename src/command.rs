@@ -34,6 +34,7 @@ mod choice;
 mod compare;
 mod conclusion;
 mod containment;
+mod convert;
 mod correct;
 mod export;
 mod fit;

@@ -1,4 +1,4 @@
-//! `gelbench materials fit`, `refit` and `convert`.
+//! `gelbench materials fit` and `refit`.
 
 use std::path::{Path, PathBuf};
 
@@ -8,18 +8,16 @@ use clap::{ArgGroup, Args};
 use super::choice::one_of;
 use super::fitted::{InTime, fitted, terms};
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_data, print_report, save, warn};
+use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
-    self, Base, Bounds, Conversion, Fit, FitSettings, PRECONDITIONED, Provenance, StrainColumn,
-    Terms, TestData, Weighting,
+    self, Base, Bounds, Fit, FitSettings, PRECONDITIONED, Provenance, Terms, TestData, Weighting,
 };
 use crate::document::Statements;
 use crate::error::{Diagnostic, Error};
 use crate::material::Card;
 use crate::material::card::FitRecord;
-use crate::material::parameters::StressMeasure;
 use crate::material::registry::{CARDS, DATA, LAWS, Law};
 use crate::output::{self, ResultFolder};
 use crate::results::{fit_json, fit_picture};
@@ -66,26 +64,6 @@ pub struct FitArguments {
     reading: ReadingArguments,
     #[command(flatten)]
     printed: Printed,
-}
-
-#[derive(Args)]
-pub struct ConvertArguments {
-    /// The file of test data
-    data: PathBuf,
-    /// Stress measure to write
-    #[arg(long, value_name = "MEASURE", value_parser = one_of(&StressMeasure::NAMES))]
-    to_stress: Option<StressMeasure>,
-    /// Strain measure to write
-    #[arg(long, value_name = "MEASURE", default_value = "stretch", value_parser = one_of(&StrainColumn::NAMES))]
-    to_strain: StrainColumn,
-    /// Unit of stress to write
-    #[arg(long, value_name = "UNIT", default_value = "MPa")]
-    to_unit: String,
-    /// The file to write; standard output if omitted
-    #[arg(long, value_name = "FILE")]
-    output: Option<PathBuf>,
-    #[command(flatten)]
-    reading: ReadingArguments,
 }
 
 /// A card by its name or path.
@@ -380,26 +358,4 @@ fn data(file: &str, folder: Option<&Path>, record: &FitRecord) -> Result<TestDat
         (None, Some((name, text))) => TestData::parse(name, text, &reading),
         _ => TestData::read(&folder.unwrap_or(Path::new("")).join(file), &reading),
     }
-}
-
-/// Writes test data in other measures and units.
-pub fn convert(arguments: ConvertArguments) -> Outcome {
-    let data = TestData::read(&arguments.data, &arguments.reading.reading())?;
-    warn(&data.told());
-    let text = Conversion {
-        stress: arguments.to_stress.unwrap_or(data.stress_measure),
-        strain: arguments.to_strain,
-        unit: arguments.to_unit,
-    }
-    .table(&data)?;
-    match arguments.output {
-        None => print_data(&text)?,
-        Some(file) => {
-            output::refuse_inputs(&file, &[&arguments.data])?;
-            let text = format!("# source: gelbench materials convert\n{text}");
-            save(&file, text.as_bytes())?;
-            print(&format!("{} written\n", file.display()))?;
-        }
-    }
-    Ok(0)
 }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 
-use super::fit::{ConvertArguments, FitArguments, convert, fit, load, refit, together};
+use super::convert::{ConvertArguments, convert};
+use super::fit::{FitArguments, fit, load, refit, together};
 use super::message;
 use super::terminal::{Outcome, print, save};
 use crate::error::Error;

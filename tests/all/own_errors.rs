@@ -117,7 +117,7 @@ measured_group = "inside"
 adaptive = true
 "#;
 
-/// How far the corrected ring is from finite elements, and what these state as their own error of that, in %.
+/// How far the springs of a ring are from finite elements, and what these state as their own error of that, in %.
 fn ring(element: &str, error: &str) -> [f64; 2] {
     let study = format!("{RING}element = \"{element}\"\nerror = \"{error}\"\n");
     let folder = folder_with(&study);
@@ -125,12 +125,12 @@ fn ring(element: &str, error: &str) -> [f64; 2] {
     let report: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
     let of = |model: &str, quantity: &str| number(&report["steps"][0], &[model, quantity]);
     [
-        of("corrected", "displacement_percent"),
+        of("mass_spring", "displacement_percent"),
         of("finite_element", "displacement_discretisation_percent"),
     ]
 }
 
-/// One corrected field beside two solutions: its distances from them differ by no more than the two are apart.
+/// One field of springs beside two solutions: its distances from them differ by no more than the two are apart.
 #[test]
 fn what_local_refinement_states_as_its_error_of_the_displacement_holds_the_difference_to_a_better_one()
  {

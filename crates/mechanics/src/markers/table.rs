@@ -115,9 +115,10 @@ impl<'a> Reader<'a> {
         let heads = roles.map(|(role, names)| head(role, names));
         let names = || heads.iter().map(|head| head.as_ref()?.1.as_deref());
         let common = columns::common_unit(names());
+        let common = common.as_deref();
         let units = Units {
             given: reading.unit,
-            corrected: common.as_deref(),
+            corrected: common,
             pixels: layout.pixels || chosen.any(&Role::LENGTHS) && names().flatten().any(is_pixel),
         };
         let of = |index: usize| match &heads[index] {
@@ -125,8 +126,7 @@ impl<'a> Reader<'a> {
             None => required(table, roles[index].1).and_then(|head| length(table, head, units)),
         };
         let deviation = head(Role::StandardDeviation, layout.deviation);
-        let plain_column =
-            |role: Role, names: Names| chosen.of(role).or_else(|| plain(table, names));
+        let plain_column = |role, names| chosen.of(role).or_else(|| plain(table, names));
         let reader = Self {
             table,
             layout: layout.name,
@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
                 .as_ref()
                 .is_some_and(|(_, unit)| unit.as_deref().map_or(units.pixels, is_pixel)),
             given: reading.unit,
-            warnings: columns::correction(table, common.as_deref(), reading.unit)
+            warnings: columns::correction(table, common, reading.unit)
                 .into_iter()
                 .chain(columns::mixed_units(names()))
                 .collect(),

@@ -164,9 +164,7 @@ impl MarkerStudy {
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
         warnings.extend(of_material(&card, &mesh));
-        let mut all = field.warnings;
         doubts.extend(check_thickness(&mesh, request.thickness));
-        all.extend(warnings);
         Ok(Self {
             card,
             thickness: request.thickness,
@@ -178,7 +176,7 @@ impl MarkerStudy {
             understood: field.understood,
             conditions: request.conditions,
             regressed,
-            warnings: all,
+            warnings: [field.warnings, warnings].concat(),
             doubts,
             unknown_gap,
         })

@@ -110,14 +110,11 @@ impl Layout {
                 let hint = "stretches are greater than zero; is the column a strain?";
                 return Err(head.fault(place.clone(), message, hint));
             }
-            let observations = if part.rows.contains(&index) {
-                &mut kept
-            } else {
-                &mut left_out
-            };
-            if part.remarks.is_empty() && part.rows.contains(&index) {
+            let is_kept = part.rows.contains(&index);
+            if part.remarks.is_empty() && is_kept {
                 turns.add(index, first);
             }
+            let observations = if is_kept { &mut kept } else { &mut left_out };
             for (column, factor, axis) in &self.stresses {
                 observations.push(Observation {
                     strains: self.along(*axis, [first, second]),

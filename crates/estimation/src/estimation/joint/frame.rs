@@ -227,8 +227,7 @@ impl Judged<'_> {
             } else {
                 independent * variance.ln()
             };
-            let effective = found.fit.effective;
-            let variances = found.variances.clone();
+            let (effective, variances) = (found.fit.effective, found.variances.clone());
             let difference = found.mesh_difference(&self.edges);
             let about = self.law_equations(found, law, values, difference.as_ref())?;
             let equations = about.normal;

@@ -102,9 +102,7 @@ impl Conditions {
     /// As [`Self::of_file`].
     pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
         let faults = Faults::default();
-        let document = Document::parse(file, text, &faults);
-        let conditions = read(&document.root(None, &faults));
-        drop(document);
+        let conditions = read(&Document::parse(file, text, &faults).root(None, &faults));
         faults.finish()?;
         Ok(conditions)
     }
@@ -132,11 +130,10 @@ impl Conditions {
                 faults.push(fault.hint("name it once"));
             }
         }
-        if faults.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::Input(faults))
+        if !faults.is_empty() {
+            return Err(Error::Input(faults));
         }
+        Ok(())
     }
 
     /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.
@@ -301,10 +298,10 @@ fn read(root: &Section) -> Conditions {
     if root.has("force") {
         for section in &root.tables("force") {
             if section.has("column") && !section.has("force") {
-                conditions.force_columns.push(force_column(section))
-            } else {
-                conditions.forces.push(force(section))
+                conditions.force_columns.push(force_column(section));
+                continue;
             }
+            conditions.forces.push(force(section));
         }
     }
     if root.has("edges") {

@@ -118,17 +118,18 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
             meshes[0],
             meshes[1],
             meshes[2],
-            if study.reference.grading > 1.0 {
-                format!(
-                    ", graded by {} towards the corners",
-                    study.reference.grading
-                )
-            } else {
-                String::new()
-            }
+            graded(study.reference.grading),
         )),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
     ]
+}
+
+fn graded(grading: f64) -> String {
+    if grading > 1.0 {
+        format!(", graded by {grading} towards the corners")
+    } else {
+        String::new()
+    }
 }
 
 /// The worst balance of the grips' forces of every model.

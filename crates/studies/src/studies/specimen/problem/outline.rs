@@ -146,7 +146,7 @@ impl Outline {
 
     /// The mesh of the corrected field after coarser ones of the same shape, each with half the cells across; that of a file is alone.
     pub fn nested_meshes(&self) -> Vec<Mesh> {
-        /// Cells across from which on a mesh has a coarser one.
+        /// Cells of a lattice across from which on a mesh has a coarser one.
         const FEWEST: usize = 6;
         let Self::Shape {
             shape,
@@ -158,11 +158,10 @@ impl Outline {
             return vec![self.corrected_mesh()];
         };
         let coarser = |cells: &usize| (*cells >= FEWEST).then(|| cells.div_ceil(2));
-        let coarsest = coarsest_cells(*cells, *element);
-        let cells = std::iter::successors(Some(coarsest), coarser);
-        let mut meshes: Vec<Mesh> = cells
-            .map(|cells| shape.mesh_halved(cells, 0, *element))
-            .collect();
+        let of_lattices = std::iter::successors(Some(*cells), coarser);
+        let cells = of_lattices.map(|cells| coarsest_cells(cells, *element));
+        let meshes = cells.map(|cells| shape.mesh_halved(cells, 0, *element));
+        let mut meshes: Vec<Mesh> = meshes.collect();
         meshes.reverse();
         meshes
     }
