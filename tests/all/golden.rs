@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::common::figures::agree;
 use crate::common::{gelbench, root, words};
 
-/// What the command prints and reports of an example, without what depends on the machine.
+/// What the command prints and reports of an example, without what depends on the run.
 fn figures(arguments: &[&str]) -> String {
     let folder = TempDir::new().unwrap();
     let output = folder.path().to_str().unwrap();
@@ -19,7 +19,8 @@ fn figures(arguments: &[&str]) -> String {
     let report = fs::read_to_string(report).unwrap_or_default();
     let without_times = report.split("\n## Times").next().unwrap_or_default();
     let text = words(&done.get_output().stdout) + without_times;
-    let depends = |line: &&str| line.contains("files in") || line.contains("report.html");
+    // Names of files that were written.
+    let depends = |line: &&str| line.contains(output);
     let lines: Vec<&str> = text.lines().filter(|line| !depends(line)).collect();
     lines.join("\n") + "\n"
 }
