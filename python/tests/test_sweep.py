@@ -71,7 +71,8 @@ def test_arrays_are_the_columns_of_the_table(table):
     read = pandas.read_csv(io.BytesIO(text(table)))
     assert list(table.columns) == list(read.columns)
     for name, column in table.columns.items():
-        if name != "fault":
+        # Pandas reads empty texts as numbers that are missing.
+        if name not in ("fault", "warnings"):
             assert np.array_equal(np.asarray(column), read[name].to_numpy()), name
     assert table.to_pandas().shape == (24, len(read.columns))
     assert table["material.c10"] is table["material.c10 [MPa]"]
