@@ -7,7 +7,7 @@ use web_time::Instant;
 
 use gelbench::document::with_files;
 use gelbench::error::Error;
-use gelbench::estimation::{Answer, FieldEstimate};
+use gelbench::estimation::FieldEstimate;
 use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
 use gelbench::output::{self, vtk};

@@ -1,4 +1,5 @@
 //! The workbench without a display.
+#![allow(dead_code, reason = "every test uses a part of it")]
 
 use std::time::{Duration, Instant};
 
