@@ -21,7 +21,7 @@ const CERTAIN: f64 = 0.5;
 /// The compression of a sheet, cell by cell, at the centres of the cells, beside the one that is critical there.
 ///
 /// Each connected part under compression is taken for a plate of its deformed thickness with the moduli at rest, which the sheet around it
-/// holds; see [`Bending::critical_stress`]. The thicknesses at which clamped, stretched sheets begin to wrinkle in an eigenvalue analysis of the
+/// holds; see `Bending::critical_stress`. The thicknesses at which clamped, stretched sheets begin to wrinkle in an eigenvalue analysis of the
 /// whole plate come out within a factor of two.
 #[derive(Clone, Debug)]
 pub struct Wrinkling {
