@@ -163,8 +163,9 @@ impl Estimated {
 const HEAD: &str = "field | frame | markers | noise [mm] | correlation length [mm] | verdict | why | best alternative";
 
 const EXPLANATION: &str = "Each field is corrected with an incompressible law, an assumed thickness and conditions that are \
-    only partly true, as an uninformed user would do. The verdict must be that the data are not explained; no intervals are \
-    then given. Each alternative that might explain the misfit is evaluated in one linearised step.";
+    only partly true, as an uninformed user would do. The verdict must be that the data are not explained, \
+    or that they cannot judge; no intervals are given where they are not explained. Each alternative that might explain the \
+    misfit is evaluated in one linearised step.";
 
 fn compute(fields: Vec<MeasuredField>, progress: Progress) -> Outcome {
     let mut outcome = Outcome::default();
