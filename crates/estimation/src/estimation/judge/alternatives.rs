@@ -62,13 +62,12 @@ impl NearestField<'_> {
             deviation: None,
         });
         let mut all: Vec<Granted> = scale.into_iter().collect();
-        if let Some(gap) = knowledge.edge_gap {
-            let strips = self.strips(edges);
+        let (strips, squares) = self.unknown_places(edges);
+        if !strips.is_empty() {
             let designs = self.marker_changes(&strips)?;
             all.extend((0..designs.ncols()).map(|column| Granted {
                 design: designs.columns(column, 1).into_owned(),
-                // As probably anywhere up to the gap farther out.
-                deviation: Some(gap / 3.0_f64.sqrt()),
+                deviation: Some(squares[(column, column)].sqrt()),
             }));
         }
         Ok(all)

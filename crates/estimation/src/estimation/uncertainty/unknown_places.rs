@@ -12,7 +12,10 @@ use crate::estimation::search::NearestField;
 
 impl NearestField<'_> {
     /// The forces of the strips beside the free edges in N/mm, and Σ in mm²; nothing where the edges are known.
-    pub(super) fn unknown_places(&self, edges: &[Edge]) -> (Vec<Vec<f64>>, DMatrix<f64>) {
+    pub(in crate::estimation) fn unknown_places(
+        &self,
+        edges: &[Edge],
+    ) -> (Vec<Vec<f64>>, DMatrix<f64>) {
         let Some(gap) = self.equations.task.knowledge.edge_gap else {
             return (Vec::new(), DMatrix::zeros(0, 0));
         };

@@ -33,9 +33,9 @@ impl Refinement {
 /// Which way the springs' field is corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Nested where that is quicker: on lattices of a shape that are large.
+    /// Nested where that is quicker: for corrected fields of a shape that are large.
     Automatic,
-    /// Springs on a coarser mesh of the shape, corrected there, from mesh to mesh up to the lattice.
+    /// Springs on a coarser mesh of the shape, corrected there, from mesh to mesh.
     Nested,
     /// From the lattice's own springs.
     Direct,
@@ -50,7 +50,7 @@ impl Method {
     ];
 }
 
-/// Unknowns of a lattice from which on nobody looks at its multipliers one by one, and nested meshes are quicker.
+/// Unknowns of a corrected field from which on nobody looks at its multipliers one by one, and nested meshes are quicker.
 pub const LARGE: usize = 20_000;
 
 /// A specimen, its supports and loads, and how finely it is meshed.
@@ -121,7 +121,7 @@ impl Specimen {
         }
     }
 
-    /// Whether the field on a lattice with so many unknowns is corrected on nested meshes.
+    /// Whether a corrected field with so many unknowns comes from nested meshes.
     pub fn is_nested(&self, unknowns: usize) -> bool {
         let able = self.outline.is_shape() && self.problem.law.softening().is_none();
         able && match self.correction {
