@@ -156,6 +156,7 @@ enum Command {
         kind: FileKind,
     },
     /// Reproduce the publication's claims and the comparisons with other codes
+    ///
     /// Writes REPORT.md with its pictures, REPORT.html and the times to output/validation/; some cases write to a
     /// subfolder.
     #[command(after_help = "Sample: gelbench validate vibrating-spring --output /tmp/validation")]
@@ -274,7 +275,7 @@ fn perform(command: Command) -> u8 {
 fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let mut ready = kinds::read(path, budget)?;
     let usual = || Path::new("output").join(name(path));
-    let folder = folder.or_else(|| ready.folder.clone());
+    let folder = folder.or_else(|| ready.output.folder.clone());
     let folder = folder.unwrap_or_else(usual);
     let identity = identity::of(&format!("{path:?} {budget:?}"));
     let results_folder = ResultFolder::resume(&folder, "run", &[path], &identity)?;
@@ -285,7 +286,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     warn(&ready.warnings);
     let progress = Progress::of(ready.progress_steps as u64);
     let counted = ready.progress_steps > 0;
-    let with_report = ready.report;
+    let with_report = ready.output.report;
     let told = |what: &str| {
         progress.tell(what);
         if counted {

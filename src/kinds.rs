@@ -11,7 +11,8 @@ use crate::error::{Diagnostic, Error, suggestion};
 use crate::results::{Check, Outcome, Results};
 use crate::studies::plate as plate_study;
 use crate::studies::sections::read_text;
-use crate::studies::{Kind, Prepare, PreparedStudy, Progress, motion, other_files, specimen};
+use crate::studies::specimen::{self, Specimen};
+use crate::studies::{Kind, Loaded, Prepare, PreparedStudy, Progress, motion, name, other_files};
 use crate::validation::{
     REAL_MEASUREMENTS, correction_matrix, cost, finite_elements, fit_coverage, flagship,
     interval_coverage, motion_correction, nonlinear_spring, other_codes, plate_ablation,
@@ -113,6 +114,10 @@ pub fn read_as(
     text: &str,
     budget: Budget,
 ) -> Result<PreparedStudy, Error> {
+    if kind.name == specimen::KIND {
+        let loaded = specimen::load(kind, file, text, budget)?;
+        return Ok(specimen::ready(kind, name(file), text, loaded));
+    }
     kind.read(reader(kind), file, text, budget)
 }
 
@@ -163,7 +168,25 @@ pub fn read(path: &Path, budget: Budget) -> Result<PreparedStudy, Error> {
 pub fn read_given(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
     match kind_of(&path.display().to_string(), &text)? {
         Some(kind) => read_as(kind, path, &text, budget),
-        None => plate_study::prepare(path, text, budget),
+        None => plate_study::prepare(path, &text, budget),
+    }
+}
+
+/// Reads the study of a plate or a specimen, the boundary value problem of one sheet.
+///
+/// # Errors
+/// [`Error::Input`] with every fault, or where the study is of another kind.
+pub fn read_sheet(path: &Path, text: &str, budget: Budget) -> Result<Loaded<Specimen>, Error> {
+    match kind_of(&path.display().to_string(), text)? {
+        None => plate_study::load(path, text, budget),
+        Some(kind) if kind.name == specimen::KIND => specimen::load(kind, path, text, budget),
+        Some(kind) => Err(Error::input(
+            format!(
+                "a study of the kind `{}` is not a boundary value problem of one sheet",
+                kind.name
+            ),
+            "take a plate study or one of the kind `specimen`",
+        )),
     }
 }
 

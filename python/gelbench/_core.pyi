@@ -28,10 +28,8 @@ __all__ = [
     "materials",
     "quantity",
     "run",
-    "run_plate",
-    "run_specimen",
-    "solve_plate",
-    "solve_specimen",
+    "run_sheet",
+    "solve_sheet",
     "text_of_file",
 ]
 
@@ -220,10 +218,7 @@ def distributions(
 def text_of_file(path: str) -> str: ...
 def check(path: str, allow_large: bool = False) -> tuple[str, list[str]]: ...
 def run(path: str, progress: _Told = None, allow_large: bool = False) -> Results: ...
-def run_plate(
-    study: str, material: MaterialCard, files: dict[str, bytes], progress: _Told = None, allow_large: bool = False
-) -> Results: ...
-def run_specimen(
+def run_sheet(
     study: str,
     material: MaterialCard,
     files: dict[str, bytes],
@@ -231,15 +226,7 @@ def run_specimen(
     progress: _Told = None,
     allow_large: bool = False,
 ) -> Results: ...
-def solve_plate(
-    study: str,
-    material: MaterialCard,
-    files: dict[str, bytes],
-    model: str,
-    progress: _Told = None,
-    allow_large: bool = False,
-) -> Solution: ...
-def solve_specimen(
+def solve_sheet(
     study: str,
     material: MaterialCard,
     files: dict[str, bytes],

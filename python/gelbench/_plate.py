@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-from . import _core
 from ._errors import fault
-from ._material import Material, card
+from ._material import Material
 from ._material import material as _material
 from ._quantities import PathLike, Quantity, text, toml, whole
-from ._study import Factors, Files, Settings, StudyInMemory, factor_texts, merged
+from ._study import Factors, Settings, StudyInMemory, factor_texts, merged
 
 __all__ = ["Plate"]
 
@@ -76,12 +74,6 @@ class Plate(StudyInMemory):
     def _text(self, factors: Factors | None, card: str) -> str:
         load = {"stretches": factor_texts(factors, self.STRETCHES)}
         return toml(merged({"kind": "plate", "material": {"card": card}, "load": load}, self._sections))
-
-    def _one(self, study: str, files: Files, model: str, progress: Any, allow_large: bool) -> _core.Solution:
-        return _core.solve_plate(study, card(self.material), files, model, progress, allow_large)
-
-    def _all(self, study: str, files: Files, progress: Any, allow_large: bool) -> _core.Results:
-        return _core.run_plate(study, card(self.material), files, progress, allow_large)
 
     def __repr__(self) -> str:
         own = self._sections["plate"]

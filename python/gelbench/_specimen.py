@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._errors import fault
 from ._fields import NUMBERS, read_mesh
-from ._material import Material, card
+from ._material import Material
 from ._material import material as _material
 from ._quantities import PathLike, Quantity, array_of, floats, refuse_masked, text, toml, whole
-from ._study import Factors, Files, Settings, StudyInMemory, factor_texts, merged
+from ._study import Factors, Settings, StudyInMemory, factor_texts, merged
 
 __all__ = ["Condition", "Specimen"]
 
@@ -227,12 +227,6 @@ class Specimen(StudyInMemory):
         conditions = {name: own for name, own in self._conditions.items() if own}
         own = merged({"kind": "specimen", "material": {"card": card}, "path": path}, self._sections)
         return toml({**own, **conditions})
-
-    def _one(self, study: str, files: Files, model: str, progress: Any, allow_large: bool) -> _core.Solution:
-        return _core.solve_specimen(study, card(self.material), files, model, self._mesh, progress, allow_large)
-
-    def _all(self, study: str, files: Files, progress: Any, allow_large: bool) -> _core.Results:
-        return _core.run_specimen(study, card(self.material), files, self._mesh, progress, allow_large)
 
     def __repr__(self) -> str:
         own = self._sections["specimen"]

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._errors import SolveError, WriteError, fault
 from ._material import Material, in_memory, needs_card, on_disk, shipped
+from ._material import card as core_card
 from ._material import material as _material
 from ._progress import Progress, callback
 from ._quantities import PathLike, finite, floats, magnitudes, number, text
@@ -130,10 +131,10 @@ class StudyInMemory:
             raise fault("material", f"{self.material.name} has no card", hint)
 
     def _one(self, study: str, files: Files, model: str, progress: Any, allow_large: bool) -> _core.Solution:
-        raise NotImplementedError
+        return _core.solve_sheet(study, core_card(self.material), files, model, self._mesh, progress, allow_large)
 
     def _all(self, study: str, files: Files, progress: Any, allow_large: bool) -> _core.Results:
-        raise NotImplementedError
+        return _core.run_sheet(study, core_card(self.material), files, self._mesh, progress, allow_large)
 
     def solve(
         self,

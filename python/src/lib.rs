@@ -34,10 +34,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::check, module)?)?;
     module.add_function(wrap_pyfunction!(study::quantity, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
-    module.add_function(wrap_pyfunction!(study::run_plate, module)?)?;
-    module.add_function(wrap_pyfunction!(study::run_specimen, module)?)?;
-    module.add_function(wrap_pyfunction!(study::solve_plate, module)?)?;
-    module.add_function(wrap_pyfunction!(study::solve_specimen, module)?)?;
+    module.add_function(wrap_pyfunction!(study::run_sheet, module)?)?;
+    module.add_function(wrap_pyfunction!(study::solve_sheet, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::distributions, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::text_of_file, module)?)?;
     module.add_function(wrap_pyfunction!(tests_to_laws::fit, module)?)?;

@@ -11,10 +11,8 @@ use gelbench::error::{Diagnostic, Error};
 use gelbench::kinds;
 use gelbench::material::softened_law::check_memory;
 use gelbench::mesh::{CellShape, MeshData};
-use gelbench::studies::plate::results::run::one_model;
-use gelbench::studies::plate::{self, Study};
-use gelbench::studies::specimen::Specimen;
-use gelbench::studies::{Kind, Loaded, ModelKind, Progress, specimen};
+use gelbench::studies::specimen::{Along, Specimen};
+use gelbench::studies::{Kind, Loaded, ModelKind, Progress, plate, specimen};
 use gelbench::units::{self, Dimension};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -46,76 +44,14 @@ fn model_kind(name: &str) -> Result<ModelKind, Error> {
 /// Cards in memory, by the names that a study has for them.
 type Files = BTreeMap<PathBuf, Vec<u8>>;
 
-fn read_plate(study: String, files: Files, allow_large: bool) -> Result<Study, Error> {
-    with_files(files, || {
-        Study::of_file(Path::new("plate"), study, budget(allow_large))
-    })
-}
-
 fn told(warnings: &[Diagnostic]) -> Vec<String> {
     warnings.iter().map(ToString::to_string).collect()
 }
 
-/// Solves one model of a plate whose study has the text `study`.
-#[pyfunction]
-#[pyo3(signature = (study, material, files, model, progress=None, allow_large=false))]
-pub fn solve_plate(
-    py: Python<'_>,
-    study: String,
-    material: &MaterialCard,
-    files: Files,
-    model: &str,
-    progress: Option<Py<PyAny>>,
-    allow_large: bool,
-) -> PyResult<Solution> {
-    let kind = model_kind(model).map_err(|error| exception(py, &error))?;
-    let work = |watch: &Arc<Watch>| {
-        let study = read_plate(study, files, allow_large)?;
-        let card = material.in_study(&study.card);
-        let mut sheet = Sheet {
-            law: Arc::clone(&card.law),
-            thickness: study.problem.thickness,
-            warnings: told(&study.warnings),
-            took: Duration::ZERO,
-        };
-        let study = study.with_card(watched(card, watch));
-        check_memory(&*study.problem.law, "a single model in Python")?;
-        let told = |what: &str| watch.tell(what);
-        let start = Instant::now();
-        let found = one_model(&study, kind, Progress::to(&told));
-        sheet.took = start.elapsed();
-        Ok((found, sheet))
-    };
-    let (found, sheet) = run_beside(py, progress, work)?;
-    let groups = ["left", "right"].map(str::to_owned).to_vec();
-    Solution::new(py, found, sheet, groups)
-}
-
-/// Computes all models of a plate whose study has the text `study`, and compares them.
-#[pyfunction]
-#[pyo3(signature = (study, material, files, progress=None, allow_large=false))]
-pub fn run_plate(
-    py: Python<'_>,
-    study: String,
-    material: &MaterialCard,
-    files: Files,
-    progress: Option<Py<PyAny>>,
-    allow_large: bool,
-) -> PyResult<Results> {
-    run_beside(py, progress, |watch| {
-        let study = read_plate(study, files, allow_large)?;
-        let card = watched(material.in_study(&study.card), watch);
-        let ready = plate::ready(study.with_card(card));
-        let told = |what: &str| watch.tell(what);
-        let results = ready.compute(Progress::to(&told))?;
-        Ok(Results::new(results, "plate".into(), None, true))
-    })
-}
-
-/// Computes all models of a specimen whose study has the text `study`, and compares them.
+/// Computes all models of a plate or a specimen whose study has the text `study`, and compares them.
 #[pyfunction]
 #[pyo3(signature = (study, material, files, mesh=None, progress=None, allow_large=false))]
-pub fn run_specimen(
+pub fn run_sheet(
     py: Python<'_>,
     study: String,
     material: &MaterialCard,
@@ -125,36 +61,38 @@ pub fn run_specimen(
     allow_large: bool,
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
-        let read = read_specimen(&study, files, mesh, allow_large)?;
-        let start = Instant::now();
+        let mut read = read_sheet(&study, files, mesh, allow_large)?;
+        let card = watched(material.in_study(&read.made.card), watch);
+        read.made = read.made.with_card(card);
+        let (kind, name) = sheet_kind(&read.made);
         let progress = |what: &str| watch.tell(what);
-        let specimen = read.made;
-        let card = watched(material.in_study(&specimen.card), watch);
-        let outcome = specimen::compute(&specimen.with_card(card), Progress::to(&progress))?;
-        let results = gelbench::results::Results {
-            name: "specimen".into(),
-            title: read.title,
-            kind: specimen::KIND,
-            text: study,
-            defaults: read.defaults,
-            read_warnings: told(&read.warnings),
-            outcome,
-            seconds: start.elapsed().as_secs_f64(),
-        };
-        Ok(Results::new(results, "specimen".into(), None, true))
+        let ready = specimen::ready(kind, name.into(), &study, read);
+        let results = ready.compute(Progress::to(&progress))?;
+        Ok(Results::new(results, name.into(), None, true))
     })
 }
 
-fn read_specimen(
+/// The kind of a study, and its name.
+fn sheet_kind(specimen: &Specimen) -> (&'static Kind, &'static str) {
+    match specimen.along {
+        Along::Stretch => (&plate::PLATE, plate::KIND),
+        Along::LoadFactor => (specimen_kind(), specimen::KIND),
+    }
+}
+
+fn read_sheet(
     study: &str,
     files: Files,
     mesh: Option<&GivenMesh>,
     allow_large: bool,
 ) -> Result<Loaded<Specimen>, Error> {
-    let (case, file, budget) = (specimen_kind(), Path::new("specimen"), budget(allow_large));
+    let budget = budget(allow_large);
     with_files(files, || match mesh {
-        Some(GivenMesh(mesh)) => specimen::load_on(mesh, case, file, study, budget),
-        None => specimen::load(case, file, study, budget),
+        Some(GivenMesh(mesh)) => {
+            let file = Path::new(specimen::KIND);
+            specimen::load_on(mesh, specimen_kind(), file, study, budget)
+        }
+        None => kinds::read_sheet(Path::new("sheet"), study, budget),
     })
 }
 
@@ -226,11 +164,11 @@ fn specimen_kind() -> &'static Kind {
     kinds::named(specimen::KIND).expect("specimens are a kind of study")
 }
 
-/// Solves one model of a specimen whose study has the text `study`, on the mesh given if there is one.
+/// Solves one model of a plate or a specimen whose study has the text `study`, on the mesh given if there is one.
 #[pyfunction]
 #[pyo3(signature = (study, material, files, model, mesh=None, progress=None, allow_large=false))]
 #[expect(clippy::too_many_arguments, reason = "the problem's parts")]
-pub fn solve_specimen(
+pub fn solve_sheet(
     py: Python<'_>,
     study: &str,
     material: &MaterialCard,
@@ -246,7 +184,7 @@ pub fn solve_specimen(
             made: read,
             warnings,
             ..
-        } = read_specimen(study, files, mesh, allow_large)?;
+        } = read_sheet(study, files, mesh, allow_large)?;
         let card = material.in_study(&read.card);
         let mut sheet = Sheet {
             law: Arc::clone(&card.law),
@@ -278,7 +216,7 @@ pub fn run(
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
         let ready = kinds::read(&path, budget(allow_large))?;
-        let (folder, with_report) = (ready.folder.clone(), ready.report);
+        let (folder, with_report) = (ready.output.folder.clone(), ready.output.report);
         let told = |what: &str| watch.tell(what);
         let results = ready.compute(Progress::to(&told))?;
         Ok(Results::new(results, path, folder, with_report))

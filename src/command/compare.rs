@@ -10,7 +10,6 @@ mod doubts;
 
 use doubts::doubts;
 
-use super::export::not_for_other_codes;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
@@ -21,13 +20,12 @@ use crate::compare::imported::{
 use crate::error::{Diagnostic, Error};
 use crate::kinds;
 use crate::material::HyperelasticLaw;
-use crate::mesh::{CellShape, Mesh};
+use crate::mesh::Mesh;
 use crate::output::{self, ResultFolder};
 use crate::results::{Array, Block, Grid, GridSeries, Sheet};
-use crate::studies::plate::Study;
-use crate::studies::plate::results::run;
+use crate::studies;
 use crate::studies::sections;
-use crate::studies::{self, Kind, specimen};
+use crate::studies::specimen::{self, Along, Specimen};
 use crate::units::{self, Dimension};
 
 /// What the command line says about a comparison.
@@ -120,61 +118,15 @@ pub fn run(options: Options) -> Outcome {
 fn compute(options: &Options) -> Result<Comparison, Error> {
     let path = &options.study;
     let text = sections::read_text(path)?;
-    let progress = Progress::of(0);
-    let told = |what: &str| progress.tell(what);
-    let told = studies::Progress::to(&told);
-    let compared = match kinds::kind_of(&path.display().to_string(), &text)? {
-        None => plate(options, text, told)?,
-        Some(case) if case.name == specimen::KIND => shape(options, case, &text, told)?,
-        Some(case) => return Err(not_for_other_codes(case)),
-    };
-    Ok(compared)
-}
-
-fn plate(options: &Options, text: String, told: studies::Progress) -> Result<Comparison, Error> {
-    let study = Study::of_file(&options.study, text, options.large.budget())?;
-    warn(&study.warnings);
-    let problem = &study.problem;
-    let last = problem.stretches[problem.stretches.len() - 1];
-    let factor = options.factor.unwrap_or(last);
-    if factor > PERCENTAGE && factor > last {
-        let message = format!("--factor {factor} is a stretch of {} %", 100.0 * factor);
-        let hint = format!("write --factor \"{factor} %\" if percent is meant");
-        return Err(Error::input(message, hint));
-    }
-    let lattice = Mesh::plate(problem.size, study.cells, CellShape::Quad4);
-    let (imported, sites) = import(options, factor, &lattice)?;
-    Ok(Comparison {
-        title: study.title.clone(),
-        law: Arc::clone(&problem.law),
-        thickness: problem.thickness,
-        factor,
-        imported,
-        sites,
-        models: run::fields(study, factor, told)?,
-    })
-}
-
-fn shape(
-    options: &Options,
-    case: &Kind,
-    text: &str,
-    told: studies::Progress,
-) -> Result<Comparison, Error> {
-    let read = specimen::load(case, &options.study, text, options.large.budget())?;
+    let shown = Progress::of(0);
+    let report = |what: &str| shown.tell(what);
+    let progress = studies::Progress::to(&report);
+    let read = kinds::read_sheet(path, &text, options.large.budget())?;
     warn(&read.warnings);
     let (title, specimen) = (read.title, read.made);
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);
-    if factor < 0.0 {
-        let message = format!(
-            "the load factor {factor} is negative, and load factors of a specimen begin at zero"
-        );
-        return Err(Error::input(
-            message,
-            "reverse the signs of supports and loads in the study",
-        ));
-    }
+    check_factor(&specimen, factor, last)?;
     let (imported, sites) = import(options, factor, &specimen.outline.lattice())?;
     Ok(Comparison {
         title,
@@ -183,8 +135,28 @@ fn shape(
         factor,
         imported,
         sites,
-        models: specimen::fields(specimen, factor, told)?,
+        models: specimen::fields(specimen, factor, progress)?,
     })
+}
+
+/// Refuses load factors that a study does not have.
+fn check_factor(specimen: &Specimen, factor: f64, last: f64) -> Result<(), Error> {
+    let is_stretch = specimen.along == Along::Stretch;
+    if is_stretch && factor > PERCENTAGE && factor > last {
+        let message = format!("--factor {factor} is a stretch of {} %", 100.0 * factor);
+        let hint = format!("write --factor \"{factor} %\" if percent is meant");
+        return Err(Error::input(message, hint));
+    }
+    if !is_stretch && factor < 0.0 {
+        let message = format!(
+            "the load factor {factor} is negative, and load factors of a specimen begin at zero"
+        );
+        return Err(Error::input(
+            message,
+            "reverse the signs of supports and loads in the study",
+        ));
+    }
+    Ok(())
 }
 
 /// Reads the field, before anything is computed, and places it on the specimen.

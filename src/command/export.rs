@@ -12,10 +12,9 @@ use crate::kinds;
 use crate::material::Code;
 use crate::output;
 use crate::output::export::{Export, InputFile};
-use crate::studies::plate::Study;
 use crate::studies::sections;
+use crate::studies::specimen;
 use crate::studies::specimen::Specimen;
-use crate::studies::{Kind, specimen};
 
 /// Which of the three finite-element meshes of a study goes out.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -36,8 +35,8 @@ pub struct Options {
     /// The code to write for
     #[arg(long = "to", value_name = "CODE", value_parser = one_of(&Code::NAMES))]
     pub code: Code,
-    /// File to write instead of one in output/
-    #[arg(long, value_name = "FILE")]
+    /// File to write, or folder for it, instead of one in output/
+    #[arg(long, value_name = "FILE|FOLDER")]
     pub output: Option<PathBuf>,
     /// Which of the three finite-element meshes to write
     #[arg(long = "mesh", value_enum, default_value = "fine")]
@@ -60,22 +59,19 @@ pub fn run(options: &Options) -> Outcome {
     }
     let path = &options.study;
     let text = sections::read_text(path)?;
-    let written = match kinds::kind_of(&path.display().to_string(), &text)? {
-        None => plate(path, text, options)?,
-        Some(case) if case.name == specimen::KIND => {
-            let read = specimen::load(case, path, &text, options.large.budget())?;
-            warn(&read.warnings);
-            shape(&read.title, &read.made, options)?
-        }
-        Some(case) => return Err(not_for_other_codes(case)),
-    };
+    let read = kinds::read_sheet(path, &text, options.large.budget())?;
+    warn(&read.warnings);
+    let written = input_file(&read.title, &read.made, options)?;
     let stem = path
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into());
     let code = options.code;
     let name = format!("{stem}_{}.{}", code.key(), code.ending());
-    let usual = || Path::new("output").join(&stem).join(name);
-    let target = options.output.clone().unwrap_or_else(usual);
+    let target = match &options.output {
+        Some(folder) if folder.is_dir() => folder.join(name),
+        Some(file) => file.clone(),
+        None => Path::new("output").join(&stem).join(name),
+    };
     output::refuse_inputs(&target, &[path])?;
     save(&target, written.text.as_bytes())?;
     for remark in written.remarks {
@@ -85,17 +81,8 @@ pub fn run(options: &Options) -> Outcome {
     Ok(0)
 }
 
-pub fn not_for_other_codes(case: &Kind) -> Error {
-    Error::input(
-        format!(
-            "a study of the kind `{}` is not a boundary value problem of one sheet",
-            case.name
-        ),
-        "take a plate study or one of the kind `specimen`",
-    )
-}
-
-fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFile, Error> {
+/// The problem in the other code's words, on the mesh that is asked for.
+fn input_file(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFile, Error> {
     let mesh = match (specimen.refinement, options.level) {
         (_, Level::Fine) => specimen::finest_mesh(specimen)?,
         (None, level) => specimen.outline.reference_mesh(level as usize),
@@ -110,27 +97,6 @@ fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFil
         card: &specimen.card,
         mesh: &mesh,
         factors: &specimen.factors,
-        bulk_ratio: options.bulk_ratio,
-    };
-    export.input_file(options.code)
-}
-
-fn plate(path: &Path, text: String, options: &Options) -> Result<InputFile, Error> {
-    let study = Study::of_file(path, text, options.large.budget())?;
-    warn(&study.warnings);
-    let plate = &study.problem;
-    let [coarse, middle, fine] = study.finite_elements();
-    let elements = match options.level {
-        Level::Coarse => coarse,
-        Level::Middle => middle,
-        Level::Fine => fine,
-    };
-    let export = Export {
-        title: &study.title,
-        problem: &plate.boundary_problem(),
-        card: &study.card,
-        mesh: &elements.mesh,
-        factors: &plate.stretches,
         bulk_ratio: options.bulk_ratio,
     };
     export.input_file(options.code)

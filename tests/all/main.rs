@@ -28,6 +28,7 @@ mod mistaken_fields;
 mod motions;
 mod multigrid;
 mod nested_correction;
+mod one_study;
 mod other_codes;
 mod own_errors;
 mod own_laws;

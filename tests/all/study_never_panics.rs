@@ -8,7 +8,7 @@ use gelbench::document::Statements;
 use gelbench::kinds::{KINDS, kind_of, read_as};
 use gelbench::material::Card;
 use gelbench::material::registry::{CARDS, DATA, Law};
-use gelbench::studies::plate::{DEFAULT, Study};
+use gelbench::studies::plate::{DEFAULT, load};
 use proptest::prelude::*;
 
 /// `text` with a piece replaced.
@@ -24,13 +24,13 @@ proptest! {
     #[test]
     fn studies(at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}|\\PC{0,6}") {
         let text = damaged(DEFAULT, at, length, &piece);
-        let _ = Study::parse("name", "name.toml", Path::new("/nowhere"), text);
+        let _ = load(Path::new("/nowhere/name.toml"), &text, Budget::USUAL);
     }
 
     #[test]
     fn numbers(value in prop_oneof!["-?[0-9]{1,30}", "-?[0-9]\\.[0-9]e-?[0-9]{1,4}", "nan|inf|-inf"]) {
         let text = format!("[plate]\nlength = \"{value} cm\"\ncells = [{value}, 3]\n[load]\nstretches = [{value}]\n");
-        let _ = Study::parse("name", "name.toml", Path::new("/nowhere"), text);
+        let _ = load(Path::new("/nowhere/name.toml"), &text, Budget::USUAL);
     }
 
     #[test]

@@ -37,7 +37,8 @@ impl Element {
         name_of(&Self::NAMES, self)
     }
 
-    fn shape(self) -> CellShape {
+    /// Its cells.
+    pub fn shape(self) -> CellShape {
         match self {
             Self::Q1 => CellShape::Quad4,
             Self::Q2 => CellShape::Quad9,

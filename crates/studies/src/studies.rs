@@ -8,7 +8,7 @@ use crate::budget::Budget;
 use crate::document::{Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error};
 use crate::material::Card;
-use crate::results::{Outcome, Results};
+use crate::results::{Block, Outcome, Results};
 use crate::solve::{Attendance, Journal};
 
 pub mod card;
@@ -79,14 +79,63 @@ pub struct PreparedStudy {
     computation: Computation,
     /// Warnings, which do not stop the work.
     pub warnings: Vec<Diagnostic>,
-    /// The folder that the study names for its results.
-    pub folder: Option<PathBuf>,
-    /// Whether the study asks for a report.
-    pub report: bool,
+    /// What it writes, and where.
+    pub output: OutputSettings,
     /// What the study computes, in words.
     pub about: String,
     /// The number of progress reports of its computation; zero where that is not known.
     pub progress_steps: usize,
+}
+
+/// What a study writes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputSettings {
+    /// The folder that receives everything; `None` where the study names none.
+    pub folder: Option<PathBuf>,
+    /// Whether `.vtu` and `.pvd` files are written.
+    pub vtk: bool,
+    /// Whether pictures are written.
+    pub plots: bool,
+    /// Whether reports are written.
+    pub report: bool,
+}
+
+impl Default for OutputSettings {
+    fn default() -> Self {
+        Self {
+            folder: None,
+            vtk: true,
+            plots: true,
+            report: true,
+        }
+    }
+}
+
+impl OutputSettings {
+    fn read(section: &Section) -> Self {
+        let folder = section.text("folder");
+        let settings = Self {
+            folder: (!folder.is_empty()).then(|| PathBuf::from(folder)),
+            vtk: section.flag("vtk"),
+            plots: section.flag("plots"),
+            report: section.flag("report"),
+        };
+        section.unknown_keys();
+        settings
+    }
+
+    /// Takes from an outcome what is not written.
+    fn apply(&self, outcome: &mut Outcome) {
+        if !self.vtk {
+            outcome.explored = std::mem::take(&mut outcome.grids);
+        }
+        if !self.plots {
+            outcome.figures.clear();
+            outcome
+                .blocks
+                .retain(|block| !matches!(block, Block::Figure(..)));
+        }
+    }
 }
 
 /// Faults are reported before anything is computed.
@@ -110,8 +159,13 @@ pub struct Kind {
     pub slow: bool,
 }
 
-/// Words before the card's title in the title of an untitled study, by kind; untitled studies of other kinds have the title of their built-in study.
-const UNTITLED: [(&str, &str); 2] = [("specimen", "Specimen"), ("motion", "Moving plate")];
+/// The kinds of studies that are a user's own, with the words before the card's title in the title of an untitled one. Studies of other
+/// kinds have the title of their built-in study, and write what a case of the validation writes.
+const UNTITLED: [(&str, &str); 3] = [
+    ("plate", "Clamped plate"),
+    ("specimen", "Specimen"),
+    ("motion", "Moving plate"),
+];
 
 impl Kind {
     /// Reads a study of this kind with `prepare`, within a budget.
@@ -126,19 +180,7 @@ impl Kind {
         budget: Budget,
     ) -> Result<PreparedStudy, Error> {
         let read = self.read_with(file, text, budget, prepare)?;
-        Ok(PreparedStudy {
-            name: name(file),
-            title: read.title,
-            kind: self.name,
-            text: text.to_owned(),
-            defaults: read.defaults,
-            computation: read.made,
-            warnings: read.warnings,
-            folder: None,
-            report: true,
-            about: format!("a study of the kind {}", self.name),
-            progress_steps: 0,
-        })
+        Ok(PreparedStudy::new(self, name(file), text, read))
     }
 
     /// The value that `read` returns for a study without faults.
@@ -153,6 +195,7 @@ impl Kind {
         Ok(Loaded {
             title: read.title,
             made: read.made.expect(SOUND),
+            output: read.output,
             defaults: read.defaults,
             warnings: read.warnings,
         })
@@ -160,17 +203,32 @@ impl Kind {
 
     /// The keys that are looked up when a text is read.
     pub fn keys(&self, prepare: Prepare, text: &str) -> Vec<Key> {
+        self.keys_with(text, prepare)
+    }
+
+    /// The same with any reader.
+    fn keys_with<T>(&self, text: &str, read: impl FnOnce(&Section, &Path) -> T) -> Vec<Key> {
         let faults = Faults::default();
         let defaults = Document::parse(self.file, self.study, &faults);
         let document = Document::parse("", text, &faults);
         let root = document.root(Some(&defaults), &faults);
         root.text("kind");
         self.title(&root, text, Path::new("."));
-        drop(prepare(&root, Path::new(".")));
+        drop(read(&root, Path::new(".")));
+        self.output(&root);
         faults.keys()
     }
 
-    /// The title of the study: for a specimen or a motion without a title, that of its material; for the others, that of their built-in study.
+    /// What the study writes.
+    fn output(&self, root: &Section) -> OutputSettings {
+        if UNTITLED.iter().any(|(kind, _)| *kind == self.name) {
+            OutputSettings::read(&root.section("output"))
+        } else {
+            OutputSettings::default()
+        }
+    }
+
+    /// The title of the study: for a plate, a specimen or a motion without a title, that of its material; for the others, that of their built-in study.
     fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
         let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.name) else {
             return root.heading("title");
@@ -197,21 +255,23 @@ impl Kind {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::within(budget);
-        let (title, made) = {
+        let (title, made, output) = {
             let defaults = Document::parse(self.file, self.study, &faults);
             let document = Document::parse(&file, text, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
             let title = self.title(&root, text, folder);
             let made = read(&root, folder);
+            let output = self.output(&root);
             root.unknown_keys();
-            (title, made)
+            (title, made, output)
         };
         let defaults = faults.defaults();
         let warnings = faults.finish()?;
         Ok(Loaded {
             title,
             made,
+            output,
             defaults,
             warnings,
         })
@@ -230,6 +290,8 @@ pub struct Loaded<T> {
     pub title: String,
     /// The value that its reader returned.
     pub made: T,
+    /// What it writes.
+    pub output: OutputSettings,
     /// The keys that it does not state, with the defaults used.
     pub defaults: Vec<String>,
     /// Warnings.
@@ -237,6 +299,21 @@ pub struct Loaded<T> {
 }
 
 impl PreparedStudy {
+    fn new(kind: &Kind, name: String, text: &str, read: Loaded<Computation>) -> Self {
+        Self {
+            name,
+            title: read.title,
+            kind: kind.name,
+            text: text.to_owned(),
+            defaults: read.defaults,
+            computation: read.made,
+            warnings: read.warnings,
+            output: read.output,
+            about: format!("a study of the kind {}", kind.name),
+            progress_steps: 0,
+        }
+    }
+
     /// Values of specimen, material and load that were used because the study does not state them, as `plate.length = "150 mm"`.
     pub fn physical_defaults(&self) -> impl Iterator<Item = &str> {
         const PHYSICAL: [&str; 3] = ["material.", "plate.", "load."];
@@ -250,7 +327,8 @@ impl PreparedStudy {
     /// [`Error::Solve`] when a model has no solution.
     pub fn compute(self, progress: Progress) -> Result<Results, Error> {
         let start = Instant::now();
-        let outcome = (self.computation)(progress)?;
+        let mut outcome = (self.computation)(progress)?;
+        self.output.apply(&mut outcome);
         Ok(Results {
             name: self.name,
             title: self.title,

@@ -12,7 +12,7 @@ use gelbench::markers::{ReadSettings, read, read_lines};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, MeshReading, Outline, import, import_series};
 use gelbench::solve::SparseRows;
-use gelbench::studies::plate::Study;
+use gelbench::studies::plate;
 
 use super::{Became, with_file};
 
@@ -29,7 +29,7 @@ pub fn study(bytes: &[u8]) -> Became {
     let file = Path::new("study.toml");
     let read = match kind_of("study.toml", text) {
         Ok(Some(case)) => read_as(case, file, text, Budget::USUAL).is_ok(),
-        Ok(None) => Study::of_file(file, text.to_owned(), Budget::USUAL).is_ok(),
+        Ok(None) => plate::load(file, text, Budget::USUAL).is_ok(),
         Err(_) => false,
     };
     read.into()

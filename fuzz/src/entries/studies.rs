@@ -37,7 +37,7 @@ fn compute(text: &str) -> Became {
     }
     let read = match kind_of("study.toml", text) {
         Ok(Some(case)) => read_as(case, file, text, SMALL),
-        Ok(None) => plate::prepare(file, text.to_owned(), SMALL),
+        Ok(None) => plate::prepare(file, text, SMALL),
         Err(fault) => Err(fault),
     };
     let computed = read.and_then(|ready| ready.compute(Progress::silent()));

@@ -12,10 +12,11 @@ use gelbench::kinds::kind_of;
 use gelbench::material::Card;
 use gelbench::mesh::Shape;
 use gelbench::problem::Support;
-use gelbench::studies::{Kind, plate, specimen};
+use gelbench::studies::plate;
+use gelbench::studies::specimen::{self, Along, Specimen};
 use gelbench::units::{Linear, could_be_stretch_ratios};
 
-use super::scene::{CardFile, Grip, Look, Outline, Scene};
+use super::scene::{CardFile, Grip, Outline, Scene};
 
 /// What a comment with the look begins with.
 const LOOK: &str = "# shown: ";
@@ -108,8 +109,10 @@ impl Scene {
         let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
         let look = shown.and_then(|look| serde_json::from_str(look).ok());
         let scene = match kind_of(&file.display().to_string(), &text)? {
-            None => of_plate(file, text)?,
-            Some(kind) if kind.name == specimen::KIND => of_specimen(kind, file, &text)?,
+            None => of_specimen(plate::load(file, &text, Budget::USUAL)?.made)?,
+            Some(kind) if kind.name == specimen::KIND => {
+                of_specimen(specimen::load(kind, file, &text, Budget::USUAL)?.made)?
+            }
             Some(kind) => {
                 return Err(Error::input(
                     format!(
@@ -196,30 +199,17 @@ fn card_file(card: Card) -> CardFile {
     }
 }
 
-fn of_plate(file: &Path, text: String) -> Result<Scene, Error> {
-    let study = plate::Study::of_file(file, text, Budget::USUAL)?;
-    let stretch = study.problem.stretches.last().copied().unwrap_or(0.0);
-    Ok(Scene {
-        outline: Outline::Plate,
-        size: study.problem.size,
-        thickness: study.problem.thickness,
-        cells: study.cells,
-        grip: Grip {
-            displacement: [stretch * study.problem.size[0], 0.0],
-            angle: 0.0,
-        },
-        card: card_file(study.card),
-        look: Look {
-            ..Scene::default().look
-        },
-    })
-}
-
-fn of_specimen(kind: &Kind, file: &Path, text: &str) -> Result<Scene, Error> {
-    let read = specimen::load(kind, file, text, Budget::USUAL)?.made;
+fn of_specimen(read: Specimen) -> Result<Scene, Error> {
     let other = |what: &str| Error::input(what, "run it in the view Study, or with `gelbench run`");
-    let specimen::Outline::Shape { shape, cells, .. } = read.outline else {
-        return Err(other("the specimen is a mesh from a file"));
+    let (shape, across, cells) = match &read.outline {
+        specimen::Outline::Shape { shape, cells, .. } => (*shape, *cells, None),
+        specimen::Outline::Grid(grids) => {
+            let strip = Shape::Strip { size: grids.size };
+            (strip, grids.cells[1], Some(grids.cells))
+        }
+        specimen::Outline::File { .. } => {
+            return Err(other("the specimen is a mesh from a file"));
+        }
     };
     let (outline, size) = match shape {
         Shape::Strip { size } => (Outline::Plate, size),
@@ -255,12 +245,20 @@ fn of_specimen(kind: &Kind, file: &Path, text: &str) -> Result<Scene, Error> {
     let grip = grip.ok_or_else(|| {
         other("the specimen must have a clamp `left` and a rigid grip `right`, and no other supports or loads")
     })?;
-    let along = (size[0] / size[1] * cells as f64).round() as usize;
+    let along = (size[0] / size[1] * across as f64).round() as usize;
+    let last = match read.along {
+        Along::Stretch => read.factors.last().copied().unwrap_or(0.0),
+        Along::LoadFactor => 1.0,
+    };
+    let grip = Grip {
+        displacement: grip.displacement.map(|u| last * u),
+        ..grip
+    };
     Ok(Scene {
         outline,
         size,
         thickness: read.problem.thickness,
-        cells: [along.next_multiple_of(2).max(2), cells],
+        cells: cells.unwrap_or([along.next_multiple_of(2).max(2), across]),
         card: card_file(read.card),
         grip,
         look: Scene::default().look,

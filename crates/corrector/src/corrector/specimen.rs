@@ -9,7 +9,7 @@ use crate::problem::Model;
 use crate::solve::{Assembly, Loading, Newton, NewtonSettings, Stage, State, equilibrium};
 
 /// The name of the condition that the supports impose.
-const SUPPORTS: &str = "supports";
+pub const SUPPORTS: &str = "supports";
 
 /// Names of a mesh's cells and nodes by their places.
 struct Names<'a>(&'a Model<'a>);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::boundary_conditions::{Load, Support};
-use super::constraints::Constraints;
+use super::constraints::{Constraints, Tie};
 use super::contradictions::{agreeing, contradictions};
 use super::deformed::DeformedSheet;
 use super::loads::{Loads, dead_forces};
@@ -127,11 +127,11 @@ impl BoundaryProblem {
         Ok(by)
     }
 
-    /// The tied unknowns of a mesh, each with the unknown that it follows: those of grips with a given force.
+    /// The tied unknowns of a mesh, each with the unknown that it follows: those of grips with a given force, and of inclined lines.
     ///
     /// # Errors
     /// A [`Diagnostic`] when a support names no group of the mesh, when a group does not suit its support, or when supports contradict each other.
-    pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+    pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, Tie>, Diagnostic> {
         Ok(agreeing(&self.supports, mesh)?.ties)
     }
 

@@ -21,8 +21,7 @@ pub enum Support {
         /// The displacement away from the point.
         displacement: f64,
     },
-    /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
-    /// symmetry.
+    /// Free to slide along the straight line on which the group lies, in any direction: a roller, or an axis of symmetry.
     Roller,
     /// A rigid turn about a point in mm by an angle in rad, counter-clockwise.
     Rotation {

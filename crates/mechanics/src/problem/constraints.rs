@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::boundary_conditions::{Drive, Support};
+use super::contradictions::FACTORS;
 use super::corner_forces::{Hold, Part, reaction_parts};
 use super::groups::{named, refused};
 use super::rigid_motion::RigidMotion;
@@ -62,10 +63,10 @@ enum SupportMisfit {
     NodeAtCentre,
     #[error("has no nodes")]
     NoNodes,
-    #[error(
-        "is not a straight line parallel to an axis, which a roller or an axis of symmetry needs"
-    )]
-    NotAlongAxis,
+    #[error("is not a straight line, which a roller or an axis of symmetry needs")]
+    NotStraight,
+    #[error("slides along a line, and another support moves a node of it off that line")]
+    MovedOffLine,
     #[error("is a single point, which defines no line to slide along")]
     NoLine,
 }
@@ -75,12 +76,30 @@ impl SupportMisfit {
         match self {
             Self::NodeAtCentre => "move the centre, or leave the node out",
             Self::NoNodes => "take a group with nodes",
-            Self::NotAlongAxis => {
-                "rotate the mesh, or hold the group with the kind \"displacement\""
+            Self::NotStraight => "hold the group with the kind \"displacement\"",
+            Self::MovedOffLine => {
+                "leave the node out of one of the groups, or move it along the line"
             }
             Self::NoLine => "hold it with the kind \"displacement\" and x or y",
         }
     }
+}
+
+/// An unknown that is a multiple of another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tie {
+    /// The unknown that it follows.
+    pub master: usize,
+    /// What it is a multiple of: u = share · u of the master.
+    pub share: f64,
+}
+
+/// A node that slides along a line that is parallel to no axis.
+#[derive(Clone, Copy)]
+struct Slide {
+    node: usize,
+    /// The unit normal of the line.
+    normal: [f64; 2],
 }
 
 /// All supports of a problem on the unknowns of a mesh.
@@ -88,12 +107,14 @@ impl SupportMisfit {
 pub struct Constraints {
     /// Motion of each unknown that is held.
     pub held: BTreeMap<usize, Motion>,
-    /// The unknown that each tied one follows.
-    pub ties: BTreeMap<usize, usize>,
+    /// The unknown that each tied one follows: in grips with a given force, and along inclined lines.
+    pub ties: BTreeMap<usize, Tie>,
     /// Forces in N on the unknowns that others follow.
     pub forces: Vec<(usize, f64)>,
     /// The nodes that each support holds.
     holders: Vec<Holder>,
+    /// The nodes that slide along inclined lines, with the name of their group.
+    slides: Vec<(String, Slide)>,
 }
 
 /// The nodes that a support holds.
@@ -131,9 +152,23 @@ impl Constraints {
     /// # Errors
     /// A [`Diagnostic`] when a support names no group of the mesh, or when a group does not suit its support.
     pub fn of(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
+        let mut all = Self::each(mesh, supports)?;
+        for (group, slide) in std::mem::take(&mut all.slides) {
+            all.slide(slide).map_err(|misfit| {
+                refused("support", &group, &misfit.to_string()).hint(misfit.remedy())
+            })?;
+        }
+        Ok(all)
+    }
+
+    /// The same without the nodes that slide along inclined lines, which other supports may hold too.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn each(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
         let mut all = Self::default();
         for (name, support) in supports {
-            let added = all.add(mesh, named("support", mesh, name)?, support);
+            let added = all.add(mesh, name, named("support", mesh, name)?, support);
             added.map_err(|misfit| {
                 refused("support", name, &misfit.to_string()).hint(misfit.remedy())
             })?;
@@ -142,11 +177,21 @@ impl Constraints {
     }
 
     /// Adds a support of a group, or returns why the group does not suit it.
-    fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), SupportMisfit> {
+    fn add(
+        &mut self,
+        mesh: &Mesh,
+        name: &str,
+        group: &Group,
+        support: &Support,
+    ) -> Result<(), SupportMisfit> {
         if let Support::Radial { centre, .. } = support
             && group.nodes.iter().any(|node| mesh.nodes[*node] == *centre)
         {
             return Err(SupportMisfit::NodeAtCentre);
+        }
+        if *support == Support::Roller {
+            self.roll(mesh, name, group)?;
+            return Ok(());
         }
         let mut axes = [false; 2];
         for axis in [0, 1] {
@@ -157,8 +202,7 @@ impl Constraints {
                 axes[axis] = true;
                 continue;
             }
-            let slides = *support == Support::Roller && normal(mesh, group)? != axis;
-            for node in group.nodes.iter().filter(|_| !slides) {
+            for node in &group.nodes {
                 if let Some(motion) = motion(support, mesh.nodes[*node], axis) {
                     self.held.insert(2 * node + axis, motion);
                     axes[axis] = true;
@@ -166,6 +210,75 @@ impl Constraints {
             }
         }
         self.holds(group, axes);
+        Ok(())
+    }
+
+    /// Lets a group slide along its straight line.
+    fn roll(&mut self, mesh: &Mesh, name: &str, group: &Group) -> Result<(), SupportMisfit> {
+        let normal = normal(mesh, group)?;
+        if let Some(axis) = normal.iter().position(|along| *along == 1.0) {
+            for node in &group.nodes {
+                self.held.insert(2 * node + axis, Motion::Straight(0.0));
+            }
+            self.holds(group, [axis == 0, axis == 1]);
+        } else {
+            let slides = group.nodes.iter().map(|node| {
+                let slide = Slide {
+                    node: *node,
+                    normal,
+                };
+                (name.to_owned(), slide)
+            });
+            self.slides.extend(slides);
+            self.holds(group, [true; 2]);
+        }
+        Ok(())
+    }
+
+    /// Holds a node on an inclined line, n · u = 0, as far as other supports leave it free.
+    fn slide(&mut self, Slide { node, normal }: Slide) -> Result<(), SupportMisfit> {
+        let unknowns = [2 * node, 2 * node + 1];
+        let along = usize::from(normal[1].abs() < normal[0].abs());
+        let across = 1 - along;
+        let share = -normal[along] / normal[across];
+        match unknowns.map(|unknown| self.held.get(&unknown).copied()) {
+            [None, None] => {
+                let tie = Tie {
+                    master: unknowns[along],
+                    share,
+                };
+                match unknowns.iter().find_map(|unknown| self.ties.get(unknown)) {
+                    None => {
+                        self.ties.insert(unknowns[across], tie);
+                    }
+                    Some(known) if *known == tie => (),
+                    Some(Tie { master, .. }) if master / 2 == node => {
+                        // Two lines meet here.
+                        for unknown in unknowns {
+                            self.ties.remove(&unknown);
+                            self.held.insert(unknown, Motion::Straight(0.0));
+                        }
+                    }
+                    Some(_) => return Err(SupportMisfit::MovedOffLine),
+                }
+            }
+            [Some(x), Some(y)] => {
+                let off = |factor: f64| normal[0] * x.at(factor) + normal[1] * y.at(factor);
+                let size = |factor: f64| x.at(factor).abs() + y.at(factor).abs();
+                if FACTORS.iter().any(|at| off(*at).abs() > 1e-9 * size(*at)) {
+                    return Err(SupportMisfit::MovedOffLine);
+                }
+            }
+            [x, y] => {
+                let (axis, motion) = if x.is_some() { (0, x) } else { (1, y) };
+                let Some(Motion::Straight(displacement)) = motion else {
+                    return Err(SupportMisfit::MovedOffLine);
+                };
+                let other = 1 - axis;
+                let follows = -normal[axis] / normal[other] * displacement;
+                self.held.insert(unknowns[other], Motion::Straight(follows));
+            }
+        }
         Ok(())
     }
 
@@ -210,7 +323,11 @@ impl Constraints {
     fn tie(&mut self, group: &Group, axis: usize, force: f64) -> Result<(), SupportMisfit> {
         let mut unknowns = group.nodes.iter().map(|node| 2 * node + axis);
         let first = unknowns.next().ok_or(SupportMisfit::NoNodes)?;
-        self.ties.extend(unknowns.map(|unknown| (unknown, first)));
+        let tie = Tie {
+            master: first,
+            share: 1.0,
+        };
+        self.ties.extend(unknowns.map(|unknown| (unknown, tie)));
         self.forces.push((first, force));
         Ok(())
     }
@@ -231,7 +348,8 @@ fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
             let along = arm[axis] / arm[0].hypot(arm[1]);
             Some(Motion::Straight(displacement * along))
         }
-        Support::Roller => Some(Motion::Straight(0.0)),
+        // Its line tells along which direction it holds.
+        Support::Roller => None,
         Support::Rotation { centre, angle } => {
             let place = [node[0] - centre[0], node[1] - centre[1]];
             Some(Motion::Turn { place, axis, angle })
@@ -243,20 +361,36 @@ fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
     }
 }
 
-/// The axis across the straight line, parallel to the other axis, on which a group lies.
-fn normal(mesh: &Mesh, group: &Group) -> Result<usize, SupportMisfit> {
-    let extent = |axis: usize| {
-        let places = group.nodes.iter().map(|node| mesh.nodes[*node][axis]);
-        let [low, high] = extremes(places);
+/// The unit normal of the straight line on which a group lies; exactly that of an axis where the line is parallel to the other one.
+fn normal(mesh: &Mesh, group: &Group) -> Result<[f64; 2], SupportMisfit> {
+    /// Distance from the line relative to its length.
+    const STRAIGHT: f64 = 1e-9;
+    let places = || group.nodes.iter().map(|node| mesh.nodes[*node]);
+    let extents = [0, 1].map(|axis| {
+        let [low, high] = extremes(places().map(|place| place[axis]));
         high - low
-    };
-    let extents = [extent(0), extent(1)];
+    });
     if extents == [0.0; 2] {
         return Err(SupportMisfit::NoLine);
     }
-    let axis = usize::from(extents[1] < extents[0]);
-    if extents[axis] <= 1e-9 * extents[1 - axis] {
-        return Ok(axis);
+    let across = usize::from(extents[1] < extents[0]);
+    if extents[across] <= STRAIGHT * extents[1 - across] {
+        return Ok([0, 1].map(|axis| if axis == across { 1.0 } else { 0.0 }));
     }
-    Err(SupportMisfit::NotAlongAxis)
+    // Through the ends along the axis of the larger extent.
+    let order = |a: &[f64; 2], b: &[f64; 2]| a[1 - across].total_cmp(&b[1 - across]);
+    let (first, last) = (places().min_by(order), places().max_by(order));
+    let (Some(first), Some(last)) = (first, last) else {
+        return Err(SupportMisfit::NoNodes);
+    };
+    let along = [0, 1].map(|axis| last[axis] - first[axis]);
+    let length = along[0].hypot(along[1]);
+    let normal = [-along[1] / length, along[0] / length];
+    let distance = |place: [f64; 2]| {
+        (normal[0] * (place[0] - first[0]) + normal[1] * (place[1] - first[1])).abs()
+    };
+    if places().any(|place| distance(place) > STRAIGHT * length) {
+        return Err(SupportMisfit::NotStraight);
+    }
+    Ok(normal)
 }

@@ -39,7 +39,7 @@ pub fn contradictions(
     let rounding = 1e-12 * (high[0] - low[0]).hypot(high[1] - low[1]);
     let mut demands: BTreeMap<usize, Vec<(usize, Demand)>> = BTreeMap::new();
     for (number, support) in supports.iter().enumerate() {
-        let own = Constraints::of(mesh, std::slice::from_ref(support))?;
+        let own = Constraints::each(mesh, std::slice::from_ref(support))?;
         let Constraints {
             held, ties, forces, ..
         } = own;

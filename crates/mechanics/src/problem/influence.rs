@@ -156,8 +156,8 @@ impl Model<'_> {
             Some(force) => compliance(tangent, self, stage, u, &force)?,
             None => influence(tangent, self, stage, u, &motion)?,
         };
-        for (unknown, master) in ties {
-            field[*unknown] = field[*master];
+        for (unknown, tie) in ties {
+            field[*unknown] = tie.share * field[tie.master];
         }
         Ok(field)
     }

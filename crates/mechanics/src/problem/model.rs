@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::boundary_conditions::LONGEST_TURN;
-use super::constraints::{Constraints, Motion};
+use super::constraints::{Constraints, Motion, Tie};
 use super::loads::Loads;
 use super::rigid::free_motions;
 use super::ties::TiedPotential;
@@ -153,7 +153,7 @@ impl<'a> Model<'a> {
     }
 
     /// The unknowns that are tied, each to its master.
-    pub fn ties(&self) -> &BTreeMap<usize, usize> {
+    pub fn ties(&self) -> &BTreeMap<usize, Tie> {
         &self.constraints.ties
     }
 
@@ -270,8 +270,8 @@ impl Loading for Model<'_> {
         for (unknown, motion) in &self.constraints.held {
             displacement[*unknown] = motion.at(factor);
         }
-        for (unknown, master) in &self.constraints.ties {
-            displacement[*unknown] = displacement[*master];
+        for (unknown, tie) in &self.constraints.ties {
+            displacement[*unknown] = tie.share * displacement[tie.master];
         }
     }
 

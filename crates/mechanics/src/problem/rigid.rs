@@ -105,8 +105,9 @@ impl<'a> Bodies<'a> {
         for own in &self.of_node {
             own.windows(2).for_each(|pair| parts.join(pair[0], pair[1]));
         }
-        for (unknown, master) in &constraints.ties {
-            let [own, others] = [unknown, master].map(|unknown| self.of_node[unknown / 2].first());
+        for (unknown, tie) in &constraints.ties {
+            let [own, others] =
+                [*unknown, tie.master].map(|unknown| self.of_node[unknown / 2].first());
             if let (Some(own), Some(other)) = (own, others) {
                 parts.join(*own, *other);
             }
@@ -138,9 +139,9 @@ impl<'a> Bodies<'a> {
                 .into_iter()
                 .for_each(|body| impose(row(*unknown, body)));
         }
-        for (unknown, master) in &constraints.ties {
-            if let (Some(own), Some(other)) = (first(*unknown), first(*master)) {
-                impose(row(*unknown, own) - row(*master, other));
+        for (unknown, tie) in &constraints.ties {
+            if let (Some(own), Some(other)) = (first(*unknown), first(tie.master)) {
+                impose(row(*unknown, own) - tie.share * row(tie.master, other));
             }
         }
         for (node, bodies) in self.of_node.iter().enumerate() {

@@ -40,6 +40,17 @@ impl Solution {
         }
     }
 
+    /// No states on a mesh, of a model that was not solved.
+    pub fn empty(mesh: Mesh) -> Self {
+        Self {
+            mesh,
+            states: Vec::new(),
+            groups: Vec::new(),
+            balances: Vec::new(),
+            works: Vec::new(),
+        }
+    }
+
     /// The displacement fields before load factor number `step`, which a body with a memory remembers; empty where the material has no memory.
     pub fn past(&self, step: usize) -> Vec<&[f64]> {
         let remembers = self.works.iter().any(Option::is_some);

@@ -2,25 +2,25 @@
 
 use std::collections::BTreeMap;
 
-use crate::solve::vector::gather;
+use super::constraints::Tie;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling, Take};
 
-/// Π(u) with uᵢ = uₖ for every tie (i, k): elements depend on the k alone, and there is no equation for an i.
+/// Π(u) with uᵢ = s uₖ for every tie (i, k) of the share s: elements depend on the k alone, and there is no equation for an i.
 ///
 /// ```text
-/// u = T v,   r_v = Tᵀ r,   K_v = Tᵀ K T,   T of zeros and ones
+/// u = T v,   r_v = Tᵀ r,   K_v = Tᵀ K T,   T of zeros, ones and shares
 /// ```
 pub struct TiedPotential<'a> {
     potential: Box<dyn Potential + 'a>,
     connectivity: Connectivity,
-    /// For each element with tied unknowns: the position of each unknown of the untied element among its own.
-    places: BTreeMap<usize, Vec<usize>>,
-    ties: &'a BTreeMap<usize, usize>,
+    /// For each element with tied unknowns: the position of each unknown of the untied element among its own, and its share.
+    places: BTreeMap<usize, Vec<(usize, f64)>>,
+    ties: &'a BTreeMap<usize, Tie>,
 }
 
 impl<'a> TiedPotential<'a> {
     /// Ties unknowns (keys) to others.
-    pub fn new(potential: Box<dyn Potential + 'a>, ties: &'a BTreeMap<usize, usize>) -> Self {
+    pub fn new(potential: Box<dyn Potential + 'a>, ties: &'a BTreeMap<usize, Tie>) -> Self {
         let mut connectivity = Connectivity::new(potential.unknowns());
         connectivity.reserve_as(potential.connectivity());
         let mut tied = BTreeMap::new();
@@ -33,9 +33,9 @@ impl<'a> TiedPotential<'a> {
             }
             let (mut unknowns, mut places) = (Vec::new(), Vec::new());
             for unknown in own {
-                let unknown = *ties.get(&unknown).unwrap_or(&unknown);
+                let (unknown, share) = followed(ties, unknown);
                 let known = unknowns.iter().position(|known| *known == unknown);
-                places.push(known.unwrap_or(unknowns.len()));
+                places.push((known.unwrap_or(unknowns.len()), share));
                 if known.is_none() {
                     unknowns.push(unknown);
                 }
@@ -52,6 +52,20 @@ impl<'a> TiedPotential<'a> {
     }
 }
 
+/// The unknown that one follows, and its share; itself where it is not tied.
+fn followed(ties: &BTreeMap<usize, Tie>, unknown: usize) -> (usize, f64) {
+    let tie = ties.get(&unknown);
+    tie.map_or((unknown, 1.0), |tie| (tie.master, tie.share))
+}
+
+/// The values of an element's untied unknowns.
+fn spread(places: &[(usize, f64)], u: &[f64]) -> Vec<f64> {
+    places
+        .iter()
+        .map(|(place, share)| share * u[*place])
+        .collect()
+}
+
 impl TiedPotential<'_> {
     /// Evaluates the untied potential at u = T v, whose forces become those of v: f ← f + Tᵀ r.
     fn untied<T>(
@@ -61,12 +75,12 @@ impl TiedPotential<'_> {
         evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<T, Inadmissible>,
     ) -> Result<T, Inadmissible> {
         let (mut u, mut untied) = (v.to_vec(), vec![0.0; v.len()]);
-        for (unknown, master) in self.ties {
-            u[*unknown] = v[*master];
+        for (unknown, tie) in self.ties {
+            u[*unknown] = tie.share * v[tie.master];
         }
         let found = evaluate(&u, &mut untied)?;
-        for (unknown, master) in self.ties {
-            untied[*master] += std::mem::take(&mut untied[*unknown]);
+        for (unknown, tie) in self.ties {
+            untied[tie.master] += tie.share * std::mem::take(&mut untied[*unknown]);
         }
         for (force, own) in forces.iter_mut().zip(untied) {
             *force += own;
@@ -76,12 +90,12 @@ impl TiedPotential<'_> {
 }
 
 /// Adds Tᵀ K T of an element, whose unknowns have these positions among its remaining ones; elements may fill the lower triangle alone.
-fn fold(places: &[usize], stiffness: &[f64], folded: &mut [f64]) {
+fn fold(places: &[(usize, f64)], stiffness: &[f64], folded: &mut [f64]) {
     let (own, size) = (places.len(), folded.len().isqrt());
-    for (row, to_row) in places.iter().enumerate() {
-        for (column, to_column) in places.iter().enumerate() {
+    for (row, (to_row, of_row)) in places.iter().enumerate() {
+        for (column, (to_column, of_column)) in places.iter().enumerate() {
             let value = stiffness[row.max(column) * own + row.min(column)];
-            folded[to_row * size + to_column] += value;
+            folded[to_row * size + to_column] += of_row * of_column * value;
         }
     }
 }
@@ -92,12 +106,15 @@ impl Potential for TiedPotential<'_> {
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        let master = |unknown: usize| *self.ties.get(&unknown).unwrap_or(&unknown);
         let own = self.potential.skew_couplings().into_iter();
-        own.map(|coupling| SkewCoupling {
-            row: master(coupling.row),
-            column: master(coupling.column),
-            ..coupling
+        own.map(|coupling| {
+            let (row, of_row) = followed(self.ties, coupling.row);
+            let (column, of_column) = followed(self.ties, coupling.column);
+            SkewCoupling {
+                row,
+                column,
+                stiffness: of_row * of_column * coupling.stiffness,
+            }
         })
         .collect()
     }
@@ -120,9 +137,9 @@ impl Potential for TiedPotential<'_> {
         };
         let energy = self
             .potential
-            .evaluate_element(element, &gather(places, u), inner)?;
-        for (place, r) in places.iter().zip(residual) {
-            local.residual[*place] += r;
+            .evaluate_element(element, &spread(places, u), inner)?;
+        for ((place, share), r) in places.iter().zip(residual) {
+            local.residual[*place] += share * r;
         }
         if let Some(stiffness) = local.stiffness {
             fold(places, &matrix, stiffness);
@@ -158,7 +175,7 @@ impl Potential for TiedPotential<'_> {
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         match self.places.get(&element) {
-            Some(places) => self.potential.instability(element, &gather(places, u)),
+            Some(places) => self.potential.instability(element, &spread(places, u)),
             None => self.potential.instability(element, u),
         }
     }

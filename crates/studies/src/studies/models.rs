@@ -1,12 +1,11 @@
 //! One model of a study alone.
 
+use super::specimen::Specimen;
 use crate::corrector::Multipliers;
 use crate::error::Error;
-use crate::material::Card;
 use crate::problem::Solution;
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::results::strained::{self, StrainedSheet};
-use crate::results::{Sheet, locking};
+use crate::results::locking;
+use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 
 /// A model of a plate or a specimen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +19,9 @@ pub enum ModelKind {
 }
 
 impl ModelKind {
+    /// All models.
+    pub const ALL: [Self; 3] = [Self::MassSpring, Self::Corrected, Self::FiniteElement];
+
     /// All models with their names.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("mass-spring", Self::MassSpring),
@@ -45,28 +47,27 @@ pub struct OneModel {
 }
 
 impl ModelKind {
-    /// What deserves attention in the states of this model: cells that lock, and what is said of the states of any sheet.
-    pub(super) fn warnings(
-        self,
-        card: &Card,
-        sheet: Sheet,
-        solution: &Solution,
-        describe: fn(f64) -> String,
-    ) -> Vec<String> {
-        let (name, remedy) = match self {
-            Self::MassSpring => (MASS_SPRING.name, None),
-            Self::Corrected => (CORRECTED.name, Some("Take the finite elements")),
-            Self::FiniteElement => (FINITE_ELEMENTS.name, Some(locking::SECOND_DEGREE)),
+    /// Its name and colour.
+    pub fn style(self) -> ModelStyle {
+        match self {
+            Self::MassSpring => MASS_SPRING,
+            Self::Corrected => CORRECTED,
+            Self::FiniteElement => FINITE_ELEMENTS,
+        }
+    }
+
+    /// What deserves attention in the states of this model alone: cells that lock, and what is said of the states of any sheet.
+    pub(super) fn warnings(self, specimen: &Specimen, solution: &Solution) -> Vec<String> {
+        let remedy = match self {
+            Self::MassSpring => None,
+            Self::Corrected => Some("Take the finite elements"),
+            Self::FiniteElement => Some(locking::SECOND_DEGREE),
         };
         let remedy = remedy.filter(|_| locking::locks(&solution.mesh));
-        let locking = remedy.and_then(|remedy| locking::warning(sheet.law, &[(name, remedy)]));
-        let states = solution.states.iter().map(|state| StrainedSheet {
-            load: describe(state.factor),
-            sheet,
-            displacement: &state.displacement,
+        let locking = remedy.and_then(|remedy| {
+            locking::warning(&*specimen.problem.law, &[(self.style().name, remedy)])
         });
-        let states: Vec<_> = states.collect();
-        let of_states = strained::warnings(card, name, &solution.mesh, &states);
+        let of_states = specimen.warnings_of_states(self.style().name, solution);
         locking.into_iter().chain(of_states).collect()
     }
 }

@@ -1,127 +1,47 @@
-//! Plates between two grips: springs, corrected springs and finite elements at every stretch.
+//! Plates between two grips: the dialect of a strip that is clamped at one end and pulled at the other, on grids of lines.
 
 use std::path::Path;
 
+use super::specimen::{self, Specimen};
+use super::{Kind, Loaded, PreparedStudy};
 use crate::budget::Budget;
-use crate::document::write_records;
+use crate::document::Key;
 use crate::error::Error;
-use crate::results::{Content, Material, Outcome};
-use crate::statistics::larger;
-use crate::studies::{PreparedStudy, Progress};
 
-mod figures;
-mod json;
-mod problem;
 mod read;
-mod report;
-pub mod results;
-mod summary;
-mod vtk;
-mod warnings;
-
-pub use problem::{OutputSettings, Study};
-pub use read::{DEFAULT, keys};
-use results::{MODELS, Results, run};
 
 /// The `kind` of these studies.
 pub const KIND: &str = "plate";
 
-/// Reads a study of the file `path` within a budget.
+/// The study that `gelbench new` writes: every key with its default.
+pub const DEFAULT: &str = include_str!("plate/default.toml");
+
+/// Studies of plates, which need no `kind`.
+pub const PLATE: Kind = Kind {
+    name: KIND,
+    study: DEFAULT,
+    file: "default.toml",
+    slow: false,
+};
+
+/// Reads the study of a file within a budget; its models are solved and compared as those of any specimen.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault of the study and of its card.
-pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
-    Ok(ready(Study::of_file(path, text, budget)?))
+pub fn load(file: &Path, text: &str, budget: Budget) -> Result<Loaded<Specimen>, Error> {
+    PLATE.load(file, text, budget, read::read)
 }
 
-/// A study that was read, with a card of the caller's or its own, ready to be computed.
-pub fn ready(study: Study) -> PreparedStudy {
-    PreparedStudy {
-        name: study.name.clone(),
-        title: study.title.clone(),
-        kind: KIND,
-        text: study.text.clone(),
-        defaults: study.defaults.clone(),
-        warnings: study.warnings.clone(),
-        folder: Some(study.output.folder.clone()),
-        report: study.output.report,
-        progress_steps: run::progress_steps(&study),
-        about: study.describe(),
-        computation: Box::new(move |progress: Progress| {
-            let results = run::run(&study, progress)?;
-            Ok(outcome(&study, &results))
-        }),
-    }
+/// The same, ready to be computed.
+///
+/// # Errors
+/// [`Error::Input`] with every fault of the study and of its card.
+pub fn prepare(file: &Path, text: &str, budget: Budget) -> Result<PreparedStudy, Error> {
+    let loaded = load(file, text, budget)?;
+    Ok(specimen::ready(&PLATE, super::name(file), text, loaded))
 }
 
-/// The outcome of a plate; with pictures and grids where the study wants them.
-fn outcome(study: &Study, results: &Results) -> Outcome {
-    let requirements = results.requirements(study);
-    let warnings = warnings::warnings(study, results);
-    let figures = || {
-        if study.output.plots {
-            figures::figures(study, results)
-        } else {
-            Vec::new()
-        }
-    };
-    let (figures, mut grids) = rayon::join(figures, || vtk::grids(study, results));
-    let mut explored = Vec::new();
-    if !study.output.vtk {
-        std::mem::swap(&mut grids, &mut explored);
-    }
-    let times = results.times.iter();
-    let mut outcome = Outcome {
-        checks: requirements,
-        problem: json::problem(study),
-        material: Some(Material::from(&study.card)),
-        along: "stretch",
-        steps: json::steps(results),
-        headline: summary::headline(study, results),
-        summary: summary::agreement(results),
-        warnings,
-        ends: results.ends.iter().map(Into::into).collect(),
-        balance: results.worst_balances().reduce(larger),
-        balances: json::balances(results),
-        times: times
-            .map(|(what, seconds)| ((*what).to_owned(), *seconds))
-            .collect(),
-        figures,
-        style: study.pictures.style.clone(),
-        grids,
-        explored,
-        files: vec![("forces.csv".to_owned(), Content::Text(forces(results)))],
-        ..Outcome::default()
-    };
-    outcome.blocks = report::blocks(study, results, &outcome);
-    outcome
-}
-
-/// Force, width and energy of all models at all stretches as a table for other programs.
-fn forces(results: &Results) -> String {
-    let head = [
-        "stretch",
-        "model",
-        "grip_displacement_mm",
-        "force_N",
-        "mid_width_mm",
-        "strain_energy_mJ",
-    ];
-    let mut records = vec![head.map(str::to_owned).to_vec()];
-    let length = results.springs.mesh.grid().size[0];
-    for (step, compared) in results.comparison.iter().enumerate() {
-        for (name, measures) in MODELS.into_iter().zip(results.measures(step)) {
-            let Some(own) = measures else { continue };
-            let stretch = compared.stretch;
-            let values = [stretch * length, own.force, own.mid_width, own.energy];
-            let names = [stretch.to_string(), name.to_owned()];
-            records.push(
-                names
-                    .into_iter()
-                    .chain(values.map(|value| value.to_string()))
-                    .collect(),
-            );
-        }
-    }
-    write_records(records)
+/// The keys that are looked up when a text is read.
+pub fn keys(text: &str) -> Vec<Key> {
+    PLATE.keys_with(text, read::read)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::other_files;
+use super::{ModelKind, other_files};
 use crate::budget::{Budget, Need};
 use crate::corrector::climb::ClimbSettings;
 use crate::document::{self, Bound, Section, file};
@@ -36,6 +36,16 @@ pub fn read_climb(section: &Section) -> ClimbSettings {
         tolerance: section.quantity("climb_tolerance", Dimension::Ratio, bound),
         ..ClimbSettings::default()
     }
+}
+
+/// The models that a study computes.
+pub fn read_models(root: &Section) -> Vec<ModelKind> {
+    let models = root.choices("models", &ModelKind::NAMES);
+    if models.as_ref().is_some_and(Vec::is_empty) {
+        let hint = "such as [\"finite-element\"], or leave the key out for all of them";
+        root.fault("models", "needs at least one model", hint);
+    }
+    models.unwrap_or_default()
 }
 
 /// The text of a study file.

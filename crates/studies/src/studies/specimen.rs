@@ -4,18 +4,19 @@ use std::path::Path;
 
 use crate::budget::Budget;
 use crate::compare::imported::{ModelField, ModelFields};
+use crate::corrector::climb::between_nodes;
 use crate::document::Section;
 use crate::error::Error;
 use crate::material::softened_law::check_memory;
 use crate::mesh::MeshData;
-use crate::problem::Solution;
 use crate::results::Outcome;
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::studies::{Computation, Kind, Loaded, Progress, SOUND};
+use crate::studies::{Computation, Kind, Loaded, ModelKind, PreparedStudy, Progress, SOUND};
 
+pub mod along;
 mod files;
 mod forces;
 mod headline;
+mod history;
 mod outcome;
 mod problem;
 mod read;
@@ -24,9 +25,13 @@ mod statement;
 mod warnings;
 mod work;
 
-pub use problem::{Outline, Refinement, Specimen};
+pub use along::Along;
+pub use problem::{
+    GridCorrection, GridElements, Method, Outline, PlateGrids, Refinement, Specimen,
+};
 use results::end::{End, tell};
 use results::models::Models;
+use results::verdict;
 pub use results::{finest_mesh, force_with_error, one_model};
 
 /// The `kind` of these studies.
@@ -61,6 +66,24 @@ pub fn load_on(
     })
 }
 
+/// A specimen or a plate that was read, ready to be computed.
+pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<Specimen>) -> PreparedStudy {
+    let specimen = loaded.made;
+    let (about, progress_steps) = (specimen.describe(), specimen.progress_steps());
+    let read = Loaded {
+        title: loaded.title,
+        made: Box::new(move |progress: Progress| compute(&specimen, progress)) as Computation,
+        output: loaded.output,
+        defaults: loaded.defaults,
+        warnings: loaded.warnings,
+    };
+    PreparedStudy {
+        about,
+        progress_steps,
+        ..PreparedStudy::new(kind, name, text, read)
+    }
+}
+
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let specimen = read::read(root, folder);
@@ -86,10 +109,10 @@ pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error
 
 /// The models; with finer finite elements where those of the study are too coarse to judge the others.
 fn solved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Models, Error> {
-    let mut models = Models::solve(specimen, ends, progress)?;
-    if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {
+    let models = Models::solve(specimen, ends, progress)?;
+    if models.reference.may_be_finer(specimen) && verdict::is_open(specimen, &models) {
         progress.tell("finer finite elements");
-        models.reference = models.reference.finer(specimen, ends, progress)?;
+        return models.with_finer_elements(specimen, ends, progress);
     }
     Ok(models)
 }
@@ -108,23 +131,36 @@ pub fn fields(
         &*specimen.problem.law,
         "a comparison with another program's field",
     )?;
-    specimen.factors.retain(|before| *before < factor);
-    specimen.factors.push(factor);
+    let factors = &mut specimen.factors;
+    factors.retain(|before| *before * factor > 0.0 && before.abs() < factor.abs());
+    factors.push(factor);
+    let last = factors.len() - 1;
     let mut ends = Vec::new();
     let models = solved(&specimen, &mut ends, progress)?;
-    let last = specimen.factors.len() - 1;
-    let field = |model, solution: &Solution| {
+    let field = |kind: ModelKind| {
+        let model = models.of(kind);
+        let displacement = model.solution.displacement(last)?.to_vec();
+        let mesh = model.solution.mesh.clone();
+        let (mesh, displacement) = match specimen.grids() {
+            // Between its nodes the corrected field is what its differences take it for.
+            Some(grids) if kind == ModelKind::Corrected => {
+                let scheme = grids.correction.scheme;
+                let between = between_nodes(scheme, &mesh, &displacement);
+                (scheme.mesh(&mesh), between)
+            }
+            _ => (mesh, displacement),
+        };
         Some(ModelField {
-            model,
-            mesh: solution.mesh.clone(),
-            displacement: solution.displacement(last)?.to_vec(),
+            model: model.style.name,
+            mesh,
+            displacement,
         })
     };
-    let fields = [
-        field(FINITE_ELEMENTS.name, &models.reference.finest),
-        field(MASS_SPRING.name, &models.on_lattice.uncorrected),
-        field(CORRECTED.name, &models.on_lattice.corrected),
+    let order = [
+        ModelKind::FiniteElement,
+        ModelKind::MassSpring,
+        ModelKind::Corrected,
     ];
     let ends = ends.iter().map(End::error).collect();
-    ModelFields::of(fields, ends, models.reference.field_percent(last))
+    ModelFields::of(order.map(field), ends, models.reference.field_percent(last))
 }

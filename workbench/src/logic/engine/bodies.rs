@@ -10,11 +10,11 @@ use gelbench::kinds;
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
 use gelbench::material::softened_law::check_memory;
 use gelbench::material::{Card, HyperelasticLaw};
-use gelbench::mesh::{CellShape, Mesh, Side};
+use gelbench::mesh::{Mesh, Side};
 use gelbench::problem::sheet_energy::SheetEnergy;
 use gelbench::problem::{BoundaryProblem, ClampedPlate, Model as Problem, Support};
 use gelbench::solve::{Assembly, Remembering};
-use gelbench::studies::{plate, specimen};
+use gelbench::studies::specimen;
 
 use super::path;
 use super::plate::Quick;
@@ -76,16 +76,13 @@ pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
         angle: 0.0,
     };
     let text = scene.study_of(ANY_CARD, grip);
-    if let Outline::Plate = scene.outline {
-        let study = plate::Study::of_file(file, text, Budget::USUAL)?;
-        let lattice = Mesh::plate(scene.size, scene.cells, CellShape::Quad4);
-        let [_, _, elements] = study.finite_elements();
-        return Ok([lattice, elements.mesh]);
-    }
-    let kind = kinds::named(specimen::KIND).expect("specimens are a kind of study");
-    let read = specimen::load(kind, file, &text, Budget::USUAL)?.made;
-    // Quadratic cells as many as the lattice has: twice as fine as its equations.
-    Ok([read.outline.lattice(), read.outline.reference_mesh(1)])
+    let outline = kinds::read_sheet(file, &text, Budget::USUAL)?.made.outline;
+    let elements = match &outline {
+        specimen::Outline::Grid(_) => outline.finest_mesh(),
+        // Quadratic cells as many as the lattice has: twice as fine as its equations.
+        _ => outline.reference_mesh(1),
+    };
+    Ok([outline.lattice(), elements])
 }
 
 /// The bodies of the last scene, made anew where its sheet is another one.

@@ -129,16 +129,22 @@ fn mesh(model: &Model, deck: &mut Deck) {
     }
 }
 
-/// Nodes that follow others: u − v = 0.
+/// Displacements that follow others: u − s v = 0.
 fn ties(model: &Model, deck: &mut Deck) {
     for tie in &model.ties {
-        let axis = tie.axis + 1;
+        let (node, axis) = tie.follows;
+        let share = match tie.share {
+            1.0 => "-1.".to_owned(),
+            share => (-share).to_string(),
+        };
         deck.line("*EQUATION");
         deck.line("2");
         deck.line(&format!(
-            "{}, {axis}, 1., {}, {axis}, -1.",
+            "{}, {}, 1., {}, {}, {share}",
             tie.node + 1,
-            tie.follows + 1
+            tie.axis + 1,
+            node + 1,
+            axis + 1
         ));
     }
 }

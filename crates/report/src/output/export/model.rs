@@ -86,7 +86,7 @@ pub struct Model<'a> {
     /// Parts of the boundary by name: cell and side within it.
     pub surfaces: Vec<(String, Vec<Side>)>,
     pub held: Vec<Constraint>,
-    /// Node and axis that follow another node's motion along the axis: those of grips with a given force.
+    /// Unknowns that follow others: those of grips with a given force, and of nodes that slide along inclined lines.
     pub ties: Vec<Tie>,
     /// Dead nodal forces in N at load factor 1.
     pub forces: Vec<(usize, [f64; 2])>,
@@ -97,11 +97,14 @@ pub struct Model<'a> {
 /// A cell and the number of an edge within it.
 pub type Side = (usize, usize);
 
-/// A node that moves along an axis as another one does.
+/// A displacement that is a multiple of another one.
 pub struct Tie {
     pub node: usize,
     pub axis: usize,
-    pub follows: usize,
+    /// Node and axis of the other one.
+    pub follows: (usize, usize),
+    /// The multiple.
+    pub share: f64,
 }
 
 /// A component of displacement that a support prescribes on a node set.
@@ -231,18 +234,20 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
-    /// Grips with a given force: their nodes follow one of them, which takes the force.
+    /// Grips with a given force, whose nodes follow one of them, which takes the force; and nodes on inclined lines.
     fn tie(&mut self) -> Result<(), Diagnostic> {
         let ties = self.given.problem.ties(self.given.mesh)?;
         if self.code == Code::FeBio && !ties.is_empty() {
-            let message = "a grip with a given force cannot be exported to FEBio";
-            return Err(Diagnostic::error("support", message)
-                .hint("give the grip a displacement, or export to Abaqus or CalculiX"));
+            let message = "a grip with a given force, or a roller along an inclined line, cannot be exported to FEBio";
+            return Err(Diagnostic::error("support", message).hint(
+                "give the grip a displacement, turn the mesh, or export to Abaqus or CalculiX",
+            ));
         }
-        let ties = ties.into_iter().map(|(unknown, follows)| Tie {
+        let ties = ties.into_iter().map(|(unknown, tie)| Tie {
             node: unknown / 2,
             axis: unknown % 2,
-            follows: follows / 2,
+            follows: (tie.master / 2, tie.master % 2),
+            share: tie.share,
         });
         let known = ties.filter(|tie| self.nodes.binary_search(&tie.node).is_ok());
         self.ties = known.collect();
@@ -252,8 +257,8 @@ impl<'a> Model<'a> {
     fn load(&mut self, surfaces: &BTreeMap<&str, usize>) -> Result<(), Diagnostic> {
         let problem = self.given.problem;
         let mut forces = problem.dead_forces(self.given.mesh)?;
-        for (unknown, follows) in problem.ties(self.given.mesh)? {
-            forces[follows] += std::mem::take(&mut forces[unknown]);
+        for (unknown, tie) in problem.ties(self.given.mesh)? {
+            forces[tie.master] += tie.share * std::mem::take(&mut forces[unknown]);
         }
         for (node, force) in forces.chunks_exact(2).enumerate() {
             if force == [0.0; 2] {

@@ -1,25 +1,25 @@
-//! The study file: read, checked, and turned into a problem and the settings of the models.
+//! The study file of a plate: a strip between two grips in words of its own.
 //!
-//! Every default stands in `study/default.toml`, which is also what `gelbench new` writes.
+//! Every default stands in `plate/default.toml`, which is also what `gelbench new` writes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::problem::{Correction, OutputSettings, Reference, Study};
-use crate::budget::{Budget, Need};
+use crate::budget::Need;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
-use crate::document::{Bound, Document, Faults, Key, Section, name_of};
-use crate::error::Error;
+use crate::document::{Bound, Section, name_of};
 use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
 use crate::solve::LinearSolver;
 use crate::studies::card::read_card;
-use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
     MOST_CELLS, Tolerances, check_range, multiples_of_cells, need_of_cells, read_climb,
-    read_newton, read_plate, refuse_memory,
+    read_models, read_newton, read_plate, refuse_memory,
+};
+use crate::studies::specimen::{
+    Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen,
 };
 use crate::units::Dimension;
 
@@ -33,73 +33,8 @@ const MOST_ACROSS: f64 = 160.0;
 /// Of cells towards the corners.
 const GRADINGS: Bound = Bound::Within(1.0, 4.0);
 
-/// The study that `gelbench new` writes: every key with its default.
-pub const DEFAULT: &str = include_str!("default.toml");
-
-impl Study {
-    /// Checks the text of the study file `path` within a budget.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with every fault of the study and of its card.
-    pub fn of_file(path: &Path, text: String, budget: Budget) -> Result<Self, Error> {
-        let folder = path.parent().unwrap_or(Path::new("."));
-        Self::parse_within(
-            &name(path),
-            &path.display().to_string(),
-            folder,
-            text,
-            budget,
-        )
-    }
-
-    /// Reads a study's text; a card given by a path is looked for relative to `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with every fault of the study and of its card.
-    pub fn parse(name: &str, file: &str, folder: &Path, text: String) -> Result<Self, Error> {
-        Self::parse_within(name, file, folder, text, Budget::USUAL)
-    }
-
-    fn parse_within(
-        name: &str,
-        file: &str,
-        folder: &Path,
-        text: String,
-        budget: Budget,
-    ) -> Result<Self, Error> {
-        let faults = Faults::within(budget);
-        let study = {
-            let defaults = Document::parse("default.toml", DEFAULT, &faults);
-            let document = Document::parse(file, &text, &faults);
-            let root = document.root(Some(&defaults), &faults);
-            read_sections(name, folder, root)
-        };
-        let defaults = faults.defaults();
-        let warnings = faults.finish()?;
-        let study = study.expect("a study without a card has a fault");
-        Ok(Self {
-            text,
-            defaults,
-            warnings,
-            ..study
-        })
-    }
-}
-
-/// The keys that are looked up when a text is read.
-pub fn keys(text: &str) -> Vec<Key> {
-    let faults = Faults::default();
-    let defaults = Document::parse("default.toml", DEFAULT, &faults);
-    let document = Document::parse("", text, &faults);
-    let root = document.root(Some(&defaults), &faults);
-    drop(read_sections("", Path::new("."), root));
-    faults.keys()
-}
-
-/// Reads all sections; `None` where there is no card to work with, which is recorded as a fault.
-fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> {
-    root.choice("kind", &[("plate", ())]);
-    let title = root.own_heading("title");
+/// Reads a study; `None` where it has faults, which are recorded.
+pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
     let material = root.section("material");
     let card = read_card(&material, folder);
     material.unknown_keys();
@@ -115,49 +50,58 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let lattice = LatticeSettings {
         area_term: section.flag("area_term"),
     };
-    let mass_spring = read_newton(&section);
+    let springs_newton = read_newton(&section);
     section.unknown_keys();
-    let corrector = read_corrector(&root.section("corrector"), &plate, problem.size, cells);
-    let is_graded = corrector.is_some_and(|own| own.is_graded());
-    let reference = read_reference(&root.section("finite_element"), &problem, cells, is_graded);
+    let correction = read_corrector(&root.section("corrector"), &plate, problem.size, cells);
+    let is_graded = correction.is_some_and(|own| own.is_graded());
+    let section = root.section("finite_element");
+    let elements = read_elements(&section, &problem, cells, is_graded);
+    let elements_newton = read_newton(&section);
+    let linear_solver = section.choice("method", &LinearSolver::NAMES);
+    section.unknown_keys();
     if problem.law.softening().is_some() {
-        check_memory(&root, lattice, corrector);
+        check_memory(root, lattice, correction);
     }
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
     let section = root.section("pictures");
     let pictures = Pictures::read(&section, "factors", Dimension::Ratio, &problem.stretches);
-    let output = read_output(&root.section("output"), name);
-    root.unknown_keys();
-    let card = card?;
-    let study = Study {
-        name: name.to_owned(),
-        title: title.unwrap_or_else(|| card.title_of("Clamped plate")),
-        problem,
-        card,
+    let models = read_models(root);
+    let (card, correction, elements) = (card?, correction?, elements?);
+    let grids = PlateGrids {
+        size: problem.size,
         cells,
         lattice,
-        mass_spring,
-        corrector: corrector?,
-        reference: reference?,
-        tolerances,
-        pictures,
-        output,
-        text: String::new(),
-        defaults: Vec::new(),
-        warnings: Vec::new(),
+        correction,
+        elements,
     };
-    if study.is_its_own_reference() {
+    if grids.is_own_reference() {
         root.section("finite_element").warning(
             "cells",
             "with these settings the finite elements solve the corrected field's own equations on the same nodes and cannot judge it",
             "leave out `cells` and `grading`, which then suit the lattice, or take finer ones",
         );
     }
-    Some(study)
+    Some(Specimen {
+        name: "plate".into(),
+        problem: problem.boundary_problem(),
+        card,
+        along: Along::Stretch,
+        factors: problem.stretches,
+        models,
+        springs_newton,
+        elements_newton,
+        group: "right".into(),
+        tolerances,
+        refinement: None,
+        correction: Method::Automatic,
+        linear_solver: linear_solver?,
+        outline: Outline::Grid(grids),
+        pictures,
+    })
 }
 
 /// What cannot follow a material that softens.
-fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Correction>) {
+fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<GridCorrection>) {
     if lattice.area_term {
         let message = "the area term of the lattice does not soften with the card's material";
         let hint = "leave out `area_term`: the springs soften";
@@ -174,7 +118,7 @@ fn read_corrector(
     plate: &Section<'_>,
     size: [f64; 2],
     cells: [usize; 2],
-) -> Option<Correction> {
+) -> Option<GridCorrection> {
     let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
     if let Some(scheme) = scheme {
         check_multiples(plate, scheme, size, cells);
@@ -188,7 +132,7 @@ fn read_corrector(
         ..CorrectorSettings::default()
     };
     section.unknown_keys();
-    Some(Correction {
+    Some(GridCorrection {
         scheme: scheme?,
         grading: grading.unwrap_or(scheme?.grading()),
         climb: climb?.then_some(settings),
@@ -196,12 +140,12 @@ fn read_corrector(
     })
 }
 
-fn read_reference(
+fn read_elements(
     section: &Section<'_>,
     plate: &ClampedPlate,
     lattice: [usize; 2],
     is_graded: bool,
-) -> Option<Reference> {
+) -> Option<GridElements> {
     let element = section.choice("element", &Element::NAMES);
     let unknowns = match element {
         Some(Element::Q1) => 2.0,
@@ -218,16 +162,10 @@ fn read_reference(
         }
     });
     section.affords("cells", need(cells), "take fewer");
-    let grading = section.number("grading", GRADINGS);
-    let newton = read_newton(section);
-    let linear_solver = section.choice("method", &LinearSolver::NAMES);
-    section.unknown_keys();
-    Some(Reference {
-        linear_solver: linear_solver?,
+    Some(GridElements {
+        grading: section.number("grading", GRADINGS),
         element: element?,
         cells,
-        grading,
-        newton,
     })
 }
 
@@ -289,13 +227,19 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
     if stretches.iter().any(|stretch| stretch.is_nan()) {
         return stretches;
     }
-    if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
+    let remembers = card.is_some_and(|card| card.law.softening().is_some());
+    let is_rest = |(step, stretch): (usize, &f64)| {
+        // A material with a memory may be unloaded.
+        stretch.abs() < SMALLEST && !(remembers && step > 0 && *stretch == 0.0)
+    };
+    if stretches.iter().enumerate().any(is_rest) {
         let hint = "at rest there is nothing to solve; leave it out";
         section.fault(KEY, "must not contain zero, or less than 1e-9", hint);
         return stretches;
     }
-    let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
-    let remembers = card.is_some_and(|card| card.law.softening().is_some());
+    let one_sign = stretches
+        .iter()
+        .all(|stretch| stretch * stretches[0] >= 0.0);
     let repeated = |pair: &[f64]| pair[1] == pair[0];
     if !one_sign {
         let hint = "every path begins at rest: write one study for the tension and one for the compression";
@@ -346,22 +290,6 @@ fn check_multiples(plate: &Section, scheme: DifferenceScheme, size: [f64; 2], ce
             &format!("take [{x}, {y}], or scheme = \"gauss\" under [corrector]"),
         );
     }
-}
-
-fn read_output(section: &Section<'_>, name: &str) -> OutputSettings {
-    let folder = section.text("folder");
-    let settings = OutputSettings {
-        folder: if folder.is_empty() {
-            Path::new("output").join(name)
-        } else {
-            PathBuf::from(folder)
-        },
-        vtk: section.flag("vtk"),
-        plots: section.flag("plots"),
-        report: section.flag("report"),
-    };
-    section.unknown_keys();
-    settings
 }
 
 #[cfg(test)]

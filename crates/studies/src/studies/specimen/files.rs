@@ -1,148 +1,212 @@
 //! Pictures and grids of a specimen.
 
+use super::history;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
-use super::results::models::Models;
-use crate::mesh::Mesh;
-use crate::problem::{GroupState, Solution};
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, MODELS};
+use super::results::models::{ModelSeries, Models};
+use super::results::verdict::Deviation;
+use crate::problem::GroupState;
 use crate::results::{
     Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
-    Stroke, from_rest, mesh_outlines, sheet_figures,
+    Stroke, from_rest, material_chart, mesh_outlines, sheet_figures,
 };
+use crate::studies::ModelKind;
 use crate::studies::pictures::Shown;
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
-    let corrected = models.on_lattice.corrected.reached();
-    let both = models.reference.reached().min(corrected);
+    let reached = |kind| models.of(kind).solution.reached();
+    let both = reached(ModelKind::FiniteElement).min(reached(ModelKind::Corrected));
     let shown = if both > 0 { both } else { models.reached() };
     shown.checked_sub(1)
 }
 
-/// Pictures of the largest load factor of which most can be shown; `expected` are the finite elements' displacements at
-/// the nodes of springs and corrected field.
-pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<Vec<f64>>; 2]) -> Vec<Figure> {
-    let lattice = &models.on_lattice.springs.mesh;
+/// All pictures: fields at the load factors that the study chooses, then what runs along the path.
+pub fn figures(
+    specimen: &Specimen,
+    models: &Models,
+    deviations: &[Option<Deviation>],
+) -> Vec<Figure> {
     let figure = |what: &str, caption: String, drawing| {
         Figure::new(format!("{}_{what}.png", specimen.name), caption, drawing)
     };
+    let last = shown(models);
+    let steps = specimen.pictures.shown.steps(&specimen.factors, last);
+    let mut figures: Vec<Figure> = steps
+        .into_iter()
+        .flat_map(|step| fields(specimen, models, step))
+        .collect();
+    figures.extend(displacement_over_factors(specimen, models).map(|drawing| {
+        let what = models.reference.measured.describe();
+        let caption = format!(
+            "Over the {}: {what}; computed at the markers only.",
+            specimen.along.name()
+        );
+        figure("displacement_over_load", caption, drawing)
+    }));
+    figures.extend(forces(specimen, models).map(|drawing| {
+        let caption = format!(
+            "Forces of the supports over the {}: of each group along the axis of its larger force; computed at the markers only.",
+            specimen.along.name()
+        );
+        figure("forces", caption, drawing)
+    }));
+    let charts = [
+        (
+            "errors",
+            history::deviations_chart(specimen, models, deviations),
+        ),
+        ("residuals", history::residuals_chart(specimen, models)),
+    ];
+    for (what, chart) in charts {
+        figures.extend(chart.map(|(caption, drawing)| figure(what, caption, drawing)));
+    }
+    let lattice = &models.on_lattice.springs.mesh;
     let cells = mesh_outlines("Lattice", lattice);
-    let mesh = figure("mesh", "The cells of the lattice.".into(), cells);
-    let Some(step) = shown(models) else {
-        return vec![mesh];
+    figures.push(figure("mesh", "The cells of the lattice.".into(), cells));
+    figures.extend(last.and_then(|step| {
+        let at = specimen.along.describe(specimen.factors[step]);
+        let drawing = estimated_error(models, step, &at)?;
+        let caption = format!(
+            "Estimated error of every finite element at {at}, in % of the solution's energy norm."
+        );
+        Some(figure("estimated_error", caption, drawing.into()))
+    }));
+    let caption = "The material: nominal stress over stretch.".to_owned();
+    let material = material_chart(&specimen.card);
+    figures.push(figure("material", caption, material.into()));
+    figures
+}
+
+/// The fields of all models at one load factor: displacement, stresses and strains, distance to the finite elements.
+fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
+    let number = match specimen.pictures.shown {
+        Shown::Last => String::new(),
+        Shown::All | Shown::At(_) => format!("_{:03}", step + 1),
     };
-    let at = format!("load factor {}", specimen.factors[step]);
-    let named = models.named();
-    let fields = |models: usize| {
-        named[..models].iter().filter_map(|model| {
-            let u = model.solution.displacement(step)?;
-            Some((model.name, &model.solution.mesh, u))
-        })
-    };
-    let size = |(name, mesh, u): (&str, &Mesh, &[f64])| {
-        Panel::at_nodes(name, mesh, u, &|node| u[2 * node].hypot(u[2 * node + 1]))
-    };
-    let title = format!("Displacement at {at}");
-    let caption = format!("{title}, on one colour scale.");
-    let displacement = FieldFigure::new(title, "displacement [mm]", fields(3).map(size));
-    let mut figures = vec![figure("displacement", caption, displacement.into())];
-    figures.extend(stress_figures(specimen, models, step));
-    let compared = named.iter().zip(expected);
-    let compared = compared.filter_map(|(model, expected)| {
+    let file = |field: &str| format!("{}_{field}{number}.png", specimen.name);
+    let at = specimen.along.describe(specimen.factors[step]);
+    let mut figures = vec![displacement(
+        specimen,
+        models,
+        step,
+        &at,
+        file("displacement"),
+    )];
+    figures.extend(stress_figures(specimen, models, step, &at, &file));
+    let distance = |model: &ModelSeries| {
         let u = model.solution.displacement(step)?;
-        let v = expected.get(step)?;
-        Some(Panel::distance(model.name, &model.solution.mesh, u, v))
-    });
-    let distances: Vec<Panel> = compared.collect();
+        let v = models.expected(model.kind, step)?;
+        Some(Panel::distance(
+            model.style.name,
+            &model.solution.mesh,
+            u,
+            v,
+        ))
+    };
+    let distances: Vec<Panel> = models.all().iter().filter_map(distance).collect();
     if !distances.is_empty() {
         let title = format!("Distance to the finite elements at {at}");
         let caption = format!("{title}.");
         let distance = FieldFigure::new(title, "distance [mm]", distances).logarithmic();
-        figures.push(figure("error", caption, distance.into()));
+        figures.push(Figure::new(file("error"), caption, distance));
     }
-    figures.extend(displacement_over_factors(specimen, models).map(|drawing| {
-        let what = models.reference.measured.describe();
-        let caption = format!("Over the load factor: {what}; computed at the markers only.");
-        figure("displacement_over_load", caption, drawing)
-    }));
-    figures.extend(forces(specimen, models).map(|drawing| {
-        let caption = "Forces of the supports over the load factor: of each group along the axis of its larger force; computed at the markers only.";
-        figure("forces", caption.into(), drawing)
-    }));
-    figures.push(mesh);
-    figures.extend(estimated_error(models, step, &at).map(|drawing| {
-        let caption = format!(
-            "Estimated error of every finite element at {at}, in % of the solution's energy norm."
-        );
-        figure("estimated_error", caption, drawing.into())
-    }));
     figures
 }
 
-/// Stresses and strains at the load factors that the study chooses, else at the last one.
-fn stress_figures(specimen: &Specimen, models: &Models, last: usize) -> Vec<Figure> {
-    let pictures = &specimen.pictures;
-    let named = models.named();
-    let at_step = |step: usize| {
-        let deformed = named.iter().filter_map(|model| {
-            let u = model.solution.displacement(step)?;
-            let mut fields = model.solution.past(step);
-            fields.push(u);
-            Some(Deformed::elastic(model.name, &model.solution.mesh, fields))
-        });
-        let deformed: Vec<_> = deformed.collect();
-        let number = match pictures.shown {
-            Shown::Last => String::new(),
-            Shown::All | Shown::At(_) => format!("_{:03}", step + 1),
-        };
-        let at = format!("load factor {}", specimen.factors[step]);
-        let file = |field: &str| format!("{}_{field}{number}.png", specimen.name);
-        sheet_figures(
-            &pictures.fields,
-            specimen.sheet().law,
-            &deformed,
-            &at,
-            &file,
-        )
+/// The displacement of all models on one colour scale; of a plate the transverse one, in which the models differ.
+fn displacement(
+    specimen: &Specimen,
+    models: &Models,
+    step: usize,
+    at: &str,
+    file: String,
+) -> Figure {
+    let is_plate = specimen.grids().is_some();
+    let quantity = if is_plate {
+        "transverse displacement"
+    } else {
+        "displacement"
     };
-    let steps = pictures.shown.steps(&specimen.factors, Some(last));
-    steps.into_iter().flat_map(at_step).collect()
+    let all = models.all();
+    let panels = all.iter().filter_map(|model| {
+        let (mesh, u) = (&model.solution.mesh, model.solution.displacement(step)?);
+        let value = |node: usize| {
+            let [ux, uy] = [u[2 * node], u[2 * node + 1]];
+            if is_plate { uy } else { ux.hypot(uy) }
+        };
+        Some(Panel::at_nodes(model.style.name, mesh, u, &value))
+    });
+    let title = format!("Displacement at {at}");
+    let caption = format!("The {quantity} at {at}, on one colour scale.");
+    Figure::new(
+        file,
+        caption,
+        FieldFigure::new(title, format!("{quantity} [mm]"), panels),
+    )
+}
+
+/// Stresses and strains at one load factor.
+fn stress_figures(
+    specimen: &Specimen,
+    models: &Models,
+    step: usize,
+    at: &str,
+    file: &dyn Fn(&str) -> String,
+) -> Vec<Figure> {
+    let all = models.all();
+    let deformed = all.iter().filter_map(|model| {
+        let u = model.solution.displacement(step)?;
+        let mut fields = model.solution.past(step);
+        fields.push(u);
+        Some(Deformed::elastic(
+            model.style.name,
+            &model.solution.mesh,
+            fields,
+        ))
+    });
+    let deformed: Vec<_> = deformed.collect();
+    let law = specimen.sheet().law;
+    sheet_figures(&specimen.pictures.fields, law, &deformed, at, &file)
 }
 
 /// Forces below this share of the largest are those of supports that carry nothing.
 const NO_FORCE: f64 = 1e-6;
 
-/// What the groups do in each state of one of the three models, over the load factor, beginning at rest.
+/// What the groups do in each state of one of the models, over the load factor, beginning at rest.
 fn over_factors(
     specimen: &Specimen,
-    models: &Models,
-    model: usize,
+    model: ModelSeries,
     value: impl Fn(&[GroupState]) -> f64,
 ) -> Vec<[f64; 2]> {
     let steps = specimen.factors.iter().enumerate();
-    let named = models.named();
     let values = steps.filter_map(|(step, factor)| {
-        let groups = named[model].solution.groups(step)?;
-        Some([*factor, value(groups)])
+        let groups = model.solution.groups(step)?;
+        Some([specimen.along.coordinate(*factor), value(groups)])
     });
     from_rest(values)
 }
 
-/// A chart of the three models over the load factor.
+/// A chart of the models over the load factor.
 fn chart_over_factors(
+    specimen: &Specimen,
+    models: &Models,
     title: String,
     y: &str,
-    points: impl Fn(usize) -> Vec<[f64; 2]>,
+    value: impl Fn(&[GroupState]) -> f64,
 ) -> LineChart {
-    const STROKES: [Stroke; 3] = [Stroke::Marked, Stroke::Ringed, Stroke::Marked];
-    let line = |model: usize| {
-        let points = points(model);
-        let (style, stroke) = (MODELS[model], STROKES[model]);
-        (points.len() > 1).then(|| Line::new(style.name, points, style.colour, stroke))
+    let order = [
+        (ModelKind::FiniteElement, Stroke::Marked),
+        (ModelKind::MassSpring, Stroke::Marked),
+        (ModelKind::Corrected, Stroke::Ringed),
+    ];
+    let line = |(kind, stroke): (ModelKind, Stroke)| {
+        let model = models.of(kind);
+        let points = over_factors(specimen, model, &value);
+        (points.len() > 1).then(|| Line::new(model.style.name, points, model.style.colour, stroke))
     };
-    let lines = [2, 0, 1].into_iter().filter_map(line).collect();
-    let x = Axis::linear("load factor [–]");
+    let lines = order.into_iter().filter_map(line).collect();
+    let x = Axis::linear(specimen.along.head());
     LineChart::new(title, x, Axis::linear(y), lines)
 }
 
@@ -152,20 +216,18 @@ fn displacement_over_factors(specimen: &Specimen, models: &Models) -> Option<Dra
     (measured.quantity == Quantity::Displacement).then(|| {
         let title = format!("Displacement of {}", measured.group);
         let y = format!("displacement along {} [mm]", measured.axis_name());
-        let chart = chart_over_factors(title, &y, |model| {
-            over_factors(specimen, models, model, |groups| measured.of(groups))
-        });
+        let value = |groups: &[GroupState]| measured.of(groups);
+        let chart = chart_over_factors(specimen, models, title, &y, value);
         Drawing::Charts(vec![(chart, 340)])
     })
 }
 
 /// The forces of all groups that carry one, over the load factor; `None` where there is none.
 fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
-    let points = |model: usize, group: usize, axis: usize| {
-        over_factors(specimen, models, model, |groups| groups[group].force[axis])
-    };
     let largest = |group: usize, axis: usize| {
-        let all = (0..3).flat_map(|model| points(model, group, axis));
+        let force = |groups: &[GroupState]| groups[group].force[axis];
+        let all = models.all().into_iter();
+        let all = all.flat_map(|model| over_factors(specimen, model, force));
         all.fold(0.0, |most: f64, point| most.max(point[1].abs()))
     };
     let groups = specimen.groups();
@@ -181,8 +243,8 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let title = format!("Force of {}", groups[group]);
-        let lines = |model: usize| points(model, group, axis);
-        (chart_over_factors(title, &y, lines), 340)
+        let force = |groups: &[GroupState]| groups[group].force[axis];
+        (chart_over_factors(specimen, models, title, &y, force), 340)
     };
     let charts: Vec<_> = carrying.map(chart).collect();
     (!charts.is_empty()).then_some(Drawing::Charts(charts))
@@ -200,45 +262,49 @@ fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure
     ))
 }
 
-/// The fields of each model, as far as it goes; `expected` are the finite elements' displacements at the nodes of springs and
-/// corrected field.
-pub fn grids(
-    specimen: &Specimen,
-    models: &Models,
-    expected: &[Vec<Vec<f64>>; 2],
-) -> Vec<GridSeries> {
-    let (on_lattice, reference) = (&models.on_lattice, &models.reference);
-    let field = |solution: &Solution, step: usize| {
-        let (past, u) = (solution.past(step), &solution.states[step].displacement);
-        Grid::sheet(specimen.sheet().after(&past), &solution.mesh, u)
-    };
-    let series = |name: &str, reached: usize, grid: &dyn Fn(usize) -> Grid| {
-        let steps = specimen.factors.iter().take(reached).enumerate();
-        let steps = steps.map(|(step, factor)| (*factor, grid(step)));
-        (reached > 0).then(|| GridSeries::steps(name, steps))
-    };
-    let (uncorrected, corrected) = (&on_lattice.uncorrected, &on_lattice.corrected);
-    let compared = |name, model: &Solution, expected: &[Vec<f64>]| {
-        series(name, model.reached(), &|step| {
-            let u = &model.states[step].displacement;
-            let difference = expected.get(step).map(|v| Array::to_finite_elements(u, v));
-            field(model, step).with(difference)
+/// The fields of each model, as far as it goes.
+pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
+    let springs = models.of(ModelKind::MassSpring).solution.states.iter();
+    let springs = springs.map(|state| {
+        let lattice = &models.on_lattice.springs;
+        let grid = Grid::springs(lattice, &state.displacement, &state.history);
+        (state.factor, grid)
+    });
+    let springs = GridSeries::steps("springs", springs);
+    let mut all: Vec<GridSeries> = models
+        .all()
+        .into_iter()
+        .map(|model| {
+            let steps = 0..model.solution.reached();
+            let grids =
+                steps.map(|step| (specimen.factors[step], grid(specimen, models, model, step)));
+            GridSeries::steps(model.style.key, grids)
         })
-    };
-    let springs = series("springs", uncorrected.reached(), &|step| {
-        let state = &uncorrected.states[step];
-        Grid::springs(&on_lattice.springs, &state.displacement, &state.history)
-    });
-    let elements = series(FINITE_ELEMENTS.key, reference.reached(), &|step| {
-        let error = reference.estimates[step].as_ref();
-        let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
-        field(&reference.finest, step).with_in_cells(error)
-    });
-    let all = [
-        compared(MASS_SPRING.key, uncorrected, &expected[0]),
-        compared(CORRECTED.key, corrected, &expected[1]),
-        springs,
-        elements,
-    ];
-    all.into_iter().flatten().collect()
+        .collect();
+    all.insert(1, springs);
+    all.retain(|series| !series.grids.is_empty());
+    all
+}
+
+/// The fields of a model at one load factor.
+fn grid(specimen: &Specimen, models: &Models, model: ModelSeries, step: usize) -> Grid {
+    let (past, u) = (
+        model.solution.past(step),
+        &model.solution.states[step].displacement,
+    );
+    let grid = Grid::sheet(specimen.sheet().after(&past), &model.solution.mesh, u);
+    let difference = models.expected(model.kind, step);
+    let grid = grid.with(difference.map(|v| Array::to_finite_elements(u, v)));
+    match model.kind {
+        ModelKind::MassSpring => grid,
+        ModelKind::Corrected => grid.with(history::multipliers(models, step)),
+        ModelKind::FiniteElement => {
+            let error = models
+                .reference
+                .estimates
+                .get(step)
+                .and_then(Option::as_ref);
+            grid.with_in_cells(error.map(|estimate| Array::estimated_error(&estimate.energy)))
+        }
+    }
 }

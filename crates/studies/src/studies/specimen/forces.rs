@@ -10,12 +10,13 @@ use crate::document::write_records;
 use crate::problem::{GroupState, Solution};
 use crate::results::Block;
 use crate::statistics::larger;
+use crate::studies::ModelKind;
 use crate::units::number;
 
 /// A table of all groups in all models at all load factors.
 pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let head = [
-        "load factor [–]",
+        specimen.along.head(),
         "group",
         "model",
         "force along x [N]",
@@ -28,12 +29,12 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let mut rows = Vec::new();
     for (step, factor) in specimen.factors.iter().enumerate() {
         for (index, group) in specimen.groups().iter().enumerate() {
-            for model in models.named() {
+            for model in models.all() {
                 if let Some(groups) = model.solution.groups(step) {
                     let names = [
-                        factor.to_string(),
+                        specimen.along.value(*factor),
                         (*group).to_owned(),
-                        model.name.to_owned(),
+                        model.style.name.to_owned(),
                     ];
                     rows.push(
                         names
@@ -56,10 +57,11 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
     ]
 }
 
-/// The same as a table for other programs, with all digits: a force-displacement curve is two of its columns.
+/// The same as a table for other programs, with all digits: a force-displacement curve is two of its columns. Of a plate with its width at
+/// mid length.
 pub fn csv(specimen: &Specimen, models: &Models) -> String {
-    let head = [
-        "load_factor",
+    let mut head = vec![
+        specimen.along.column(),
         "group",
         "model",
         "force_x_N",
@@ -67,20 +69,34 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
         "moment_Nmm",
         "displacement_x_mm",
         "displacement_y_mm",
+        "strain_energy_mJ",
     ];
-    let mut records = vec![head.map(str::to_owned).to_vec()];
+    let is_plate = specimen.grids().is_some();
+    head.extend(is_plate.then_some("mid_width_mm"));
+    let mut records = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     for (step, factor) in specimen.factors.iter().enumerate() {
-        for model in models.named() {
-            let states = model.solution.groups(step).unwrap_or_default();
-            for (group, state) in specimen.groups().iter().zip(states) {
+        for model in models.all() {
+            let Solution { mesh, states, .. } = model.solution;
+            let Some(field) = states.get(step) else {
+                continue;
+            };
+            let width = is_plate.then(|| mesh.mid_width(&field.displacement));
+            let groups = model.solution.groups(step).unwrap_or_default();
+            for (group, state) in specimen.groups().iter().zip(groups) {
                 let ([fx, fy], [ux, uy]) = (state.force, state.displacement);
-                let names = [
+                let mut record = vec![
                     factor.to_string(),
                     (*group).to_owned(),
-                    model.name.to_owned(),
+                    model.style.name.to_owned(),
                 ];
-                let values = [fx, fy, state.moment, ux, uy].map(|value| value.to_string());
-                records.push(names.into_iter().chain(values).collect());
+                let values = [fx, fy, state.moment, ux, uy, field.convergence.energy];
+                record.extend(
+                    values
+                        .into_iter()
+                        .chain(width)
+                        .map(|value| value.to_string()),
+                );
+                records.push(record);
             }
         }
     }
@@ -92,7 +108,7 @@ const UNBALANCED: f64 = 1e-5;
 
 /// The worst balance of all models.
 pub fn worst_balance(models: &Models) -> Option<f64> {
-    let balances = models.named().into_iter();
+    let balances = models.all().into_iter();
     balances
         .filter_map(|model| model.solution.worst_balance())
         .reduce(larger)
@@ -100,14 +116,14 @@ pub fn worst_balance(models: &Models) -> Option<f64> {
 
 /// The balance of each model in a sentence.
 fn balance(models: &Models) -> String {
-    let balances = models.named().into_iter();
-    let told = balances.filter_map(|model| {
+    let balances = models.all().into_iter();
+    let balances = balances.filter_map(|model| {
         let balance = model.solution.worst_balance()?;
-        Some(format!("{} {balance:.1e}", model.name))
+        Some(format!("{} {balance:.1e}", model.style.name))
     });
     format!(
-        "Balance: the unbalanced part of supports and loads, at the worst load factor and relative to the largest force or moment: {}.",
-        told.collect::<Vec<_>>().join(", ")
+        "Balance: the unbalanced part of supports and loads, at the worst load and relative to the largest force or moment: {}.",
+        balances.collect::<Vec<_>>().join(", ")
     )
 }
 
@@ -126,7 +142,7 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     /// A smaller share of the forces on nodes times the specimen's larger side is what meshes leave.
     const LEAST: f64 = 1e-2;
     let (measured, finest) = (&models.reference.measured, &models.reference.finest);
-    let corrected = &models.on_lattice.corrected;
+    let corrected = models.of(ModelKind::Corrected).solution;
     let step = corrected.reached().min(finest.reached()).checked_sub(1)?;
     if measured.quantity != Quantity::Force {
         return None;
@@ -138,11 +154,11 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     let is_moment = expected.moment.abs() > LEAST * expected.size.max(expected.rounding) * side;
     is_moment.then(|| {
         format!(
-            "the force of the supports on `{}` is none, so that the requirement of the force compares nothing, but their moment at the load factor {} \
+            "the force of the supports on `{}` is none, so that the requirement of the force compares nothing, but their moment at {} \
              is {} N·mm in the corrected field, {} % from the {} N·mm of the finite elements: no requirement judges it, and the finite elements' own \
              error of it is not known",
             measured.group,
-            specimen.factors[step],
+            specimen.along.describe(specimen.factors[step]),
             number(found.moment),
             percent(100.0 * (found.moment / expected.moment - 1.0).abs()),
             number(expected.moment)
@@ -152,10 +168,10 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
 
 /// The largest force at any group, its moment over the specimen's larger side, and that side.
 fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
-    let named = models.named();
+    let series = models.all();
     let steps = 0..specimen.factors.len();
     let all = steps.flat_map(|step| {
-        named
+        series
             .iter()
             .filter_map(move |own| own.solution.groups(step))
     });
@@ -203,10 +219,13 @@ pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<V
 
 /// The worst balance of every model, for machines.
 pub fn balances(models: &Models) -> Map<String, Value> {
-    let named = models.named().into_iter();
-    let balances = named.map(|own| {
-        let unbalanced = own.solution.worst_balance();
-        (own.file.to_owned(), json!({ "unbalanced": unbalanced }))
+    let all = models.all().into_iter();
+    let balances = all.map(|model| {
+        let unbalanced = model.solution.worst_balance();
+        (
+            model.style.key.to_owned(),
+            json!({ "unbalanced": unbalanced }),
+        )
     });
     balances.collect()
 }

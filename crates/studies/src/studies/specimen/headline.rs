@@ -8,19 +8,15 @@ use crate::results::{Block, Deformed, Gauge, Headline, LoadedSheet};
 /// The groups' forces and displacements at every load factor and the largest values at the largest one, by the finite elements, or else by the
 /// corrected field or the springs.
 pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
-    let named = models.named();
-    let Some(model) = named
-        .iter()
-        .rev()
-        .find(|model| model.solution.reached() > 0)
-    else {
+    let Some(model) = models.best() else {
         return Vec::new();
     };
     let solution = model.solution;
+    let along = specimen.along;
     let (mesh, reached) = (&solution.mesh, 0..solution.reached());
     let states = reached.clone().filter_map(|step| {
         let groups = solution.groups(step)?.to_vec();
-        Some((specimen.factors[step].to_string(), groups))
+        Some((along.value(specimen.factors[step]), groups))
     });
     let size = |step: &usize| specimen.factors[*step].abs();
     let largest = reached
@@ -29,14 +25,14 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let mut fields = solution.past(largest);
     fields.extend(solution.displacement(largest));
     let headline = Headline {
-        model: model.name,
-        along: "load factor [–]",
+        model: model.style.name,
+        along: along.head(),
         groups: specimen.groups(),
         steps: states.collect(),
         state: LoadedSheet {
-            at: format!("load factor {}", specimen.factors[largest]),
+            at: along.describe(specimen.factors[largest]),
             law: specimen.sheet().law,
-            deformed: Deformed::elastic(model.name, mesh, fields),
+            deformed: Deformed::elastic(model.style.name, mesh, fields),
             // Supports were checked when the study was read.
             singular: specimen.problem.singular_points(mesh).unwrap_or_default(),
             gauge: gauge(&specimen.outline, mesh),
@@ -47,8 +43,10 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
 
 /// The gauge section of a strip or a dog-bone.
 fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
-    let Outline::Shape { shape, .. } = outline else {
-        return None;
+    let shape = match outline {
+        Outline::Shape { shape, .. } => *shape,
+        Outline::Grid(grids) => Shape::Strip { size: grids.size },
+        Outline::File { .. } => return None,
     };
     match shape {
         Shape::Strip { size } => {

@@ -5,50 +5,37 @@ use serde_json::{Map, Value, json};
 use super::files::{figures, grids};
 use super::headline::headline;
 use super::problem::Specimen;
-use super::results::lattice::{OnLattice, Start};
-use super::results::models::{Models, NamedSolution};
-use super::results::verdict::{Deviation, checks};
+use super::results::lattice::Start;
+use super::results::models::{ModelSeries, Models};
+use super::results::verdict::{Deviation, Distance, checks, deviations};
 use super::warnings::warnings;
-use super::{forces, statement, work};
-use crate::compare::area_weighted_percent;
-use crate::compare::judgement::Judgement;
-use crate::problem::Solution;
-use crate::results::{Block, Check, Content, Material, Outcome, Step};
+use super::{forces, history, statement, work};
+use crate::results::{Block, Content, Material, Outcome, Step, or_dash, pictures};
+use crate::studies::ModelKind;
 use crate::units::{decimals, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
-    let expected = expected(models);
-    let deviations = deviations(specimen, models, &expected);
-    let steps = 0..models.reached();
-    let rows = steps.map(|step| row(specimen, models, step, deviations[step].as_ref()));
-    let table = Block::Table(head(models), rows.collect());
+    let deviations = deviations(specimen, models);
+    let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     let mut warnings = warnings(specimen, models);
     warnings.extend(forces::unbalanced(models));
     warnings.extend(forces::unjudged_moment(specimen, models));
-    let mut blocks = vec![Block::Paragraph(introduction(models)), table];
-    blocks.extend(starts(specimen, models).map(Block::Paragraph));
-    blocks.extend(models.reference.history());
-    blocks.extend(forces::table(specimen, models));
-    blocks.extend(work::blocks(specimen, models));
-    blocks.extend(statement::blocks(specimen));
-    let quantities = |step: usize| Step {
+    let quantities = |(step, deviation): (usize, &Option<Deviation>)| Step {
         at: specimen.factors[step],
-        models: quantities(specimen, models, step, deviations[step].as_ref()),
+        models: quantities(specimen, models, step, deviation.as_ref()),
     };
-    let steps = (0..specimen.factors.len()).map(quantities).collect();
-    let judged: Vec<_> = deviations.iter().flatten().copied().collect();
-    Outcome {
+    let mut outcome = Outcome {
         headline: headline(specimen, models),
+        summary: agreement(specimen, models, &deviations),
         style: specimen.pictures.style.clone(),
         checks: checks(specimen, models, &judged),
         problem: statement::json(specimen),
         material: Some(Material::from(&specimen.card)),
-        along: "load factor",
-        steps,
-        blocks,
-        figures: figures(specimen, models, &expected),
-        grids: grids(specimen, models, &expected),
+        along: specimen.along.name(),
+        steps: deviations.iter().enumerate().map(quantities).collect(),
+        figures: figures(specimen, models, &deviations),
+        grids: grids(specimen, models),
         files: vec![(
             "forces.csv".to_owned(),
             Content::Text(forces::csv(specimen, models)),
@@ -56,8 +43,92 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         warnings,
         balance: forces::worst_balance(models),
         balances: forces::balances(models),
+        times: models.times.clone(),
         ..Outcome::default()
+    };
+    outcome.blocks = blocks(specimen, models, &deviations, &outcome);
+    outcome
+}
+
+/// The tables of the report, with the pictures of `outcome` among them.
+fn blocks(
+    specimen: &Specimen,
+    models: &Models,
+    deviations: &[Option<Deviation>],
+    outcome: &Outcome,
+) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    if deviations.iter().any(Option::is_some) {
+        blocks.push(Block::heading("Deviation from the finite elements"));
+        blocks.push(Block::Paragraph(introduction(specimen, models)));
+        blocks.push(deviation_table(specimen, models, deviations));
     }
+    blocks.extend(starts(specimen, models).map(Block::Paragraph));
+    blocks.extend(pictures("Pictures", outcome));
+    blocks.extend(forces::table(specimen, models));
+    blocks.extend(work::blocks(specimen, models));
+    if models.reference.reached() > 0 {
+        blocks.push(Block::heading("The finite elements' own error"));
+        blocks.push(Block::Paragraph(format!(
+            "{}; of the displacement at the nodes of the corrected field, by which deviations are judged, and of the field, the larger of this and \
+             the error at all nodes of the finite elements.",
+            models.reference.describe()
+        )));
+        blocks.push(own_errors(specimen, models));
+        blocks.extend(models.reference.history());
+    }
+    blocks.extend(history::convergence(specimen, models));
+    blocks.extend(statement::blocks(specimen));
+    blocks
+}
+
+/// The deviations of springs and corrected field as a table for a terminal; empty where there are none.
+fn agreement(specimen: &Specimen, models: &Models, deviations: &[Option<Deviation>]) -> String {
+    let what = match models.reference.measured.unit() {
+        "N" => "force",
+        _ => "group",
+    };
+    let is_plate = specimen.grids().is_some();
+    let of_model = |model: &str| {
+        let departure = is_plate.then(|| format!("{model}: departure"));
+        let displacement = [format!("{model}: displacement")];
+        let all = displacement.into_iter().chain(departure);
+        all.chain([format!("{model}: {what}")]).collect::<Vec<_>>()
+    };
+    let mut head = vec![specimen.along.head().to_owned()];
+    head.extend(
+        [ModelKind::MassSpring, ModelKind::Corrected]
+            .iter()
+            .flat_map(|kind| of_model(kind.style().name)),
+    );
+    let figures = |distance: Option<Distance>, decimals: [usize; 3]| {
+        let departure =
+            is_plate.then(|| figure(distance.and_then(|own| own.departure()), decimals[1]));
+        let displacement = figure(distance.map(|own| own.displacement), decimals[0]);
+        let measured = figure(distance.map(|own| own.measured.abs()), decimals[2]);
+        [displacement]
+            .into_iter()
+            .chain(departure)
+            .chain([measured])
+    };
+    let row = |(factor, deviation): (&f64, &Option<Deviation>)| {
+        let own = deviation.as_ref()?;
+        let springs = figures(own.springs, [3, 2, 2]);
+        let corrected = figures(Some(own.corrected), [4, 3, 3]);
+        let at = [specimen.along.value(*factor)].into_iter();
+        Some(at.chain(springs).chain(corrected).collect())
+    };
+    let rows: Vec<_> = specimen
+        .factors
+        .iter()
+        .zip(deviations)
+        .filter_map(row)
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let table = Block::Table(head, rows).plain();
+    format!("deviation from the finite elements [%]\n{table}")
 }
 
 /// The figures of one load factor for machines.
@@ -67,189 +138,202 @@ fn quantities(
     step: usize,
     deviation: Option<&Deviation>,
 ) -> Map<String, Value> {
+    let all = models.all().into_iter();
+    all.map(|model| {
+        let key = model.style.key.to_owned();
+        let Some(mut quantities) = quantities_of_model(specimen, models, model, step) else {
+            return (key, Value::Null);
+        };
+        quantities.extend(match model.kind {
+            ModelKind::MassSpring => deviation_json(deviation.and_then(|own| own.springs)),
+            ModelKind::Corrected => {
+                let mut own = deviation_json(deviation.map(|own| own.corrected));
+                let correction = deviation.and_then(Deviation::correction_percent);
+                own.insert("displacement_correction_percent".into(), json!(correction));
+                let error = models.on_lattice.discretisation_errors.get(step);
+                own.insert("discretisation_mm".into(), json!(error));
+                own
+            }
+            ModelKind::FiniteElement => own_errors_json(models, step, deviation),
+        });
+        (key, Value::Object(quantities))
+    })
+    .collect()
+}
+
+/// What a model has at one load factor; `None` where it has not reached it.
+fn quantities_of_model(
+    specimen: &Specimen,
+    models: &Models,
+    model: ModelSeries,
+    step: usize,
+) -> Option<Map<String, Value>> {
+    let measured = &models.reference.measured;
+    let solution = model.solution;
+    let state = solution.states.get(step)?;
+    let mut all = Map::new();
+    all.insert(
+        "groups".into(),
+        json!(forces::groups(specimen, solution, step)),
+    );
+    all.insert("energy_mJ".into(), json!(state.convergence.energy));
+    all.insert("residuals".into(), json!(state.convergence.residuals));
+    if let Some(work) = solution.works.get(step).copied().flatten() {
+        all.insert("stored_mJ".into(), json!(work.stored));
+        all.insert("dissipated_mJ".into(), json!(work.dissipated));
+    }
+    let value = json!(measured.at(solution, step));
+    if specimen.grids().is_some() {
+        all.insert("force_N".into(), value.clone());
+        let width = solution.mesh.mid_width(&state.displacement);
+        all.insert("width_mm".into(), json!(width));
+    }
+    all.insert(format!("measured_{}", measured.unit()), value);
+    Some(all)
+}
+
+/// How far a model is from the finite elements.
+fn deviation_json(distance: Option<Distance>) -> Map<String, Value> {
+    let mut all = Map::new();
+    all.insert(
+        "displacement_percent".into(),
+        json!(distance.map(|own| own.displacement)),
+    );
+    all.insert(
+        "measured_percent".into(),
+        json!(distance.map(|own| own.measured)),
+    );
+    all.insert(
+        "max_difference_mm".into(),
+        json!(distance.map(|own| own.largest)),
+    );
+    if let Some(departure) = distance.and_then(|own| own.departure()) {
+        all.insert("departure_percent".into(), json!(departure));
+    }
+    all
+}
+
+fn own_errors_json(
+    models: &Models,
+    step: usize,
+    deviation: Option<&Deviation>,
+) -> Map<String, Value> {
     let reference = &models.reference;
-    let measured = &reference.measured;
-    let deviations = |pair: Option<[f64; 2]>| {
-        json!({
-            "displacement_percent": pair.map(|[displacement, _]| displacement),
-            "measured_percent": pair.map(|[_, measured]| measured),
-        })
-    };
-    let mut springs = deviations(deviation.and_then(|own| own.springs));
-    let mut corrected = deviations(deviation.map(|own| own.corrected));
-    corrected["displacement_correction_percent"] =
-        json!(deviation.and_then(Deviation::correction_percent));
-    corrected["discretisation_mm"] = json!(models.on_lattice.discretisation_errors.get(step));
     let own = |which: usize| deviation.map(|own| own.own[which]);
-    let mut elements = json!({
-        "displacement_discretisation_percent": own(0),
+    let all = json!({
+        "displacement_discretisation_percent": reference.displacement_percent(step),
+        "departure_discretisation_percent": own(1),
         "field_discretisation_percent": reference.field_percent(step),
-        "measured_discretisation_percent": own(1),
+        "measured_discretisation_percent": reference.measured_percent(step),
         "three_meshes_percent": reference.three_meshes_percent(step),
         "recovery_percent": reference.recovered_percent(step),
         "estimated_energy_norm_percent": reference.energy_percent(step),
     });
-    let all = [&mut springs, &mut corrected, &mut elements];
-    let named = models.named().into_iter().zip(all);
-    let model = |(own, quantities): (NamedSolution, &mut Value)| {
-        let key = own.file.to_owned();
-        let Some(groups) = forces::groups(specimen, own.solution, step) else {
-            return (key, Value::Null);
-        };
-        quantities["groups"] = groups;
-        if let Some(work) = own.solution.works.get(step).copied().flatten() {
-            quantities["stored_mJ"] = json!(work.stored);
-            quantities["dissipated_mJ"] = json!(work.dissipated);
-        }
-        let value = measured.at(own.solution, step);
-        quantities[format!("measured_{}", measured.unit())] = json!(value);
-        (key, quantities.take())
-    };
-    named.map(model).collect()
+    all.as_object().cloned().unwrap_or_default()
 }
 
-/// Whether the finite elements are too coarse for something that they have to judge.
-pub fn is_open(specimen: &Specimen, models: &Models) -> bool {
-    let deviations = deviations(specimen, models, &expected(models));
-    let judged: Vec<_> = deviations.into_iter().flatten().collect();
-    let checks = checks(specimen, models, &judged);
-    let open = |check: &Check| matches!(check.judgement(), Judgement::CannotBeJudged { .. });
-    checks.iter().any(open)
+/// A figure with some decimals; a dash where there is none.
+fn figure(value: Option<f64>, decimals: usize) -> String {
+    or_dash(value, |value| format!("{value:.decimals$}"))
 }
 
-/// The deviations at each load factor, where there are any.
-fn deviations(
+/// A row for every load factor and model.
+fn deviation_table(
     specimen: &Specimen,
     models: &Models,
-    expected: &[Vec<Vec<f64>>; 2],
-) -> Vec<Option<Deviation>> {
-    let steps = 0..specimen.factors.len();
-    steps
-        .map(|step| deviation(models, step, expected.each_ref().map(|of| of.get(step))))
-        .collect()
-}
-
-/// The finite elements' displacements at the nodes of springs and corrected field, at the load factors that they reach.
-fn expected(models: &Models) -> [Vec<Vec<f64>>; 2] {
-    let finest = &models.reference.finest;
-    let OnLattice {
-        uncorrected,
-        corrected,
-        ..
-    } = &models.on_lattice;
-    [&uncorrected.mesh, &corrected.mesh].map(|mesh| {
-        let states = finest.states.iter();
-        states
-            .map(|state| finest.mesh.displacement_on(&state.displacement, mesh))
-            .collect()
-    })
-}
-
-/// Deviations from the expected field, where there is a corrected one.
-fn deviation(
-    models: &Models,
-    step: usize,
-    [by_springs, by_corrected]: [Option<&Vec<f64>>; 2],
-) -> Option<Deviation> {
-    let reference = &models.reference;
-    let what = &reference.measured;
-    let measured = what.at(&reference.finest, step)?;
-    let none_of = what.none_of(&reference.finest, step);
-    let is_none = |solved: &Solution| none_of.is_some() && what.none_of(solved, step).is_some();
-    let of = |solved: &Solution, expected: &[f64]| {
-        let field = &solved.states.get(step)?.displacement;
-        let displacement = area_weighted_percent(&solved.mesh, field, expected);
-        let value = what.at(solved, step)?;
-        let deviation = match none_of {
-            _ if is_none(solved) => 0.0,
-            Some(all) => 100.0 * (value - measured) / all,
-            None => percent(value, measured),
-        };
-        Some([displacement, deviation])
+    deviations: &[Option<Deviation>],
+) -> Block {
+    let is_plate = specimen.grids().is_some();
+    let what = models.reference.measured.name();
+    let mut head = vec![
+        specimen.along.head().to_owned(),
+        "model".to_owned(),
+        "displacement [%]".to_owned(),
+    ];
+    head.extend(is_plate.then(|| "departure from affine [%]".to_owned()));
+    head.extend([
+        "largest difference [mm]".to_owned(),
+        format!("{what} [%]"),
+        "correction [%]".to_owned(),
+    ]);
+    let row = |factor: f64, kind: ModelKind, distance: Distance, correction: Option<f64>| {
+        let mut row = vec![
+            specimen.along.value(factor),
+            kind.style().name.to_owned(),
+            figure(Some(distance.displacement), 4),
+        ];
+        row.extend(is_plate.then(|| figure(distance.departure(), 3)));
+        row.extend([
+            figure(Some(distance.largest), 4),
+            or_dash(Some(distance.measured), |value| format!("{value:+.3}")),
+            figure(correction, 2),
+        ]);
+        row
     };
-    Some(Deviation {
-        measures_none: is_none(&models.on_lattice.corrected),
-        springs: of(&models.on_lattice.uncorrected, by_springs?),
-        corrected: of(&models.on_lattice.corrected, by_corrected?)?,
-        own: [
-            reference.displacement_percent(step).unwrap_or(f64::NAN),
-            reference.measured_percent(step).unwrap_or(f64::NAN),
-        ],
-    })
+    let rows = specimen
+        .factors
+        .iter()
+        .zip(deviations)
+        .flat_map(|(factor, deviation)| {
+            let springs = deviation.and_then(|own| own.springs);
+            let springs = springs.map(|own| row(*factor, ModelKind::MassSpring, own, None));
+            let corrected = deviation.map(|own| {
+                row(
+                    *factor,
+                    ModelKind::Corrected,
+                    own.corrected,
+                    own.correction_percent(),
+                )
+            });
+            springs.into_iter().chain(corrected)
+        });
+    Block::Table(head, rows.collect())
 }
 
-/// The deviation of a value from another one in % of it; two zeros do not deviate.
-fn percent(value: f64, expected: f64) -> f64 {
-    if value == expected {
-        0.0
-    } else {
-        100.0 * (value / expected - 1.0)
-    }
-}
-
-/// The figures of one load factor.
-fn row(
-    specimen: &Specimen,
-    models: &Models,
-    step: usize,
-    deviation: Option<&Deviation>,
-) -> Vec<String> {
+/// What is known of the finite elements' own error at every load factor.
+fn own_errors(specimen: &Specimen, models: &Models) -> Block {
     let reference = &models.reference;
-    let text = |value: Option<f64>, digits: usize| {
-        let known = value.filter(|value| !value.is_nan());
-        known.map_or("–".into(), |value| format!("{value:.digits$}"))
-    };
-    let springs = |which: usize| deviation.and_then(|own| Some(own.springs?[which]));
-    let corrected = |which: usize| deviation.map(|own| own.corrected[which]);
-    vec![
-        specimen.factors[step].to_string(),
-        text(springs(0), 3),
-        text(corrected(0), 4),
-        text(deviation.and_then(Deviation::correction_percent), 2),
-        text(reference.field_percent(step), 4),
-        text(springs(1), 2),
-        text(corrected(1), 3),
-        reference
-            .measured
-            .at(&reference.finest, step)
-            .map_or("–".into(), |value| decimals(value, 5)),
-        text(reference.three_meshes_percent(step), 4),
-        text(reference.recovered_percent(step), 4),
-        text(reference.energy_percent(step), 4),
-    ]
-}
-
-fn head(models: &Models) -> Vec<String> {
-    let measured = &models.reference.measured;
+    let measured = &reference.measured;
     let what = measured.name();
-    vec![
-        "load factor [–]".into(),
-        "mass-spring: displacement [%]".into(),
-        "corrected: displacement [%]".into(),
-        "correction [%]".into(),
-        "finite elements: own error of the field, displacement [%]".into(),
-        format!("mass-spring: {what} [%]"),
-        format!("corrected: {what} [%]"),
-        format!("finite elements: {what} [{}]", measured.unit()),
-        format!("their own error of the {what}, by three meshes [%]"),
-        "the same, by recovery [%]".into(),
-        "their field's own error by recovery, energy norm [%]".into(),
-    ]
+    let head = [
+        specimen.along.head(),
+        &format!("{what} [{}]", measured.unit()),
+        &format!("error of the {what}, by three meshes [%]"),
+        "the same, by recovery [%]",
+        "error of the displacement [%]",
+        "error of the field [%]",
+        "error of the field by recovery, energy norm [%]",
+    ];
+    let rows = (0..reference.reached()).map(|step| {
+        let value = measured.at(&reference.finest, step);
+        vec![
+            specimen.along.value(specimen.factors[step]),
+            or_dash(value, |value| decimals(value, 5)),
+            figure(reference.three_meshes_percent(step), 5),
+            figure(reference.recovered_percent(step), 5),
+            figure(reference.displacement_percent(step), 5),
+            figure(reference.field_percent(step), 5),
+            figure(reference.energy_percent(step), 4),
+        ]
+    });
+    Block::table(&head, rows)
 }
 
-fn introduction(models: &Models) -> String {
-    let OnLattice {
-        springs, corrected, ..
-    } = &models.on_lattice;
+fn introduction(specimen: &Specimen, models: &Models) -> String {
     let measured = &models.reference.measured;
+    let departure = if specimen.grids().is_some() {
+        " The departure has the affine stretch subtracted from both fields and is the strict measure."
+    } else {
+        ""
+    };
     format!(
         "Deviations from the finite elements ({}) at the nodes of the springs' lattice ({}) and of the corrected field ({}). Displacements are \
-         relative L2 norms, weighted by area. They are judged by the own error of the finite elements' displacement at the nodes of the corrected \
-         field; the own error of the field is the larger of this error and the error at all nodes of the finite elements. The measured quantity is \
-         {}; its {} axis is that of the larger component or of the given load.",
+         relative L2 norms, weighted by area.{departure} The measured quantity is {}; its {} axis is that of the larger component or of the given \
+         load. Correction is 1 − e(corrected)/e(mass-spring) of the displacement. There are as many conditions as unknowns: one field satisfies \
+         them whatever the springs' field is; the springs provide the start and the multipliers.",
         models.reference.describe(),
-        springs.mesh.describe(),
-        corrected.mesh.describe(),
+        models.on_lattice.springs.mesh.describe(),
+        models.on_lattice.corrected.mesh.describe(),
         measured.describe(),
         measured.axis_name(),
     )
@@ -265,9 +349,10 @@ fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
         String::new()
     } else {
         format!(
-            "; the meshes give an estimate of its discretisation error: {} mm (root mean square over the nodes) at load factor {factor}, where it \
+            "; the meshes give an estimate of its discretisation error: {} mm (root mean square over the nodes) at {}, where it \
              is largest",
-            number(*most)
+            number(*most),
+            specimen.along.describe(*factor)
         )
     };
     Some(format!(
@@ -280,21 +365,26 @@ fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
 fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
     let at = |wanted: Start| {
         let starts = models.on_lattice.starts.iter().zip(&specimen.factors);
-        let found = starts.filter(|(start, _)| **start == wanted);
-        let found: Vec<_> = found.map(|(_, factor)| factor.to_string()).collect();
-        found.join(", ")
+        let starts = starts.filter(|(start, _)| **start == wanted);
+        let factors: Vec<f64> = starts.map(|(_, factor)| *factor).collect();
+        (!factors.is_empty()).then(|| specimen.along.list(factors))
     };
     let (alone, steps) = (at(Start::Alone), at(Start::LoadSteps));
     let mut text = nested(specimen, models).unwrap_or_default();
-    if !steps.is_empty() {
+    if let Some(steps) = steps {
         text += &format!(
-            "At the load factors {steps} the corrector did not converge from the springs' field; it started from an equilibrium that Newton's method \
+            "At {steps} the corrector did not converge from the springs' field; it started from an equilibrium that Newton's method \
              reached from rest in load steps. "
         );
     }
-    if !alone.is_empty() {
+    if let Some(affine) = at(Start::GridsAlone) {
         text += &format!(
-            "The springs have no equilibrium at the load factors {alone}. There the corrected field comes from the corrector's conditions alone, by \
+            "The springs have no field at {affine}: there the affine stretch takes the place of ū. "
+        );
+    }
+    if let Some(alone) = alone {
+        text += &format!(
+            "The springs have no field at {alone}. There the corrected field comes from the corrector's conditions alone, by \
              Newton's method in load steps from rest: it does not use a springs' field, and there is no correction to be measured."
         );
     }

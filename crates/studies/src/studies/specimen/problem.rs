@@ -1,16 +1,23 @@
 //! What a specimen's study asks for: the problem, its outline and meshes, what is measured.
 
+use super::along::Along;
 use crate::error::Error;
+use crate::mass_spring::MassSpring;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
+use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{BoundaryProblem, Model};
 use crate::results::Sheet;
-use crate::solve::{LinearSolver, Remembering};
+use crate::solve::{LinearSolver, NewtonSettings, Remembering};
+use crate::studies::ModelKind;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
 
+mod grids;
 mod outline;
+mod shape_words;
 
+pub use grids::{GridCorrection, GridElements, PlateGrids};
 pub use outline::{HALVINGS, Outline};
 
 /// The shape that is read from a file.
@@ -53,6 +60,12 @@ impl Method {
 /// Unknowns of a corrected field from which on nobody looks at its multipliers one by one, and nested meshes are quicker.
 pub const LARGE: usize = 20_000;
 
+/// How springs and finite elements are solved where the study does not state it.
+pub const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 60,
+};
+
 /// A specimen, its supports and loads, and how finely it is meshed.
 pub struct Specimen {
     /// For file names.
@@ -61,8 +74,16 @@ pub struct Specimen {
     pub problem: BoundaryProblem,
     /// The card of its material.
     pub card: Card,
-    /// Load factors, ascending.
+    /// What its path is numbered by.
+    pub along: Along,
+    /// Load factors, ascending unless the material has a memory.
     pub factors: Vec<f64>,
+    /// The models that are computed.
+    pub models: Vec<ModelKind>,
+    /// How the springs are solved.
+    pub springs_newton: NewtonSettings,
+    /// How the finite elements are solved.
+    pub elements_newton: NewtonSettings,
     /// The group that is measured.
     pub group: String,
     /// What the corrected field has to reach.
@@ -100,7 +121,11 @@ impl Specimen {
             name: MESH.into(),
             problem,
             card,
+            along: Along::LoadFactor,
             factors: vec![1.0],
+            models: ModelKind::ALL.to_vec(),
+            springs_newton: NEWTON,
+            elements_newton: NEWTON,
             group: group.into(),
             tolerances: Tolerances {
                 displacement_percent: 1.0,
@@ -131,6 +156,31 @@ impl Specimen {
         }
     }
 
+    /// What the study computes, in words.
+    pub fn describe(&self) -> String {
+        let models: Vec<&str> = self.models.iter().map(|kind| kind.style().name).collect();
+        format!(
+            "{}, {} mm thick, of the card {}; {}; {}",
+            self.outline.describe(),
+            self.problem.thickness,
+            self.card.name,
+            self.along.list(self.factors.iter().copied()),
+            models.join(", ")
+        )
+    }
+
+    /// How often a computation reports progress: three meshes, springs and corrected field at every load factor.
+    pub(super) fn progress_steps(&self) -> usize {
+        let of = |kind: &ModelKind| match kind {
+            ModelKind::FiniteElement => 1 + self.outline.halvings(),
+            ModelKind::MassSpring | ModelKind::Corrected => 1,
+        };
+        if self.refinement.is_some() {
+            return 0;
+        }
+        self.factors.len() * self.models.iter().map(of).sum::<usize>()
+    }
+
     /// What stresses follow from.
     pub fn sheet(&self) -> Sheet<'_> {
         Sheet {
@@ -141,10 +191,37 @@ impl Specimen {
         }
     }
 
-    /// The problem on a mesh; groups were checked when the study was read.
+    /// Whether a model is computed.
+    pub fn computes(&self, model: ModelKind) -> bool {
+        self.models.contains(&model)
+    }
+
+    /// The springs on the lattice.
+    pub fn springs(&self) -> MassSpring {
+        match (self.grids(), self.clamped_plate()) {
+            (Some(grids), Some(plate)) => MassSpring::new(&plate, grids.cells, grids.lattice),
+            _ => {
+                let BoundaryProblem { law, thickness, .. } = &self.problem;
+                MassSpring::on_mesh(law, *thickness, self.outline.lattice())
+            }
+        }
+    }
+
+    /// The energy of the corrected fields on their mesh.
+    pub fn corrected_energy(&self, mesh: &Mesh) -> SheetEnergy {
+        match (self.grids(), self.clamped_plate()) {
+            (Some(grids), Some(plate)) => grids.correction.scheme.energy(&plate, mesh),
+            _ => self.problem.finite_elements(mesh),
+        }
+    }
+
+    /// The problem on a mesh; groups were checked when the study was read. First guesses of a plate are affine.
     pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Remembering) -> Result<Model<'a>, Error> {
-        let found = self.problem.on(mesh, energy);
-        found.map_err(|fault| Error::Input(vec![fault]))
+        if let Some(plate) = self.clamped_plate() {
+            return Ok(plate.on(mesh, energy));
+        }
+        let model = self.problem.on(mesh, energy);
+        model.map_err(|fault| Error::Input(vec![fault]))
     }
 
     /// All groups that are held, loaded or measured, in the order of the study.

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::problem::{Method, Outline, Refinement, Specimen};
+use super::along::Along;
+use super::problem::{Method, NEWTON, Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
@@ -12,7 +13,7 @@ use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
-use crate::studies::sections::{Tolerances, check_thickness, refuse_memory};
+use crate::studies::sections::{Tolerances, check_thickness, read_models, refuse_memory};
 use crate::units::Dimension;
 
 mod outline;
@@ -76,6 +77,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         },
         "take fewer",
     );
+    let models = read_models(root);
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
     let pictures = Pictures::read(
         &root.section("pictures"),
@@ -100,7 +102,11 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
             loads: given.loads(),
         },
         card,
+        along: Along::LoadFactor,
         factors,
+        models,
+        springs_newton: NEWTON,
+        elements_newton: NEWTON,
         group,
         tolerances,
         refinement,
@@ -184,7 +190,17 @@ const LARGE_FACTOR: f64 = 5.0;
 
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
-    let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
+    let bound = if remembers {
+        Bound::NonNegative
+    } else {
+        Bound::Positive
+    };
+    let factors = path.multiples("factors", bound, f64::INFINITY);
+    if factors.first() == Some(&0.0) {
+        let hint = "every path begins at rest: leave it out";
+        path.fault("factors", "must not begin with zero", hint);
+        return factors;
+    }
     let falls = factors.windows(2).any(|pair| {
         if remembers {
             pair[1] == pair[0]

@@ -10,6 +10,7 @@ pub mod end;
 pub mod lattice;
 pub mod measured;
 pub mod models;
+mod on_grids;
 pub mod reference;
 mod refine;
 pub mod verdict;
@@ -42,18 +43,21 @@ pub fn one_model(
     progress: Progress,
 ) -> Result<OneModel, Error> {
     let mut ends = Vec::new();
-    let solution = match kind {
-        ModelKind::MassSpring => lattice::solve_springs(specimen, &mut ends, progress)?.1,
-        ModelKind::FiniteElement => refine::finest(specimen, &mut ends, progress)?,
+    let (solution, multipliers) = match kind {
+        ModelKind::MassSpring => (
+            lattice::solve_springs(specimen, &mut ends, progress)?.1,
+            Vec::new(),
+        ),
+        ModelKind::FiniteElement => (refine::finest(specimen, &mut ends, progress)?, Vec::new()),
         ModelKind::Corrected => lattice::solve_corrected(specimen, &mut ends, progress)?,
     };
+    let mut multipliers = multipliers;
+    multipliers.resize_with(solution.reached(), Vec::new);
     Ok(OneModel {
         forces: measured_forces(specimen, &solution),
-        multipliers: vec![Vec::new(); solution.reached()],
+        multipliers,
         ends: ends.iter().map(end::End::error).collect(),
-        warnings: kind.warnings(&specimen.card, specimen.sheet(), &solution, |factor| {
-            format!("load factor {factor}")
-        }),
+        warnings: kind.warnings(specimen, &solution),
         solution,
     })
 }

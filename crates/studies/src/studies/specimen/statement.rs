@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::problem::Specimen;
+use super::problem::{PlateGrids, Specimen};
 use crate::problem::{Drive, Load, Support};
 use crate::results::Block;
 use crate::units::Linear;
@@ -15,15 +15,15 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let supports = supports.map(|(group, own)| row(group, support(own)));
     let loads = problem.loads.iter();
     let loads: Vec<_> = loads.map(|(group, own)| row(group, load(own))).collect();
-    let factors: Vec<_> = specimen.factors.iter().map(f64::to_string).collect();
     let text = format!(
         "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. Displacements, rotations, forces, tractions and pressures below are those at \
-         load factor 1 and are proportional to it; the load factors are {}.",
+         {} and are proportional to it; the path is {}.",
         specimen.outline.describe(),
         problem.thickness,
         specimen.card.describe_sheet(),
         specimen.card.name,
-        factors.join(", ")
+        specimen.along.describe(1.0),
+        specimen.along.list(specimen.factors.iter().copied()),
     );
     let mut blocks = vec![
         Block::Heading(2, "Specimen, supports and loads".into()),
@@ -52,7 +52,24 @@ pub fn json(specimen: &Specimen) -> Map<String, Value> {
         "thickness_mm": problem.thickness,
         "supports": supports.collect::<Vec<_>>(),
         "loads": loads.collect::<Vec<_>>(),
-        "load_factors": specimen.factors,
+        (format!("{}s", specimen.along.column())): specimen.factors,
+    });
+    let mut all = all.as_object().cloned().unwrap_or_default();
+    if let Some(grids) = specimen.grids() {
+        all.extend(grids_json(grids));
+    }
+    all
+}
+
+/// The measures and grids of a plate.
+fn grids_json(grids: &PlateGrids) -> Map<String, Value> {
+    let elements = &grids.elements;
+    let all = json!({
+        "length_mm": grids.size[0],
+        "width_mm": grids.size[1],
+        "cells": grids.cells,
+        "corrector": { "grading": grids.correction.grading },
+        "reference": { "element": elements.element.name(), "cells": elements.cells, "grading": elements.grading },
     });
     all.as_object().cloned().unwrap_or_default()
 }

@@ -5,61 +5,96 @@ use super::results::models::Models;
 use crate::mass_spring;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::models::FINITE_ELEMENTS;
 use crate::results::strained::{self, StrainedSheet};
 use crate::results::{is_one_of_several, locking, one_of_several};
+use crate::studies::ModelKind;
 use crate::units::number;
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
-    let Solution { mesh, states, .. } = &models.reference.finest;
-    let loads = || {
-        states.iter().map(|state| {
-            (
-                format!("load factor {}", state.factor),
-                &*state.displacement,
-            )
-        })
-    };
-    let mut all: Vec<String> = mass_spring::warning(&*specimen.problem.law)
-        .into_iter()
-        .collect();
-    let [_, corrected, finite_elements] = models.named();
-    let locking = [corrected, finite_elements].into_iter();
-    let locking = locking.filter(|model| locking::locks(&model.solution.mesh));
-    let locking = locking.map(|model| (model.name, locking::SECOND_DEGREE));
-    let locking: Vec<_> = locking.collect();
-    all.extend(locking::warning(&*specimen.problem.law, &locking));
+    let solution = models
+        .best()
+        .map(|model| (model.style.name, model.solution));
+    let law = &*specimen.problem.law;
+    let mut all: Vec<String> = match specimen.grids() {
+        Some(grids) if grids.lattice.area_term => None,
+        Some(_) => mass_spring::warning_of_plate(law),
+        None => mass_spring::warning(law),
+    }
+    .into_iter()
+    .collect();
+    all.extend(locking_cells(specimen, models));
     let left_out = specimen.card.viscosity.left_out();
     all.extend(left_out.map(|told| format!("{told}.")));
-    all.extend(idle_loads(specimen, mesh));
-    all.extend(loads_on_points(specimen, mesh));
-    all.extend(moved_points(specimen, mesh));
-    all.extend(several(models));
-    all.extend(overlap(mesh, loads()));
-    let strained = loads().map(|(load, displacement)| StrainedSheet {
-        load,
-        sheet: specimen.sheet(),
-        displacement,
-    });
-    all.extend(strained::warnings(
-        &specimen.card,
-        FINITE_ELEMENTS.name,
-        mesh,
-        &strained.collect::<Vec<_>>(),
-    ));
+    if let Some((_, solution)) = solution {
+        let mesh = &solution.mesh;
+        all.extend(idle_loads(specimen, mesh));
+        all.extend(loads_on_points(specimen, mesh));
+        all.extend(moved_points(specimen, mesh));
+    }
+    all.extend(several(specimen, models));
+    if let Some((name, solution)) = solution {
+        all.extend(overlap(specimen, solution));
+        all.extend(specimen.warnings_of_states(name, solution));
+    }
     all
+}
+
+/// The warning about corrected field and finite elements whose cells lock.
+fn locking_cells(specimen: &Specimen, models: &Models) -> Option<String> {
+    let of_plate = specimen.grids().map(|grids| {
+        let scheme = grids.correction.scheme.side() == 1;
+        let remedy = "Take the scheme \"biquadratic\" for the corrected field";
+        (scheme, remedy)
+    });
+    let corrected = models.of(ModelKind::Corrected);
+    let (locks, remedy) = of_plate.unwrap_or_else(|| {
+        let locks = locking::locks(&corrected.solution.mesh);
+        (locks, locking::SECOND_DEGREE)
+    });
+    let elements = models.of(ModelKind::FiniteElement);
+    let of_elements = locking::locks(&elements.solution.mesh);
+    let both = [
+        (corrected, locks, remedy),
+        (elements, of_elements, locking::SECOND_DEGREE),
+    ];
+    let both = both
+        .into_iter()
+        .filter(|(model, locks, _)| *locks && model.solution.reached() > 0);
+    let named: Vec<_> = both
+        .map(|(model, _, remedy)| (model.style.name, remedy))
+        .collect();
+    locking::warning(&*specimen.problem.law, &named)
+}
+
+impl Specimen {
+    /// What is said of the states of one model: compression, loss of stability, the range of the card.
+    pub(in crate::studies) fn warnings_of_states(
+        &self,
+        model: &str,
+        solution: &Solution,
+    ) -> Vec<String> {
+        let states = solution.states.iter().map(|state| StrainedSheet {
+            load: self.along.describe(state.factor),
+            sheet: self.sheet(),
+            displacement: &state.displacement,
+        });
+        let states: Vec<_> = states.collect();
+        strained::warnings(&self.card, model, &solution.mesh, &states)
+    }
 }
 
 /// How deep in a cell a node of the boundary must lie, in natural coordinates, for the sheet to overlap.
 const OVERLAP: f64 = 0.05;
 
 /// The warning about the first state in which the sheet passes through itself.
-fn overlap<'a>(
-    mesh: &Mesh,
-    mut states: impl Iterator<Item = (String, &'a [f64])>,
-) -> Option<String> {
-    let (load, [x, y]) = states.find_map(|(load, u)| Some((load, mesh.overlap(u, OVERLAP)?)))?;
+fn overlap(specimen: &Specimen, solution: &Solution) -> Option<String> {
+    let mut states = solution.states.iter();
+    let (factor, [x, y]) = states.find_map(|state| {
+        let place = solution.mesh.overlap(&state.displacement, OVERLAP)?;
+        Some((state.factor, place))
+    })?;
+    let load = specimen.along.describe(factor);
     Some(format!(
         "the sheet passes through itself at {load}, near ({}, {}) mm at rest: parts of the boundary have no contact with each other, and the \
          state is impossible where they overlap",
@@ -105,16 +140,16 @@ fn quoted(names: &[&str]) -> Option<String> {
 }
 
 /// The warning about states that may be one of several.
-fn several(models: &Models) -> Option<String> {
-    let named = models.named();
-    let solutions = named.iter().map(|model| (model.name, model.solution));
+fn several(specimen: &Specimen, models: &Models) -> Option<String> {
+    let all = models.all();
+    let solutions = all.iter().map(|model| (model.style.name, model.solution));
     // Finer meshes begin with the states of coarser ones.
     let coarser = models.reference.coarser().iter();
     let solutions = solutions.chain(coarser.map(|own| ("coarser finite elements", own)));
     let states = solutions.flat_map(|(name, solution)| {
-        let found = solution.states.iter();
-        let found = found.filter(|state| is_one_of_several(state));
-        found.map(move |state| format!("{name} at load factor {}", state.factor))
+        let states = solution.states.iter();
+        let several = states.filter(|state| is_one_of_several(state));
+        several.map(move |state| format!("{name} at {}", specimen.along.describe(state.factor)))
     });
     one_of_several(&states.collect::<Vec<_>>())
 }

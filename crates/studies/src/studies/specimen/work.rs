@@ -9,19 +9,19 @@ pub fn blocks(specimen: &Specimen, models: &Models) -> Vec<Block> {
     if specimen.problem.law.softening().is_none() {
         return Vec::new();
     }
-    let named = models.named();
-    let names = named.each_ref().map(|model| model.name);
+    let all = models.all();
+    let names = all.map(|model| model.style.name);
     let row = |(step, factor): (usize, &f64)| {
-        let works = named.iter();
+        let works = all.iter();
         let works = works.map(|model| model.solution.works.get(step).copied().flatten());
-        (factor.to_string(), works.collect())
+        (specimen.along.value(*factor), works.collect())
     };
     let rows = specimen.factors.iter().enumerate().map(row);
-    let mut blocks = work_blocks("load factor [–]", &names, rows).to_vec();
+    let mut blocks = work_blocks(specimen.along.head(), &names, rows).to_vec();
     blocks.push(
         Block::Paragraph(
-            "The material softens at every point according to the largest load there so far (Mullins effect). The load factors follow one another as \
-             the study lists them, and the largest load is updated at these load factors only. Dissipated work is not recovered."
+            "The material softens at every point according to the largest load there so far (Mullins effect). The loads follow one another as the \
+             study lists them, and the largest load is updated at these only. Dissipated work is not recovered."
                 .to_owned(),
         ),
     );

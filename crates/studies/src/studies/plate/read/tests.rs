@@ -1,13 +1,25 @@
 use super::*;
+use crate::budget::Budget;
 use crate::corrector::climb::ClimbSettings;
+use crate::error::Error;
 use crate::solve::NewtonSettings;
+use crate::studies::Loaded;
+use crate::studies::plate::{DEFAULT, load};
 
-fn parse(text: &str) -> Result<Study, Error> {
-    Study::parse("plate", "plate.toml", Path::new("."), text.to_owned())
+fn parse(text: &str) -> Result<Loaded<Specimen>, Error> {
+    load(Path::new("plate.toml"), text, Budget::USUAL)
+}
+
+fn plate(text: &str) -> Specimen {
+    parse(text).unwrap().made
+}
+
+fn grids(text: &str) -> PlateGrids {
+    *plate(text).grids().unwrap()
 }
 
 fn faults(text: &str) -> Vec<String> {
-    match parse(text) {
+    match parse(text).map(|_| ()) {
         Err(Error::Input(faults)) => faults.iter().map(ToString::to_string).collect(),
         other => panic!("accepted: {other:?}"),
     }
@@ -15,31 +27,35 @@ fn faults(text: &str) -> Vec<String> {
 
 #[test]
 fn an_empty_study_is_the_default_one() {
-    let (empty, full) = (parse("").unwrap(), parse(DEFAULT).unwrap());
-    assert_eq!(empty.problem.size, [150.0, 50.0]);
+    let (empty, full) = (plate(""), parse(DEFAULT).unwrap());
     assert_eq!(empty.problem.thickness, 2.0);
-    assert_eq!(empty.problem.stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
-    assert_eq!(empty.cells, [60, 20]);
-    assert_eq!(empty.reference.meshes(), [[21, 12], [42, 24], [84, 48]]);
-    assert_eq!(empty.reference.grading, 2.0);
-    assert_eq!(empty.corrector.grading, 2.0);
-    let gauss = parse("[corrector]\nscheme = \"gauss\"\n").unwrap();
-    assert_eq!(gauss.corrector.grading, 1.5);
-    assert_eq!(empty.output.folder, Path::new("output/plate"));
-    assert_eq!(empty.tolerances, full.tolerances);
-    assert!(full.warnings.is_empty());
+    assert_eq!(empty.factors, [0.15, 0.3, 0.5, 0.75, 1.0]);
+    let PlateGrids {
+        size,
+        cells,
+        correction,
+        elements,
+        ..
+    } = grids("");
+    assert_eq!((size, cells), ([150.0, 50.0], [60, 20]));
+    assert_eq!((elements.cells, elements.grading), ([84, 48], 2.0));
+    assert_eq!(correction.grading, 2.0);
+    let gauss = grids("[corrector]\nscheme = \"gauss\"\n");
+    assert_eq!(gauss.correction.grading, 1.5);
+    assert_eq!(empty.tolerances, full.made.tolerances);
+    assert!(full.warnings.is_empty() && full.output == crate::studies::OutputSettings::default());
 }
 
 #[test]
 fn studies_and_the_library_have_the_same_defaults() {
-    let study = parse("").unwrap();
-    assert_eq!(study.lattice, LatticeSettings::default());
-    assert_eq!(study.mass_spring, NewtonSettings::default());
-    assert_eq!(study.corrector.scheme, DifferenceScheme::default());
-    assert_eq!(study.corrector.climb, Some(ClimbSettings::default()));
-    assert_eq!(study.corrector.direct, CorrectorSettings::default());
-    assert_eq!(study.reference.element, Element::default());
-    assert_eq!(study.reference.newton, NewtonSettings::default());
+    let (study, grids) = (plate(""), grids(""));
+    assert_eq!(grids.lattice, LatticeSettings::default());
+    assert_eq!(study.springs_newton, NewtonSettings::default());
+    assert_eq!(study.elements_newton, NewtonSettings::default());
+    assert_eq!(grids.correction.scheme, DifferenceScheme::default());
+    assert_eq!(grids.correction.climb, Some(ClimbSettings::default()));
+    assert_eq!(grids.correction.direct, CorrectorSettings::default());
+    assert_eq!(grids.elements.element, Element::default());
 }
 
 #[test]
@@ -117,35 +133,27 @@ fn settings_that_contradict_each_other_are_refused() {
 /// Equal cells of the reference that are the lattice's own pairs of cells.
 #[test]
 fn a_plate_that_is_compared_with_itself_is_told_so() {
-    let study = parse("[plate]\ncells = [240, 80]\n").unwrap();
-    assert!(study.reference.cells[1] >= 40 && study.reference.grading > 1.0);
+    let fine = grids("[plate]\ncells = [240, 80]\n").elements;
+    assert!(fine.cells[1] >= 40 && fine.grading > 1.0);
     let own = "[plate]\ncells = [48, 16]\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
     let equal = "[corrector]\ngrading = 1\n";
     let study = parse(&format!("{own}{equal}")).unwrap();
-    assert!(study.is_its_own_reference());
     assert!(study.warnings[0].to_string().contains("own equations"));
+    let is_own_reference = |text: &str| grids(text).is_own_reference();
+    assert!(is_own_reference(&format!("{own}{equal}")));
     let gauss = "[corrector]\ngrading = 1\nscheme = \"gauss\"\n";
-    assert!(
-        !parse(&format!("{own}{gauss}"))
-            .unwrap()
-            .is_its_own_reference()
-    );
+    assert!(!is_own_reference(&format!("{own}{gauss}")));
     let graded = own.replace("grading = 1", "grading = 2");
-    let unlike = format!("{graded}{equal}");
-    assert!(!parse(&unlike).unwrap().is_its_own_reference());
-    assert!(parse(&graded).unwrap().is_its_own_reference());
+    assert!(!is_own_reference(&format!("{graded}{equal}")));
+    assert!(is_own_reference(&graded));
     let q1 = own.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
-    assert!(
-        parse(&format!("{q1}{gauss}"))
-            .unwrap()
-            .is_its_own_reference()
-    );
+    assert!(is_own_reference(&format!("{q1}{gauss}")));
 }
 
 #[test]
 fn compressions_are_a_path_of_their_own() {
-    let study = parse("[load]\nstretches = [\"-5 %\", \"-10 %\"]\n").unwrap();
-    assert_eq!(study.problem.stretches, [-0.05, -0.1]);
+    let study = plate("[load]\nstretches = [\"-5 %\", \"-10 %\"]\n");
+    assert_eq!(study.factors, [-0.05, -0.1]);
 }
 
 #[test]
@@ -169,7 +177,7 @@ fn a_stretch_beyond_the_stability_of_the_law_is_a_warning() {
     let card = format!("{head}c = \"0.1468 MPa\"\nbeta = 0.31\n[data]{rest}");
     std::fs::write(folder.path().join("vw.toml"), card).unwrap();
     let text = "[material]\ncard = \"vw.toml\"\n[load]\nstretches = [0.5, 0.75]\n";
-    let study = Study::parse("plate", "plate.toml", folder.path(), text.to_owned()).unwrap();
+    let study = load(&folder.path().join("plate.toml"), text, Budget::USUAL).unwrap();
     assert_eq!(study.warnings.len(), 1, "{:?}", study.warnings);
     let told = study.warnings[0].to_string();
     assert!(
@@ -179,7 +187,7 @@ fn a_stretch_beyond_the_stability_of_the_law_is_a_warning() {
 }
 
 /// A study of a card that softens, with more text.
-fn softening(more: &str) -> Result<Study, Error> {
+fn softening(more: &str) -> Result<Loaded<Specimen>, Error> {
     let card = crate::material::Card::load("neo-hooke", Path::new("."))
         .unwrap()
         .text;
@@ -199,9 +207,12 @@ fn only_a_material_that_softens_is_unloaded() {
     );
     let direct = "[corrector]\nmethod = \"direct\"\n";
     let study = softening(&format!("{history}{direct}")).unwrap();
-    assert_eq!(study.problem.stretches, [0.3, 0.6, 0.2, 0.6]);
+    assert_eq!(study.made.factors, [0.3, 0.6, 0.2, 0.6]);
+    let unloaded = "[load]\nstretches = [\"30 %\", \"0 %\", \"60 %\"]\n";
+    let study = softening(&format!("{unloaded}{direct}")).unwrap();
+    assert_eq!(study.made.factors, [0.3, 0.0, 0.6]);
     let refused = |text: &str, words: &[&str]| {
-        let fault = softening(text).unwrap_err().to_string();
+        let fault = softening(text).map(|_| ()).unwrap_err().to_string();
         assert!(words.iter().all(|word| fault.contains(word)), "{fault}");
     };
     refused(history, &["corrector.method", "climb", "direct"]);
@@ -233,8 +244,8 @@ fn automatic_finite_elements_are_as_fine_as_can_be_afforded() {
         .collect();
     let many = format!("[load]\nstretches = [{}]\n", stretches.join(", "));
     let fine = "[plate]\ncells = [300, 100]\n";
-    let few = parse(fine).unwrap().reference.cells;
-    let all = parse(&format!("{fine}{many}")).unwrap().reference.cells;
+    let few = grids(fine).elements.cells;
+    let all = grids(&format!("{fine}{many}")).elements.cells;
     assert!(
         few[1] == 160 && all[1] < 100 && all[1] >= 60,
         "{few:?} {all:?}"

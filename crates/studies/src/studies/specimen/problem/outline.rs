@@ -2,9 +2,10 @@
 
 use crate::budget::Need;
 use crate::mesh::{CellShape, Mesh, Misfit, Shape};
-use crate::units::number;
 
 use super::Refinement;
+use super::grids::PlateGrids;
+use super::shape_words::describe;
 
 /// How often the cells of the finite elements are halved: three meshes tell their own error.
 pub const HALVINGS: usize = 2;
@@ -33,6 +34,8 @@ pub enum Outline {
         /// How often the finite elements' cells are halved, up to two times.
         halvings: usize,
     },
+    /// A rectangle between two grips on grids of lines.
+    Grid(PlateGrids),
 }
 
 impl Outline {
@@ -43,7 +46,7 @@ impl Outline {
     pub fn check(&self) -> Result<(), Misfit> {
         match self {
             Self::Shape { shape, .. } => shape.check(),
-            Self::File { .. } => Ok(()),
+            Self::File { .. } | Self::Grid(_) => Ok(()),
         }
     }
 
@@ -52,12 +55,12 @@ impl Outline {
         match self {
             Self::Shape { shape, .. } => shape.mesh(2, CellShape::Quad4),
             Self::File { mesh, .. } => (**mesh).clone(),
+            Self::Grid(grids) => grids.coarse(),
         }
     }
 
     /// What so many states on the finest of the finite elements' meshes will use.
     pub fn need(&self, states: usize, refinement: Option<Refinement>) -> Need {
-        let (Self::Shape { element, .. } | Self::File { element, .. }) = self;
         let cells = match self {
             Self::Shape {
                 shape,
@@ -72,13 +75,14 @@ impl Outline {
             Self::File { mesh, halvings, .. } => {
                 mesh.cell_count() as f64 * 4_f64.powi(*halvings as i32)
             }
+            Self::Grid(grids) => grids.elements.cells.iter().product::<usize>() as f64,
         };
         let cells = refinement.map_or(cells, |goal| {
             let last = self.first_cells().max(goal.most_cells as f64);
             // All cells of the last mesh are halved once more, where these are not too many.
             last.max((4.0 * last).min(Refinement::MOST_HALVED as f64))
         });
-        Need::of_states(2.0 * nodes_per_cell(*element) * cells, states as f64).on_cells(cells)
+        Need::of_states(2.0 * nodes_per_cell(self.element()) * cells, states as f64).on_cells(cells)
     }
 
     /// About how many triangles local refinement begins with on the mesh of a file.
@@ -92,7 +96,15 @@ impl Outline {
                 };
                 halves * mesh.cell_count() as f64
             }
-            Self::Shape { .. } => 0.0,
+            Self::Shape { .. } | Self::Grid(_) => 0.0,
+        }
+    }
+
+    /// The finite element.
+    fn element(&self) -> CellShape {
+        match self {
+            Self::Shape { element, .. } | Self::File { element, .. } => *element,
+            Self::Grid(grids) => grids.elements.element.shape(),
         }
     }
 
@@ -105,7 +117,7 @@ impl Outline {
     pub fn is_complete(&self) -> bool {
         match self {
             Self::Shape { shape, .. } => shape.measures().iter().all(|measure| measure.is_finite()),
-            Self::File { .. } => true,
+            Self::File { .. } | Self::Grid(_) => true,
         }
     }
 
@@ -113,6 +125,10 @@ impl Outline {
     pub fn describe(&self) -> String {
         match self {
             Self::Shape { shape, .. } => describe(*shape),
+            Self::Grid(PlateGrids {
+                size: [length, width],
+                ..
+            }) => format!("a plate of {length} × {width} mm"),
             Self::File { mesh, .. } => {
                 let [low, high] = mesh.bounding_box();
                 let size = (high[0] - low[0]).max(high[1] - low[1]);
@@ -136,12 +152,16 @@ impl Outline {
             } => shape.mesh(*cells, *lattice),
             Self::File { mesh, .. } if mesh.degree() == 1 => (**mesh).clone(),
             Self::File { mesh, .. } => mesh.refined().linear(),
+            Self::Grid(grids) => grids.lattice(),
         }
     }
 
-    /// The mesh of the corrected field: the finite elements with about as many nodes as the lattice.
+    /// The mesh of the corrected field: the finite elements with about as many nodes as the lattice, or a grid with as many cells.
     pub fn corrected_mesh(&self) -> Mesh {
-        self.reference_mesh(0)
+        match self {
+            Self::Shape { .. } | Self::File { .. } => self.reference_mesh(0),
+            Self::Grid(grids) => grids.corrected_mesh(),
+        }
     }
 
     /// The mesh of the corrected field after coarser ones of the same shape, each with half the cells across; that of a file is alone.
@@ -181,6 +201,7 @@ impl Outline {
                 let refined = (0..level).fold((**mesh).clone(), |mesh, _| mesh.refined());
                 self.elements_on(&refined)
             }
+            Self::Grid(grids) => grids.elements.mesh(grids.size, level),
         }
     }
 
@@ -198,7 +219,7 @@ impl Outline {
     /// How often the cells of the finite elements are halved.
     pub fn halvings(&self) -> usize {
         match self {
-            Self::Shape { .. } => HALVINGS,
+            Self::Shape { .. } | Self::Grid(_) => HALVINGS,
             Self::File { halvings, .. } => *halvings,
         }
     }
@@ -238,13 +259,13 @@ impl Outline {
         match self {
             Self::Shape { shape, cells, .. } => shape.mesh(*cells / 2, CellShape::Triangle3),
             Self::File { mesh, .. } => mesh.triangulated(),
+            Self::Grid(grids) => grids.lattice().triangulated(),
         }
     }
 
     /// The mesh of the study's elements on some cells.
     pub fn elements_on(&self, cells: &Mesh) -> Mesh {
-        let (Self::Shape { element, .. } | Self::File { element, .. }) = self;
-        match (element.degree(), cells.degree()) {
+        match (self.element().degree(), cells.degree()) {
             (1, 1) => cells.clone(),
             (1, _) => cells.linear(),
             _ => self.fitted(cells.quadratic()),
@@ -286,45 +307,6 @@ fn nodes_per_cell(shape: CellShape) -> f64 {
         CellShape::Triangle6 => 2.0,
         CellShape::Quad8 => 3.0,
         CellShape::Quad9 => 4.0,
-    }
-}
-
-/// A shape with its measures in words.
-fn describe(shape: Shape) -> String {
-    match shape {
-        Shape::Strip {
-            size: [length, width],
-        } => format!("a strip of {length} × {width} mm"),
-        Shape::StripWithHole {
-            size: [length, width],
-            radius,
-        } => format!(
-            "a strip of {length} × {width} mm with a hole of {} mm diameter in its middle",
-            2.0 * radius
-        ),
-        Shape::NotchedStrip {
-            size: [length, width],
-            depth,
-            half_length,
-        } => format!(
-            "a strip of {length} × {width} mm with two notches of {depth} mm depth and {} mm length",
-            2.0 * half_length
-        ),
-        Shape::DogBone {
-            size: [length, width],
-            narrow,
-            shoulder,
-        } => format!(
-            "a dumb-bell of {length} × {width} mm with a narrow part of {} × {} mm and shoulders of {shoulder} mm length",
-            narrow[0], narrow[1]
-        ),
-        Shape::RingSector {
-            radii: [inner, outer],
-            angle,
-        } => format!(
-            "a sector of {}° of a ring with radii of {inner} and {outer} mm",
-            number(angle.to_degrees())
-        ),
     }
 }
 

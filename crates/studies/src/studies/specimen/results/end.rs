@@ -36,7 +36,7 @@ impl End {
         let state = end.last.as_deref().or(end.states.last());
         Self {
             model: model.name.clone(),
-            step: end.describe(),
+            step: specimen.along.describe_end(end),
             fault: end.fault.clone(),
             last: state.map(|state| Last {
                 file: format!("{file}_end"),
@@ -56,11 +56,11 @@ impl End {
         }
     }
 
-    /// An end at a load factor that has no way to it.
-    pub fn at(model: &str, factor: f64, fault: SolveFault) -> Self {
+    /// An end of the corrected field at a load factor that has no way to it.
+    pub fn at(specimen: &Specimen, factor: f64, fault: SolveFault) -> Self {
         Self {
-            model: model.to_owned(),
-            step: format!("load factor {factor}"),
+            model: "corrector".to_owned(),
+            step: specimen.along.describe(factor),
             fault,
             last: None,
         }
@@ -105,7 +105,7 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
         };
         rows.push(vec![
             end.model,
-            format!("{:.4}", last.state.factor),
+            format!("{:.4}", specimen.along.coordinate(last.state.factor)),
             end.fault.to_string(),
             decimals(measured.of(&last.groups), 5),
             file,
@@ -118,12 +118,12 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
         }
     }
     if !rows.is_empty() {
-        let text = "Paths that ended early: the last equilibrium of each, at the largest load factor reached. An equilibrium between the study's \
-                    load factors has a file of its own. The other models continued.";
+        let text = "Paths that ended early: the last equilibrium of each, at the largest load reached. An equilibrium between the study's loads has \
+                    a file of its own. The other models continued.";
         let what = format!("{} [{}]", measured.describe(), measured.unit());
         let head = [
             "model",
-            "load factor reached [–]",
+            &format!("reached: {}", specimen.along.head()),
             "why it ended",
             &what,
             "file",

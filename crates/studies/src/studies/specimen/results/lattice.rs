@@ -1,9 +1,11 @@
 //! Springs on the lattice of a specimen and their correction, each as far as its path goes.
 
 use super::end::End;
+use super::on_grids;
+use crate::corrector::climb::Way;
 use crate::corrector::nested::{NestedCorrection, NestedMeshes};
 use crate::corrector::specimen::{correct, correct_without_multipliers};
-use crate::corrector::{CorrectorSettings, Solver};
+use crate::corrector::{CorrectorSettings, Multipliers, Solver};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
@@ -11,13 +13,8 @@ use crate::problem::{Model, Solution};
 use crate::results::models::{CORRECTED, MASS_SPRING};
 use crate::solve::vector::difference;
 use crate::solve::{Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
-use crate::studies::Progress;
-use crate::studies::specimen::problem::{LARGE, Specimen};
-
-const NEWTON: NewtonSettings = NewtonSettings {
-    tolerance: 1e-10,
-    max_iterations: 60,
-};
+use crate::studies::specimen::problem::{LARGE, NEWTON, Specimen};
+use crate::studies::{ModelKind, Progress};
 
 const CORRECTOR: CorrectorSettings = CorrectorSettings {
     tolerance: 1e-10,
@@ -31,6 +28,10 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
 pub enum Start {
     /// At springs on a coarser mesh.
     Nested,
+    /// On grids of a plate, as its study says.
+    Grids,
+    /// The same where the springs have no field: ū is the affine stretch.
+    GridsAlone,
     /// At the springs' field, with what the correction had changed at the load factor before.
     Springs,
     /// At the equilibrium of the elements, which Newton's method reached from rest in load steps; ū is the
@@ -52,6 +53,10 @@ pub struct OnLattice {
     pub starts: Vec<Start>,
     /// The discretisation errors in mm of those that began at springs on a coarser mesh.
     pub discretisation_errors: Vec<f64>,
+    /// The multipliers at each load factor, condition after condition; none where they were not computed.
+    pub multipliers: Vec<Vec<Multipliers>>,
+    /// How a climb came to each field; empty where none climbed.
+    pub climbs: Vec<Way>,
 }
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
@@ -61,20 +66,20 @@ pub fn solve(
     model: &Model,
     file: &str,
     ends: &mut Vec<End>,
+    settings: NewtonSettings,
     progress: Progress,
 ) -> Solution {
-    let told = |factor: f64| progress.tell(&format!("{}, load factor {factor} solved", model.name));
+    let along = specimen.along;
+    let told = |factor: f64| progress.tell(&format!("{}, {}", model.name, along.describe(factor)));
     let on_the_way = |factor: f64| {
-        progress.tell(&format!(
-            "{}, load factor {factor:.4}, one of many short steps",
-            model.name
-        ));
+        let at = along.describe((1e4 * factor).round() / 1e4);
+        progress.tell(&format!("{}, {at}, one of many short steps", model.name));
     };
     let attendance = Attendance {
         on_the_way: &on_the_way,
         ..progress.along(&told)
     };
-    let states = model.attended(&specimen.factors, NEWTON, attendance);
+    let states = model.attended(&specimen.factors, settings, attendance);
     let states = states.unwrap_or_else(|end| {
         ends.push(End::of_path(specimen, model, file, &end));
         end.states
@@ -82,43 +87,51 @@ pub fn solve(
     Solution::new(model, &specimen.groups(), states)
 }
 
-/// The springs on the lattice, as far as they go.
+/// The springs on the lattice, as far as they go; without solutions where the study leaves them out.
 pub fn solve_springs(
     specimen: &Specimen,
     ends: &mut Vec<End>,
     progress: Progress,
 ) -> Result<(MassSpring, Solution), Error> {
-    let problem = &specimen.problem;
+    let springs = specimen.springs();
+    if !specimen.computes(ModelKind::MassSpring) {
+        let none = Solution::empty(springs.mesh.clone());
+        return Ok((springs, none));
+    }
     progress.tell(MASS_SPRING.name);
-    let lattice = specimen.outline.lattice();
-    let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
     let model = specimen.on(&springs.mesh, springs.potential())?;
     let model = model.named(MASS_SPRING.name);
     let model = model.describing(|element| springs.describe_element(element));
-    let uncorrected = solve(specimen, &model, MASS_SPRING.key, ends, progress);
+    let settings = specimen.springs_newton;
+    let uncorrected = solve(specimen, &model, MASS_SPRING.key, ends, settings, progress);
     drop(model);
     Ok((springs, uncorrected))
 }
 
 impl OnLattice {
-    /// Solves the springs and corrects them; each goes as far as it can, whatever the other does.
+    /// Solves the springs and corrects them, as the study wants; each goes as far as it can, whatever the other does.
     pub fn solve(
         specimen: &Specimen,
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
         let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
-        progress.tell("corrector");
         let mesh = specimen.outline.corrected_mesh();
+        if !specimen.computes(ModelKind::Corrected) {
+            return Ok(Self {
+                springs,
+                uncorrected,
+                corrected: Solution::empty(mesh),
+                starts: Vec::new(),
+                discretisation_errors: Vec::new(),
+                multipliers: Vec::new(),
+                climbs: Vec::new(),
+            });
+        }
+        progress.tell("corrector");
         let nested = correct_nested(specimen, &mesh, progress)?;
-        Self::correct(
-            specimen,
-            &mesh,
-            (springs, uncorrected),
-            nested,
-            ends,
-            progress,
-        )
+        let springs = (springs, uncorrected);
+        Self::correct(specimen, &mesh, springs, nested, ends, progress)
     }
 
     /// Corrects the springs where nested meshes do not lead.
@@ -130,24 +143,58 @@ impl OnLattice {
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        let energy = specimen.problem.finite_elements(mesh);
+        let energy = specimen.corrected_energy(mesh);
         let model = specimen.on(mesh, &energy)?.named("corrector");
-        let (states, discretisation_errors) = nested
+        let (states, discretisation_errors): (Vec<State>, _) = nested
             .into_iter()
             .map(|field| (field.state, field.discretisation_error))
             .unzip();
-        let corrections = Corrections::new(specimen, &model, progress);
-        let (states, starts) = corrections.all(&uncorrected, states, ends);
-        let corrected = Solution::new(&model, &specimen.groups(), states);
+        let mut fields = Fields {
+            starts: vec![Start::Nested; states.len()],
+            multipliers: vec![Vec::new(); states.len()],
+            states,
+            climbs: Vec::new(),
+        };
+        match specimen.grids() {
+            Some(grids) => {
+                on_grids::correct(
+                    specimen,
+                    grids,
+                    mesh,
+                    &uncorrected,
+                    &mut fields,
+                    ends,
+                    progress,
+                );
+            }
+            None => {
+                Corrections::new(specimen, &model, progress).all(&uncorrected, &mut fields, ends)
+            }
+        }
+        let corrected = Solution::new(&model, &specimen.groups(), fields.states);
         drop(model);
         Ok(Self {
             springs,
             uncorrected,
             corrected,
-            starts,
+            starts: fields.starts,
             discretisation_errors,
+            multipliers: fields.multipliers,
+            climbs: fields.climbs,
         })
     }
+}
+
+/// The corrected fields of a path, and how each was reached.
+pub struct Fields {
+    /// The states.
+    pub states: Vec<State>,
+    /// Where the corrector began.
+    pub starts: Vec<Start>,
+    /// The multipliers, condition after condition.
+    pub multipliers: Vec<Vec<Multipliers>>,
+    /// How a climb came to them.
+    pub climbs: Vec<Way>,
 }
 
 /// The corrections on nested meshes at the load factors, as far as they lead; none where the study has no such meshes.
@@ -169,31 +216,35 @@ fn correct_nested(
             Err(Error::Solve { .. }) => break,
             Err(other) => return Err(other),
         }
-        progress.tell(&format!("corrector, load factor {factor} solved"));
+        progress.tell(&format!("corrector, {}", specimen.along.describe(*factor)));
     }
     Ok(fields)
 }
 
-/// The corrected field alone: on nested meshes the lattice's own springs are not needed.
+/// The corrected field alone, with its multipliers: on nested meshes the lattice's own springs are not needed.
 pub fn solve_corrected(
     specimen: &Specimen,
     ends: &mut Vec<End>,
     progress: Progress,
-) -> Result<Solution, Error> {
+) -> Result<(Solution, Vec<Vec<Multipliers>>), Error> {
     progress.tell("corrector");
     let mesh = specimen.outline.corrected_mesh();
     let nested = correct_nested(specimen, &mesh, progress)?;
     if nested.len() == specimen.factors.len() {
-        let energy = specimen.problem.finite_elements(&mesh);
+        let energy = specimen.corrected_energy(&mesh);
         let model = specimen.on(&mesh, &energy)?;
-        let states = nested.into_iter().map(|field| field.state);
-        return Ok(Solution::new(&model, &specimen.groups(), states.collect()));
+        let states: Vec<State> = nested.into_iter().map(|field| field.state).collect();
+        let multipliers = vec![Vec::new(); states.len()];
+        return Ok((
+            Solution::new(&model, &specimen.groups(), states),
+            multipliers,
+        ));
     }
     let springs = solve_springs(specimen, ends, progress)?;
     let found = OnLattice::correct(specimen, &mesh, springs, nested, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of(MASS_SPRING.name));
-    Ok(found.corrected)
+    Ok((found.corrected, found.multipliers))
 }
 
 /// The corrections at all load factors.
@@ -215,32 +266,28 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// Corrects as many load factors as can be, beyond the states that nested meshes have led to.
-    fn all(
-        mut self,
-        uncorrected: &Solution,
-        mut states: Vec<State>,
-        ends: &mut Vec<End>,
-    ) -> (Vec<State>, Vec<Start>) {
-        let mut starts = vec![Start::Nested; states.len()];
+    /// Corrects as many load factors as can be, beyond the fields that nested meshes have led to.
+    fn all(mut self, uncorrected: &Solution, fields: &mut Fields, ends: &mut Vec<End>) {
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         let onto_mesh = uncorrected.mesh.interpolation_on(self.model.mesh);
         let factors = self.specimen.factors.iter().enumerate();
-        for (step, factor) in factors.skip(starts.len()) {
+        for (step, factor) in factors.skip(fields.states.len()) {
             let springs = uncorrected.displacement(step);
             let springs = springs.map(|u| onto_mesh.apply(u));
             let springs = springs.as_deref();
-            let history = states.last().map(|before| self.model.remembered(before));
+            let history = fields.states.last();
+            let history = history.map(|before| self.model.remembered(before));
             let history = history.unwrap_or_default();
             let (factor, history) = (*factor, &*history);
             let stage = Stage { factor, history };
             match self.at(step, stage, springs, &change) {
-                Ok((state, start)) => {
+                Ok(((state, multipliers), start)) => {
                     if let Some(data) = springs {
                         change = difference(&state.displacement, data);
                     }
-                    states.push(state);
-                    starts.push(start);
+                    fields.states.push(state);
+                    fields.multipliers.push(multipliers);
+                    fields.starts.push(start);
                 }
                 Err(end) => {
                     ends.push(*end);
@@ -248,7 +295,6 @@ impl<'a> Corrections<'a> {
                 }
             }
         }
-        (states, starts)
     }
 
     /// Corrects the springs' field at a load factor; where there is none, or no way from it, load steps lead there.
@@ -258,7 +304,7 @@ impl<'a> Corrections<'a> {
         stage: Stage<'_>,
         springs: Option<&[f64]>,
         change: &[f64],
-    ) -> Result<(State, Start), Box<End>> {
+    ) -> Result<(Corrected, Start), Box<End>> {
         if let Some(data) = springs {
             // What the correction has changed at the load factor before is nearly right at this one.
             let near: Vec<f64> = data
@@ -288,17 +334,22 @@ impl<'a> Corrections<'a> {
         let (reached, snaps) = (reached.displacement.clone(), reached.convergence.snaps);
         let start = springs.map_or(Start::Alone, |_| Start::LoadSteps);
         let found = self.correct(springs.unwrap_or(&reached), &reached, stage);
-        let found = found.map_err(|fault| Box::new(End::at(&model.name, stage.factor, fault)));
-        found.map(|mut field| {
+        let found = found.map_err(|fault| Box::new(End::at(specimen, stage.factor, fault)));
+        found.map(|(mut field, multipliers)| {
             field.convergence.snaps = snaps;
-            (field, start)
+            ((field, multipliers), start)
         })
     }
 
-    fn correct(&self, data: &[f64], start: &[f64], stage: Stage) -> Result<State, SolveFault> {
+    fn correct(&self, data: &[f64], start: &[f64], stage: Stage) -> Result<Corrected, SolveFault> {
         if data.len() >= LARGE {
-            return correct_without_multipliers(self.model, start, stage, NEWTON);
+            let field = correct_without_multipliers(self.model, start, stage, NEWTON)?;
+            return Ok((field, Vec::new()));
         }
-        Ok(correct(self.model, data, start, stage, CORRECTOR)?.state)
+        let field = correct(self.model, data, start, stage, CORRECTOR)?;
+        Ok((field.state, field.correction.multipliers))
     }
 }
+
+/// A corrected field with its multipliers, condition after condition.
+type Corrected = (State, Vec<Multipliers>);

@@ -1,34 +1,41 @@
 //! The three models of a specimen.
 
+use web_time::Instant;
+
 use super::end::End;
 use super::lattice::OnLattice;
 use super::reference::Reference;
 use crate::error::Error;
 use crate::problem::Solution;
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
-use crate::studies::Progress;
+use crate::results::models::ModelStyle;
 use crate::studies::specimen::problem::Specimen;
+use crate::studies::{ModelKind, Progress};
 
-/// The three models of a specimen, each as far as its path goes.
+/// The three models of a specimen, each as far as its path goes; those that the study leaves out have no states.
 pub struct Models {
     /// The finite elements.
     pub reference: Reference,
     /// Springs and corrected springs.
     pub on_lattice: OnLattice,
+    /// The finite elements' displacements at the nodes of springs and corrected field, at the load factors that they reach.
+    expected: [Vec<Vec<f64>>; 2],
+    /// Wall-clock times: what was computed, and seconds.
+    pub times: Vec<(String, f64)>,
 }
 
-/// A model's solution with its names for people and for files.
-pub struct NamedSolution<'a> {
-    /// For people.
-    pub name: &'static str,
-    /// What its files begin with, and its key in reports for machines.
-    pub file: &'static str,
-    /// The solution.
+/// The equilibria of one model along the path of a study.
+#[derive(Clone, Copy)]
+pub struct ModelSeries<'a> {
+    /// Which model it is.
+    pub kind: ModelKind,
+    /// Its name and colour.
+    pub style: ModelStyle,
+    /// Its states, as far as its path goes.
     pub solution: &'a Solution,
 }
 
 impl Models {
-    /// Solves them all, each as far as its path goes.
+    /// Solves those that the study wants, each as far as its path goes.
     ///
     /// # Errors
     /// [`Error::Input`] when a group of a mesh cannot be held or loaded as the study says.
@@ -37,32 +44,96 @@ impl Models {
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        progress.tell(FINITE_ELEMENTS.name);
-        let reference = Reference::solve(specimen, ends, progress)?;
+        let start = Instant::now();
+        let reference = specimen.computes(ModelKind::FiniteElement);
+        let reference = reference.then(|| Reference::solve(specimen, ends, progress));
+        let reference = reference.transpose()?;
+        let elements = start.elapsed().as_secs_f64();
         let on_lattice = OnLattice::solve(specimen, ends, progress)?;
+        let all = start.elapsed().as_secs_f64();
+        let reference = reference.unwrap_or_else(|| Reference::left_out(specimen, &on_lattice));
         Ok(Self {
+            expected: expected(&reference, &on_lattice),
             reference,
             on_lattice,
+            times: vec![
+                (
+                    "finite elements on all meshes, with their error".into(),
+                    elements,
+                ),
+                ("springs and corrector".into(), all - elements),
+            ],
         })
     }
 
+    /// The same with finer finite elements.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a group of a mesh cannot be held or loaded as the study says.
+    pub fn with_finer_elements(
+        self,
+        specimen: &Specimen,
+        ends: &mut Vec<End>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
+        let reference = self.reference.finer(specimen, ends, progress)?;
+        Ok(Self {
+            expected: expected(&reference, &self.on_lattice),
+            reference,
+            ..self
+        })
+    }
+
+    /// A model.
+    pub fn of(&self, kind: ModelKind) -> ModelSeries<'_> {
+        ModelSeries {
+            kind,
+            style: kind.style(),
+            solution: match kind {
+                ModelKind::MassSpring => &self.on_lattice.uncorrected,
+                ModelKind::Corrected => &self.on_lattice.corrected,
+                ModelKind::FiniteElement => &self.reference.finest,
+            },
+        }
+    }
+
     /// Springs, corrected springs, finite elements.
-    pub fn named(&self) -> [NamedSolution<'_>; 3] {
-        let named = |style: ModelStyle, solution| NamedSolution {
-            name: style.name,
-            file: style.key,
-            solution,
-        };
-        [
-            named(MASS_SPRING, &self.on_lattice.uncorrected),
-            named(CORRECTED, &self.on_lattice.corrected),
-            named(FINITE_ELEMENTS, &self.reference.finest),
-        ]
+    pub fn all(&self) -> [ModelSeries<'_>; 3] {
+        ModelKind::ALL.map(|kind| self.of(kind))
+    }
+
+    /// The model that is nearest to the truth: the finite elements, or else the corrected field or the springs; `None` where none has
+    /// reached a load factor.
+    pub fn best(&self) -> Option<ModelSeries<'_>> {
+        let all = self.all().into_iter().rev();
+        all.into_iter().find(|model| model.solution.reached() > 0)
     }
 
     /// How many load factors at least one model has reached.
     pub fn reached(&self) -> usize {
-        let reached = self.named().map(|model| model.solution.reached());
+        let reached = self.all().map(|model| model.solution.reached());
         reached.into_iter().max().unwrap_or(0)
     }
+
+    /// The finite elements' displacement at the nodes of springs or corrected field, at the load factor of a number; `None` where they
+    /// have none.
+    pub fn expected(&self, kind: ModelKind, step: usize) -> Option<&[f64]> {
+        let of_model = match kind {
+            ModelKind::MassSpring => &self.expected[0],
+            ModelKind::Corrected => &self.expected[1],
+            ModelKind::FiniteElement => return None,
+        };
+        of_model.get(step).map(Vec::as_slice)
+    }
+}
+
+fn expected(reference: &Reference, on_lattice: &OnLattice) -> [Vec<Vec<f64>>; 2] {
+    let finest = &reference.finest;
+    [&on_lattice.uncorrected.mesh, &on_lattice.corrected.mesh].map(|mesh| {
+        let onto_mesh = finest.mesh.interpolation_on(mesh);
+        let states = finest.states.iter();
+        states
+            .map(|state| onto_mesh.apply(&state.displacement))
+            .collect()
+    })
 }

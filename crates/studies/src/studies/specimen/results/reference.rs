@@ -1,5 +1,6 @@
 //! The finite elements that a specimen's other models are held to, and their own error.
 
+use super::lattice::OnLattice;
 use super::measured::Measured;
 use crate::compare::judgement::Judgement;
 use crate::compare::percent_at_all_nodes;
@@ -23,6 +24,8 @@ pub struct Reference {
     pub estimates: Vec<Option<ErrorEstimate>>,
     /// Up to two coarser meshes, from coarse to fine.
     pub(super) coarser: Vec<Solution>,
+    /// Whether the meshes are a plate's grids, whose grading towards the corners lets three of them show the order that they have.
+    pub(super) on_grids: bool,
     /// The rounds of local refinement; none where the meshes are halved.
     pub(super) rounds: Vec<Round>,
     /// Of local refinement with all cells of the last mesh halved, where these are not too many.
@@ -56,6 +59,29 @@ pub struct Round {
 }
 
 impl Reference {
+    /// No finite elements, of a study that leaves them out: what is measured follows from the other models.
+    pub fn left_out(specimen: &Specimen, on_lattice: &OnLattice) -> Self {
+        let models = [&on_lattice.corrected, &on_lattice.uncorrected];
+        let solved = models
+            .into_iter()
+            .find_map(|solution| Some((&solution.mesh, solution.last_groups()?)));
+        Self {
+            finest: Solution::empty(specimen.outline.coarse()),
+            measured: match solved {
+                Some((mesh, groups)) => specimen.measured(mesh, groups),
+                None => specimen.measured_at_rest(),
+            },
+            estimates: Vec::new(),
+            coarser: Vec::new(),
+            on_grids: specimen.grids().is_some(),
+            rounds: Vec::new(),
+            all_halved: None,
+            outline: None,
+            displacement: Vec::new(),
+            of_all_nodes: Vec::new(),
+        }
+    }
+
     /// The solutions on coarser meshes, from coarse to fine.
     pub fn coarser(&self) -> &[Solution] {
         &self.coarser
@@ -106,6 +132,9 @@ impl Reference {
             return "the mesh with all cells halved, by which it is judged, has no solution at some load factor: take a larger \
                     `finite_element.error`, or load factors that are closer together";
         }
+        if specimen.grids().is_some() {
+            return "take finer `finite_element.cells`, or a `finite_element.grading` near 2";
+        }
         let quadratic = self.finest.mesh.shape(0).degree() == 2;
         match (self.rounds.is_empty(), quadratic) {
             (true, false) => "take finite elements of the second degree, such as \"Q2\"",
@@ -118,9 +147,13 @@ impl Reference {
     }
 
     /// The own error of what is measured at a load factor in %: the larger of those by three meshes, whose differences may be small by
-    /// chance, and by recovery, with that of a file's outline; `None` where it is not known.
+    /// chance, and by recovery, with that of a file's outline; on a plate's grids by three meshes alone where they converge. `None` where it
+    /// is not known.
     pub fn measured_percent(&self, step: usize) -> Option<f64> {
         let by_meshes = self.three_meshes_percent(step);
+        if self.on_grids && self.converge(step) {
+            return by_meshes;
+        }
         let known = by_meshes.into_iter().chain(self.recovered_percent(step));
         let own = known.reduce(larger)?;
         match self.outline {
@@ -186,6 +219,18 @@ impl Reference {
         let found = richardson([coarse, middle, fine]);
         let last = 100.0 * ((fine - middle) / found.extrapolated).abs();
         Some(self.beside_corners(found.error_percent, last))
+    }
+
+    /// Whether three meshes show an order at a load factor.
+    fn converge(&self, step: usize) -> bool {
+        let [coarse, middle] = &self.coarser[..] else {
+            return false;
+        };
+        let all = [coarse, middle, &self.finest].map(|own| self.measured.at(own, step));
+        let [Some(coarse), Some(middle), Some(fine)] = all else {
+            return false;
+        };
+        richardson([coarse, middle, fine]).order.is_some()
     }
 
     /// An error by the distance of the two finest meshes, which re-entrant corners of the finest one let fall slowly, however the coarse
@@ -292,6 +337,9 @@ impl Reference {
     /// How many times larger recovery tells the error of what is measured than three meshes do, 1 at least: coarse cells tell too high an order
     /// where a support ends within an edge, of the displacement as of the force.
     fn unseen(&self, step: usize) -> f64 {
+        if self.on_grids && self.converge(step) {
+            return 1.0;
+        }
         let pair = self
             .recovered_percent(step)
             .zip(self.three_meshes_percent(step));

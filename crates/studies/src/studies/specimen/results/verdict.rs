@@ -1,30 +1,140 @@
 //! What a specimen's study requires, judged by finite elements with an error of their own.
 
-use super::models::Models;
+use super::models::{ModelSeries, Models};
+use crate::compare::area_weighted_percent;
 use crate::compare::judgement::{Judgement, judge, judge_correction};
+use crate::mesh::{Mesh, NodalField};
+use crate::problem::Solution;
 use crate::results::{Check, Wanted};
 use crate::statistics::larger;
-use crate::studies::specimen::problem::Specimen;
+use crate::studies::ModelKind;
+use crate::studies::specimen::problem::{Outline, Specimen};
 
-/// The deviations of one load factor at which the corrected field and the finite elements both exist, in %.
+/// How far a field is from the finite elements at a load factor, in %.
+#[derive(Clone, Copy, Debug)]
+pub struct Distance {
+    /// Of the displacement in relative L2, weighted by area.
+    pub displacement: f64,
+    /// The departure of the finite elements from the affine stretch over their displacement, ‖v − a‖/‖v‖; `None` where the specimen is
+    /// no plate.
+    pub departure_share: Option<f64>,
+    /// Of what is measured, with its sign.
+    pub measured: f64,
+    /// The largest distance of a node in mm.
+    pub largest: f64,
+}
+
+/// The deviations of one load factor at which the corrected field and the finite elements both exist.
 #[derive(Clone, Copy, Debug)]
 pub struct Deviation {
-    /// Of the springs' displacement and of what is measured, where they reached the load factor.
-    pub springs: Option<[f64; 2]>,
-    /// Of the corrected displacement, and of what is measured, with its sign.
-    pub corrected: [f64; 2],
-    /// The finite elements' own errors of both; not a number where they are not known.
-    pub own: [f64; 2],
+    /// Of the springs, where they reached the load factor.
+    pub springs: Option<Distance>,
+    /// Of the corrected field.
+    pub corrected: Distance,
+    /// The finite elements' own errors of displacement, departure and what is measured in %; not a number where they are not known.
+    pub own: [f64; 3],
     /// Whether what is measured is none, of the corrected field and of the finite elements.
     pub measures_none: bool,
+}
+
+/// The quantities that are judged.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Judged {
+    Displacement,
+    Departure,
+    Measured,
+}
+
+impl Distance {
+    /// The distance relative to the departure of the finite elements from the affine stretch; `None` where the specimen is no plate.
+    pub fn departure(&self) -> Option<f64> {
+        let share = self.departure_share?;
+        Some(if self.displacement == 0.0 {
+            0.0
+        } else {
+            self.displacement / share
+        })
+    }
+
+    fn size(&self, judged: Judged) -> f64 {
+        match judged {
+            Judged::Displacement => self.displacement,
+            Judged::Departure => self.departure().unwrap_or(f64::NAN),
+            Judged::Measured => self.measured.abs(),
+        }
+    }
 }
 
 impl Deviation {
     /// 100 (1 − e_corrected/e_mass-spring) of the displacement, in %.
     pub fn correction_percent(&self) -> Option<f64> {
-        let [springs, _] = self.springs?;
-        Some(100.0 * (1.0 - self.corrected[0] / springs))
+        Some(100.0 * (1.0 - self.corrected.displacement / self.springs?.displacement))
     }
+}
+
+/// The deviation of a model from the finite elements at the load factor of a number; `None` where one of them has not reached it.
+pub fn distance(
+    specimen: &Specimen,
+    models: &Models,
+    model: ModelSeries,
+    step: usize,
+) -> Option<Distance> {
+    let (what, finest) = (&models.reference.measured, &models.reference.finest);
+    let expected = models.expected(model.kind, step)?;
+    let Solution { mesh, states, .. } = model.solution;
+    let field = &states.get(step)?.displacement;
+    let displacement = area_weighted_percent(mesh, field, expected);
+    let [value, measured] = [model.solution, finest].map(|solved| what.at(solved, step));
+    let (value, measured) = (value?, measured?);
+    let measured = match what.none_of(finest, step) {
+        Some(_) if what.none_of(model.solution, step).is_some() => 0.0,
+        Some(all) => 100.0 * (value - measured) / all,
+        None if value == measured => 0.0,
+        None => 100.0 * (value / measured - 1.0),
+    };
+    Some(Distance {
+        displacement,
+        departure_share: departure_share(specimen, mesh, specimen.factors[step], expected),
+        measured,
+        largest: field.largest_distance(expected).0,
+    })
+}
+
+/// The departure of a plate's field from the affine stretch relative to the field, ‖v − a‖/‖v‖.
+fn departure_share(specimen: &Specimen, mesh: &Mesh, factor: f64, field: &[f64]) -> Option<f64> {
+    let affine = specimen.clamped_plate()?.affine(mesh, factor);
+    Some(area_weighted_percent(mesh, &affine, field) / 100.0)
+}
+
+/// The deviations at each load factor, where there is a corrected field.
+pub fn deviations(specimen: &Specimen, models: &Models) -> Vec<Option<Deviation>> {
+    let deviation = |step: usize| {
+        let of = |kind| distance(specimen, models, models.of(kind), step);
+        let corrected = of(ModelKind::Corrected)?;
+        let reference = &models.reference;
+        let displacement = reference.displacement_percent(step).unwrap_or(f64::NAN);
+        let share = corrected.departure_share.unwrap_or(f64::NAN);
+        let is_none = |solved| reference.measured.none_of(solved, step).is_some();
+        Some(Deviation {
+            springs: of(ModelKind::MassSpring),
+            corrected,
+            own: [
+                displacement,
+                displacement / share,
+                reference.measured_percent(step).unwrap_or(f64::NAN),
+            ],
+            measures_none: is_none(&reference.finest)
+                && is_none(models.of(ModelKind::Corrected).solution),
+        })
+    };
+    (0..specimen.factors.len()).map(deviation).collect()
+}
+
+/// Whether the finite elements are too coarse for something that they have to judge.
+pub fn is_open(specimen: &Specimen, models: &Models) -> bool {
+    let judged: Vec<_> = deviations(specimen, models).into_iter().flatten().collect();
+    let open = |check: &Check| matches!(check.judgement(), Judgement::CannotBeJudged { .. });
+    checks(specimen, models, &judged).iter().any(open)
 }
 
 /// A deviation and the finite elements' own error, of all load factors together.
@@ -61,56 +171,81 @@ const SOURCE: &str = "the study's tolerance";
 /// Why what is measured needs no comparison.
 const NOTHING: &str = "nothing to compare: both are zero relative to the forces on single nodes, or to the largest displacement";
 
+/// Why finite elements that are the corrected field's own equations judge nothing.
+fn own_reference() -> Judgement {
+    Judgement::CannotBeJudged {
+        reason: "the finite elements solve the corrected field's own equations on the same nodes"
+            .into(),
+        remedy: "take finer `finite_element.cells`".into(),
+    }
+}
+
 fn deviation_checks(
     specimen: &Specimen,
     models: &Models,
     deviations: &[Deviation],
     remedy: &str,
-) -> [Check; 2] {
+) -> Vec<Check> {
     let limits = specimen.tolerances;
     let what = models.reference.measured.name();
-    let named = [
-        ("displacement", limits.displacement_percent),
-        (what, limits.force_percent),
+    let judged = [
+        (
+            Judged::Displacement,
+            "displacement",
+            Some(limits.displacement_percent),
+        ),
+        (Judged::Departure, "departure", limits.departure_percent),
+        (Judged::Measured, what, Some(limits.force_percent)),
     ];
-    [0, 1].map(|which| {
-        let (name, limit) = named[which];
+    let check = |(judged, name, limit): (Judged, &str, Option<f64>)| {
+        let limit = limit?;
         let pairs = deviations.iter();
-        let pairs = pairs.map(|own| [own.corrected[which].abs(), own.own[which]]);
+        let pairs = pairs.map(|own| [own.corrected.size(judged), own.own[judged as usize]]);
         let [deviation, own] = worst(pairs);
-        let nothing = which == 1 && deviations.iter().all(|own| own.measures_none);
+        let nothing = judged == Judged::Measured && deviations.iter().all(|own| own.measures_none);
         let judgement = if nothing {
             Judgement::Exact(NOTHING)
+        } else if is_own_reference(specimen) {
+            own_reference()
         } else {
             judge(deviation, own, limit, remedy)
         };
         let quantity = format!("corrected {name} from the finite elements");
-        Check::new(quantity, "%", Wanted::AtMost(limit), SOURCE, deviation).judged(judgement, own)
-    })
+        let check = Check::new(quantity, "%", Wanted::AtMost(limit), SOURCE, deviation);
+        Some(check.judged(judgement, own))
+    };
+    judged.into_iter().filter_map(check).collect()
+}
+
+fn is_own_reference(specimen: &Specimen) -> bool {
+    matches!(&specimen.outline, Outline::Grid(grids) if grids.is_own_reference())
 }
 
 /// How much of the springs' deviation the correction takes away, where the springs have a field.
 fn correction_check(specimen: &Specimen, deviations: &[Deviation], remedy: &str) -> Option<Check> {
     let wanted = specimen.tolerances.correction_percent;
-    let mut found: Option<(f64, f64, Judgement)> = None;
+    let mut least: Option<(f64, f64, Judgement)> = None;
     for deviation in deviations {
-        let (Some([springs, _]), Some(correction)) =
-            (deviation.springs, deviation.correction_percent())
+        let (Some(springs), Some(correction)) = (deviation.springs, deviation.correction_percent())
         else {
             continue;
         };
-        let pair = [springs, deviation.corrected[0]];
-        let judgement = judge_correction(pair, deviation.own[0], 100.0 - wanted, remedy);
+        let pair = [springs.displacement, deviation.corrected.displacement];
+        let judgement = if is_own_reference(specimen) {
+            own_reference()
+        } else {
+            judge_correction(pair, deviation.own[0], 100.0 - wanted, remedy)
+        };
         // A ratio of two roundings is no correction, and none is needed.
         let value = match judgement {
             Judgement::Exact(_) => 100.0,
             _ => correction,
         };
-        if found.as_ref().is_none_or(|(least, ..)| value < *least) {
-            found = Some((value, deviation.own[0], judgement));
+        if least.as_ref().is_none_or(|(before, ..)| value < *before) {
+            least = Some((value, deviation.own[0], judgement));
         }
     }
-    let (value, own, judgement) = found?;
+    let (value, own, judgement) = least?;
     let quantity = "correction of the displacement";
     let check = Check::new(quantity, "%", Wanted::AtLeast(wanted), SOURCE, value);
     Some(check.judged(judgement, own))

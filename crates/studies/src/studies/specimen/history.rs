@@ -1,0 +1,195 @@
+//! How the models came to their states and how far they are from each other along the path: convergence, multipliers, deviations.
+
+use super::problem::Specimen;
+use super::results::models::{ModelSeries, Models};
+use super::results::verdict::{Deviation, Distance};
+use crate::corrector::Multipliers;
+use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
+use crate::corrector::specimen::SUPPORTS;
+use crate::results::{Array, Axis, Block, Drawing, Line, LineChart, Stroke, or_dash};
+use crate::solve::State;
+use crate::studies::ModelKind;
+
+/// The deviations from the finite elements over the path, with a caption; `None` where there are none.
+pub fn deviations_chart(
+    specimen: &Specimen,
+    models: &Models,
+    deviations: &[Option<Deviation>],
+) -> Option<(String, Drawing)> {
+    type Measure = fn(&Distance) -> Option<f64>;
+    let displacement: Measure = |distance| Some(distance.displacement);
+    let departure: Measure = |distance| distance.departure();
+    let measured: Measure = |distance| Some(distance.measured.abs());
+    let measures = [
+        ("displacement", displacement, Stroke::Ringed),
+        ("departure", departure, Stroke::Marked),
+        (models.reference.measured.name(), measured, Stroke::Marked),
+    ];
+    let kinds = [ModelKind::MassSpring, ModelKind::Corrected];
+    let charts = measures.into_iter().filter_map(|(name, measure, stroke)| {
+        let line = |kind: ModelKind| {
+            let point = |(factor, deviation): (&f64, &Option<Deviation>)| {
+                let distance = match kind {
+                    ModelKind::MassSpring => deviation.as_ref()?.springs?,
+                    _ => deviation.as_ref()?.corrected,
+                };
+                let value = measure(&distance).filter(|value| *value > 0.0)?;
+                Some([specimen.along.coordinate(*factor), value])
+            };
+            let points = specimen.factors.iter().zip(deviations).filter_map(point);
+            let points: Vec<_> = points.collect();
+            let style = kind.style();
+            (!points.is_empty()).then(|| Line::new(style.name, points, style.colour, stroke))
+        };
+        let lines: Vec<Line> = kinds.into_iter().filter_map(line).collect();
+        let y = Axis::logarithmic(&format!("{name} [%]"));
+        let title = format!("Deviation of the {name} from the finite elements");
+        let chart = LineChart::new(title, Axis::linear(specimen.along.head()), y, lines);
+        (!chart.lines.is_empty()).then_some((chart, 320))
+    });
+    let charts: Vec<_> = charts.collect();
+    let caption = format!(
+        "Deviations from the finite elements over the {}.",
+        specimen.along.name()
+    );
+    (!charts.is_empty()).then_some((caption, Drawing::Charts(charts)))
+}
+
+/// How the models came to the last load factor that one of them has reached, with a caption: the residuals of those that look for an
+/// equilibrium of forces, and the corrections of the corrected field, which is another quantity.
+pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, Drawing)> {
+    let last = models.reached().checked_sub(1)?;
+    let at = specimen.along.describe(specimen.factors[last]);
+    let line = |kind: &ModelKind| {
+        let state = models.of(*kind).solution.states.get(last)?;
+        let residuals = state.convergence.residuals.iter().enumerate();
+        let points = residuals.map(|(iteration, size)| [iteration as f64, *size]);
+        let points: Vec<_> = points.collect();
+        let style = kind.style();
+        (!points.is_empty()).then(|| Line::new(style.name, points, style.colour, Stroke::Marked))
+    };
+    let chart = |title: &str, quantity: &str, kinds: &[ModelKind]| {
+        let lines: Vec<Line> = kinds.iter().filter_map(line).collect();
+        let y = Axis::logarithmic(quantity);
+        let title = format!("{title} at {at}");
+        let chart = LineChart::new(title, Axis::linear("iteration"), y, lines);
+        (!chart.lines.is_empty()).then_some((chart, 340))
+    };
+    let forces = [ModelKind::MassSpring, ModelKind::FiniteElement];
+    let charts = [
+        chart("Residual forces", "relative residual [–]", &forces),
+        chart(
+            "Corrections",
+            "relative correction [–]",
+            &[ModelKind::Corrected],
+        ),
+    ];
+    let charts: Vec<_> = charts.into_iter().flatten().collect();
+    let caption = format!(
+        "Residual of springs and finite elements, and correction of the corrected field, over iteration at {at}."
+    );
+    (!charts.is_empty()).then_some((caption, Drawing::Charts(charts)))
+}
+
+/// The iterations of every model at every load factor, and what they mean.
+pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
+    let all = models.all();
+    let row = |model: &ModelSeries, state: &State| {
+        let log = &state.convergence;
+        let size =
+            |residual: Option<&f64>| or_dash(residual.copied(), |size| format!("{size:.1e}"));
+        vec![
+            specimen.along.value(state.factor),
+            model.style.name.to_owned(),
+            state.load_steps.to_string(),
+            log.iterations().to_string(),
+            size(log.residuals.first()),
+            size(log.residuals.last()),
+            log.cut_steps.to_string(),
+            log.shifted_steps.to_string(),
+        ]
+    };
+    let mut rows = Vec::new();
+    for step in 0..models.reached() {
+        let states = all.iter();
+        let states = states.filter_map(|model| Some((model, model.solution.states.get(step)?)));
+        rows.extend(states.map(|(model, state)| row(model, state)));
+    }
+    let head = [
+        specimen.along.head(),
+        "model",
+        "load steps",
+        "iterations",
+        "first residual [–]",
+        "last residual [–]",
+        "steps cut",
+        "tangents shifted",
+    ];
+    let mut blocks = vec![
+        Block::heading("Convergence"),
+        Block::table(&head, rows),
+        Block::Paragraph(format!(
+            "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",
+            corrections_in_words(specimen)
+        )),
+    ];
+    blocks.extend(climbs(specimen, models));
+    blocks
+}
+
+/// What the residuals of the corrected field are.
+fn corrections_in_words(specimen: &Specimen) -> &'static str {
+    let climbs = specimen
+        .grids()
+        .is_some_and(|grids| grids.correction.climb.is_some());
+    if climbs {
+        "the remaining correction, root mean square over the nodes of the finest grid, relative to the largest displacement; the first value is what \
+         this grid adds to the one before it. The iteration (a climb) stops at a fraction (`climb_tolerance`) of its own discretisation error. It \
+         starts from a field of its own on a coarse grid and uses the study's springs for the multipliers only."
+    } else {
+        "largest scaled residual relative to the largest displacement; it has as many equations as unknowns, so that each step is a Newton step, and \
+         the first starts from the springs' field, to which the multipliers belong."
+    }
+}
+
+/// How the climb came to the corrected field at every stretch; nothing where nothing climbed.
+fn climbs(specimen: &Specimen, models: &Models) -> Option<Block> {
+    let climbs = models.on_lattice.climbs.iter().zip(&specimen.factors);
+    let rows: Vec<_> = climbs
+        .map(|(climb, stretch)| {
+            let away = or_dash(Some(climb.away), |away| format!("{away:.3}"));
+            vec![specimen.along.value(*stretch), climb.to_string(), away]
+        })
+        .collect();
+    let head = [
+        specimen.along.head(),
+        "the climb began with",
+        "root mean square distance of this start to the corrected field on the first grid [mm]",
+    ];
+    (!rows.is_empty()).then(|| Block::table(&head, rows))
+}
+
+/// The multipliers of every condition of the corrected field at the nodes; zero where the condition does not hold.
+pub fn multipliers(models: &Models, step: usize) -> Vec<Array> {
+    let size = 2 * models.on_lattice.corrected.mesh.nodes.len();
+    let groups = models.on_lattice.multipliers.get(step);
+    let groups = groups.into_iter().flatten();
+    groups
+        .filter_map(|group| multiplier_array(group, size))
+        .collect()
+}
+
+fn multiplier_array(group: &Multipliers, size: usize) -> Option<Array> {
+    let name = match group.name.as_str() {
+        EQUILIBRIUM => "multiplier_zeta_equilibrium_mm2_per_N",
+        GRIPS => "multiplier_eta_grips_mm",
+        SUPPORTS => "multiplier_eta_supports_mm",
+        FREE_EDGES => "multiplier_eta_free_edges_mm2_per_N",
+        _ => return None,
+    };
+    let mut values = vec![0.0; size];
+    for (unknown, value) in group.unknowns.iter().flatten().zip(&group.values) {
+        values[*unknown] = *value;
+    }
+    Some(Array::vectors(name, values))
+}

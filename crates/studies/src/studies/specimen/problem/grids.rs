@@ -1,0 +1,122 @@
+//! The meshes of a plate: grids of lines, whose cells may become smaller towards the clamped corners.
+
+use std::sync::Arc;
+
+use super::Specimen;
+use crate::corrector::climb::ClimbSettings;
+use crate::corrector::{CorrectorSettings, DifferenceScheme};
+use crate::finite_element::Element;
+use crate::mass_spring::LatticeSettings;
+use crate::mesh::{CellShape, Grid, Mesh};
+use crate::problem::ClampedPlate;
+
+use super::Outline;
+
+/// A rectangle between two grips, with the grids of its models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlateGrids {
+    /// Length between the grips and width in mm.
+    pub size: [f64; 2],
+    /// Cells of the lattice.
+    pub cells: [usize; 2],
+    /// The options of the lattice.
+    pub lattice: LatticeSettings,
+    /// How the field of the lattice is corrected.
+    pub correction: GridCorrection,
+    /// The finite elements that the other models are compared with.
+    pub elements: GridElements,
+}
+
+/// How the field of a plate's lattice is corrected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridCorrection {
+    /// The finite differences.
+    pub scheme: DifferenceScheme,
+    /// How much smaller its cells become towards the corners; see [`Grid`].
+    pub grading: f64,
+    /// How exactly the corrector climbs; `None` where it is direct.
+    pub climb: Option<ClimbSettings>,
+    /// When the direct corrector stops.
+    pub direct: CorrectorSettings,
+}
+
+impl GridCorrection {
+    /// Whether the corrected field has cells of its own, and not the lattice's nodes.
+    pub fn is_graded(&self) -> bool {
+        self.grading > 1.0 || self.scheme.has_own_nodes()
+    }
+}
+
+/// The finite elements of a plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridElements {
+    /// The element.
+    pub element: Element,
+    /// Cells of the finest of three meshes.
+    pub cells: [usize; 2],
+    /// How much smaller the cells become towards the corners; see [`Grid`].
+    pub grading: f64,
+}
+
+impl GridElements {
+    /// The mesh of a level: 2 is the finest of a study, each has cells of half the size of those of the one before.
+    pub fn mesh(&self, size: [f64; 2], level: usize) -> Mesh {
+        let cells = self.cells.map(|cells| (cells << level) >> super::HALVINGS);
+        Mesh::of_grid(Grid::new(size, cells, self.grading), self.element.shape())
+    }
+}
+
+impl PlateGrids {
+    /// A coarse mesh with the groups of the plate.
+    pub fn coarse(&self) -> Mesh {
+        Mesh::plate(self.size, [2, 2], CellShape::Quad4)
+    }
+
+    /// The lattice.
+    pub fn lattice(&self) -> Mesh {
+        Mesh::plate(self.size, self.cells, CellShape::Quad4)
+    }
+
+    /// The nodes of the corrected fields as cells of four nodes.
+    pub fn corrected_mesh(&self) -> Mesh {
+        let GridCorrection {
+            scheme, grading, ..
+        } = self.correction;
+        scheme.graded(self.size, self.cells, grading)
+    }
+
+    /// Whether the finite elements are the corrected field once more: the same equations on the same nodes.
+    pub fn is_own_reference(&self) -> bool {
+        let scheme = self.correction.scheme;
+        let element = match scheme {
+            DifferenceScheme::Corners | DifferenceScheme::Bicubic => return false,
+            DifferenceScheme::Gauss => Element::Q1,
+            DifferenceScheme::Biquadratic => Element::Q2,
+        };
+        let cells = self.elements.cells.map(|cells| cells * scheme.side());
+        self.elements.element == element
+            && self.elements.grading == self.correction.grading
+            && cells == self.cells
+    }
+}
+
+impl Specimen {
+    /// The plate's grids, where the specimen is one.
+    pub fn grids(&self) -> Option<&PlateGrids> {
+        match &self.outline {
+            Outline::Grid(grids) => Some(grids),
+            Outline::Shape { .. } | Outline::File { .. } => None,
+        }
+    }
+
+    /// The plate between its grips, where the specimen is one.
+    pub fn clamped_plate(&self) -> Option<ClampedPlate> {
+        let grids = self.grids()?;
+        Some(ClampedPlate {
+            size: grids.size,
+            thickness: self.problem.thickness,
+            law: Arc::clone(&self.problem.law),
+            stretches: self.factors.clone(),
+        })
+    }
+}

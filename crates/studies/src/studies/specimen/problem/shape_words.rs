@@ -1,0 +1,43 @@
+//! Shapes in words.
+
+use crate::mesh::Shape;
+use crate::units::number;
+
+/// A shape with its measures in words.
+pub fn describe(shape: Shape) -> String {
+    match shape {
+        Shape::Strip {
+            size: [length, width],
+        } => format!("a strip of {length} × {width} mm"),
+        Shape::StripWithHole {
+            size: [length, width],
+            radius,
+        } => format!(
+            "a strip of {length} × {width} mm with a hole of {} mm diameter in its middle",
+            2.0 * radius
+        ),
+        Shape::NotchedStrip {
+            size: [length, width],
+            depth,
+            half_length,
+        } => format!(
+            "a strip of {length} × {width} mm with two notches of {depth} mm depth and {} mm length",
+            2.0 * half_length
+        ),
+        Shape::DogBone {
+            size: [length, width],
+            narrow,
+            shoulder,
+        } => format!(
+            "a dumb-bell of {length} × {width} mm with a narrow part of {} × {} mm and shoulders of {shoulder} mm length",
+            narrow[0], narrow[1]
+        ),
+        Shape::RingSector {
+            radii: [inner, outer],
+            angle,
+        } => format!(
+            "a sector of {}° of a ring with radii of {inner} and {outer} mm",
+            number(angle.to_degrees())
+        ),
+    }
+}

@@ -1,0 +1,70 @@
+//! The corrected fields of a plate on its grids: by the climb, or by the direct method from the springs' field.
+
+use super::end::End;
+use super::lattice::{Fields, Start};
+use crate::corrector::PlateCorrector;
+use crate::corrector::climb::Climb;
+use crate::corrector::plate::KnownConditions;
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::problem::Solution;
+use crate::studies::Progress;
+use crate::studies::specimen::problem::{PlateGrids, Specimen};
+
+/// Corrects as many stretches as can be, on a mesh to whose nodes the springs' field is interpolated. Where the springs have no field
+/// the affine stretch takes its place: it has a say in the multipliers, and in where the direct method begins.
+pub fn correct(
+    specimen: &Specimen,
+    grids: &PlateGrids,
+    mesh: &Mesh,
+    springs: &Solution,
+    fields: &mut Fields,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) {
+    let Some(plate) = specimen.clamped_plate() else {
+        return;
+    };
+    let settings = &grids.correction;
+    let mut corrector = PlateCorrector::new(&plate, mesh, settings.scheme, settings.direct);
+    let mut climb = settings.climb.map(|climb| {
+        Climb::graded(
+            &plate,
+            grids.cells,
+            settings.scheme,
+            settings.grading,
+            climb,
+        )
+    });
+    let onto_mesh = settings
+        .is_graded()
+        .then(|| springs.mesh.interpolation_on(mesh));
+    for (step, stretch) in specimen.factors.iter().enumerate() {
+        let data = match (springs.displacement(step), &onto_mesh) {
+            (Some(field), Some(onto_mesh)) => onto_mesh.apply(field),
+            (Some(field), None) => field.to_vec(),
+            (None, _) => plate.affine(mesh, *stretch),
+        };
+        let corrected = match &mut climb {
+            Some(climb) => corrector.climb(climb, &data, *stretch),
+            None => corrector.correct(&data, *stretch, KnownConditions::ALL),
+        };
+        let found = match corrected {
+            Ok(found) => found,
+            Err(Error::Solve { fault, .. }) => {
+                ends.push(End::at(specimen, *stretch, fault));
+                return;
+            }
+            Err(_) => return,
+        };
+        progress.tell(&format!("corrector, {}", specimen.along.describe(*stretch)));
+        corrector = corrector.after(&found.state);
+        fields.states.push(found.state);
+        fields.starts.push(match springs.displacement(step) {
+            Some(_) => Start::Grids,
+            None => Start::GridsAlone,
+        });
+        fields.multipliers.push(found.multipliers);
+        fields.climbs.extend(found.way);
+    }
+}
