@@ -14,7 +14,7 @@ use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{ClampedPlate, Measures, Work};
 use crate::solve::vector::largest;
-use crate::solve::{Assembly, Convergence, Remembering, SparseRows, Stage, State};
+use crate::solve::{Assembly, Convergence, Remembering, Stage, State};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -83,23 +83,6 @@ impl Describe for PlateNames {
     fn unknown(&self, unknown: usize) -> String {
         self.nodes.describe_unknown(unknown)
     }
-}
-
-/// Measured displacements ([x, y] in mm at rest, [ux, uy] in mm) anywhere on the plate, which the corrected
-/// field has to pass through: two rows a point.
-pub fn measured_points(name: &str, mesh: &Mesh, points: &[([f64; 2], [f64; 2])]) -> Linear {
-    let mut rows = SparseRows::new(2 * mesh.nodes.len());
-    let mut values = Vec::new();
-    for (place, displacement) in points {
-        let (cell, local) = mesh.locate(*place);
-        let shares = mesh.shape(cell).values(local);
-        for (axis, value) in displacement.iter().enumerate() {
-            let nodes = mesh.cell(cell).iter().zip(&shares);
-            rows.push(nodes.map(|(node, share)| (2 * node + axis, *share)));
-            values.push(*value);
-        }
-    }
-    Linear::new(name, rows, values)
 }
 
 impl<'a> PlateCorrector<'a> {
