@@ -143,7 +143,7 @@ impl Study {
     pub fn is_its_own_reference(&self) -> bool {
         let scheme = self.corrector.scheme;
         let element = match scheme {
-            DifferenceScheme::Corners | DifferenceScheme::Bicubic => return false,
+            DifferenceScheme::Bicubic => return false,
             DifferenceScheme::Gauss => Element::Q1,
             DifferenceScheme::Biquadratic => Element::Q2,
         };

@@ -63,7 +63,6 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
                     ", whose equations are those of biquadratic finite elements there",
                 DifferenceScheme::Bicubic =>
                     ", whose equations are those of bicubic finite elements there",
-                DifferenceScheme::Corners => "",
             }
         )),
     ]
