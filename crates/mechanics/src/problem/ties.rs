@@ -54,24 +54,24 @@ impl<'a> TiedPotential<'a> {
 
 impl TiedPotential<'_> {
     /// Evaluates the untied potential at u = T v, whose forces become those of v: f ← f + Tᵀ r.
-    fn untied<T>(
+    fn untied(
         &self,
         v: &[f64],
         forces: &mut [f64],
-        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<T, Inadmissible>,
-    ) -> Result<T, Inadmissible> {
+        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<f64, Inadmissible>,
+    ) -> Result<f64, Inadmissible> {
         let (mut u, mut untied) = (v.to_vec(), vec![0.0; v.len()]);
         for (unknown, master) in self.ties {
             u[*unknown] = v[*master];
         }
-        let found = evaluate(&u, &mut untied)?;
+        let energy = evaluate(&u, &mut untied)?;
         for (unknown, master) in self.ties {
             untied[*master] += std::mem::take(&mut untied[*unknown]);
         }
         for (force, own) in forces.iter_mut().zip(untied) {
             *force += own;
         }
-        Ok(found)
+        Ok(energy)
     }
 }
 
@@ -128,10 +128,6 @@ impl Potential for TiedPotential<'_> {
             fold(places, &matrix, stiffness);
         }
         Ok(energy)
-    }
-
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        self.untied(u, forces, |u, untied| self.potential.add_forces(u, untied))
     }
 
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
