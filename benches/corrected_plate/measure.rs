@@ -163,22 +163,22 @@ impl Bench<'_> {
 /// Compares the fields of the climb with the solutions of the same equations, and with those of one thread.
 fn compare(runs: &mut [Run], fields: &[Field], exact: &[Exact], stretch: f64) {
     for exact in exact {
-        let (scheme, climb) = (exact.scheme, Way::Climb(exact.scheme));
+        let climb = Way::Climb(exact.scheme);
         let Some(first) = runs.iter().position(|run| run.way == climb) else {
             continue;
         };
         for (run, field) in runs.iter_mut().zip(fields) {
-            if [climb, Way::Newton(scheme)].contains(&run.way) {
+            if run.way == climb {
                 run.difference_percent =
                     relative_percent(&exact.grid, field, &exact.field, stretch);
-                run.same_bits = run.way != climb || *field == fields[first];
+                run.same_bits = *field == fields[first];
             }
         }
     }
 }
 
-/// The ways on a grid, with threads and the grid's error: on equal cells the climb by one and two threads and plain Newton too. The
-/// bicubic climb goes on every grid that suits it.
+/// The ways on a grid, with threads and the grid's error: on equal cells the climb by one and two threads. The bicubic climb goes on
+/// every grid that suits it.
 fn contestants(layout: Layout, corrected: bool, exact: &[Exact]) -> Vec<(Way, usize, f64)> {
     let mut all = Vec::new();
     for Exact { scheme, error, .. } in exact {
@@ -189,7 +189,6 @@ fn contestants(layout: Layout, corrected: bool, exact: &[Exact]) -> Vec<(Way, us
         }
         if corrected && layout.grading == 1.0 {
             all.push((Way::Climb(scheme), 2, *error));
-            all.push((Way::Newton(scheme), 1, *error));
         }
     }
     for Exact { scheme, error, .. } in exact {

@@ -18,8 +18,6 @@ pub struct Row<'a> {
     pub same_nodes: [&'a Run; 2],
     /// The cheapest finite elements that are as accurate, of all meshes, equal and graded, and all elements.
     pub equal_accuracy: [Option<&'a Run>; 2],
-    /// Plain Newton with the same multigrid, on grids of equal cells.
-    pub newton: Option<&'a Run>,
 }
 
 /// How much larger an error still counts as equal: as much as the iterations of the climb leave.
@@ -59,7 +57,6 @@ impl<'a> Row<'a> {
             scheme,
             same_nodes: GUESSES.map(elements),
             equal_accuracy: GUESSES.map(cheapest),
-            newton: here(Way::Newton(scheme)),
         }
     }
 
@@ -116,10 +113,6 @@ impl<'a> Row<'a> {
             (
                 "ratio_equal_accuracy_nested",
                 ratio(self.ratio_equal_accuracy(Guess::Nested)),
-            ),
-            (
-                "ratio_newton",
-                ratio(self.newton.map_or(f64::NAN, |run| run.seconds) / climb.seconds),
             ),
             (
                 "difference_to_direct_percent",
@@ -193,7 +186,6 @@ fn chart(title: &str, x: &str, points: impl Fn(Way) -> Vec<[f64; 2]>) -> (LineCh
         Way::Climb(DifferenceScheme::Gauss),
         Way::Climb(DifferenceScheme::Biquadratic),
         Way::Climb(DifferenceScheme::Bicubic),
-        Way::Newton(DifferenceScheme::Biquadratic),
         Way::FiniteElements(DifferenceScheme::Gauss, Guess::Nested),
         Way::FiniteElements(DifferenceScheme::Biquadratic, Guess::Nested),
         Way::FiniteElements(DifferenceScheme::Bicubic, Guess::Nested),

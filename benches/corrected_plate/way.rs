@@ -67,8 +67,6 @@ impl fmt::Display for Layout {
 pub enum Way {
     /// Springs and climb.
     Climb(DifferenceScheme),
-    /// Plain Newton on the same equations with the same multigrid.
-    Newton(DifferenceScheme),
     /// Finite elements with the equations of a scheme.
     FiniteElements(DifferenceScheme, Guess),
 }
@@ -77,7 +75,6 @@ impl Way {
     pub fn name(self) -> String {
         match self {
             Self::Climb(scheme) => format!("climb, {}", scheme_name(scheme)),
-            Self::Newton(scheme) => format!("Newton with multigrid, {}", scheme_name(scheme)),
             Self::FiniteElements(scheme, guess) => format!(
                 "finite elements {}, {} guess",
                 element_name(scheme),
@@ -124,7 +121,7 @@ pub struct Found {
 const EVALUATIONS: usize = 3;
 
 /// Goes one way. `error` is the mesh's own error relative to the departure from the affine stretch, which tells the
-/// finite elements and plain Newton when to stop; the climb finds it out for itself.
+/// finite elements when to stop; the climb finds it out for itself.
 pub fn go(
     way: Way,
     problem: &ClampedPlate,
@@ -133,7 +130,7 @@ pub fn go(
     error: f64,
 ) -> Result<Found, Error> {
     let start = Instant::now();
-    let (scheme, newton) = match way {
+    let scheme = match way {
         Way::FiniteElements(scheme, guess) => {
             let mut opponent = Opponent::new(problem, layout, scheme);
             let mut u = opponent.start(guess, stretch, error);
@@ -149,8 +146,7 @@ pub fn go(
                 evaluation: f64::NAN,
             });
         }
-        Way::Climb(scheme) => (scheme, false),
-        Way::Newton(scheme) => (scheme, true),
+        Way::Climb(scheme) => scheme,
     };
     let settings = ClimbSettings::FAST;
     let mut climb = if layout.grading == 1.0 {
@@ -158,11 +154,7 @@ pub fn go(
     } else {
         Climb::graded(problem, layout.cells, scheme, layout.grading, settings)
     };
-    let climbed = if newton {
-        climb.newton_from_affine(stretch, (0.1 * error).sqrt(), 1e-3)?
-    } else {
-        climb.correct(stretch)?
-    };
+    let climbed = climb.correct(stretch)?;
     let seconds = start.elapsed().as_secs_f64();
     let evaluations = (0..EVALUATIONS).map(|_| {
         let start = Instant::now();

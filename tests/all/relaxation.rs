@@ -45,11 +45,15 @@ fn moved(material: &ViscousMaterial, history: &[[f64; 2]]) -> Vec<f64> {
         };
         unknowns.iter().map(of).collect()
     };
-    let mut memory = vec![0.0; sheet.memory(0)];
-    sheet
-        .relaxed(0, &displacement(history[0][1]), &mut memory)
-        .unwrap();
     let still = vec![0.0; unknowns.len()];
+    let mut memory = vec![0.0; sheet.memory(0)];
+    let long_rest = ElementMotion {
+        displacement: &displacement(history[0][1]),
+        velocity: &still,
+        memory: &memory.clone(),
+        elapsed: f64::INFINITY,
+    };
+    sheet.remember(0, long_rest, &mut memory).unwrap();
     let mut before = history[0][0];
     let mut stresses = Vec::new();
     for [time, stretch] in history {

@@ -19,7 +19,6 @@
 //! # References
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems
 
-mod acceleration;
 pub mod climb;
 pub mod condition;
 mod correction;
@@ -39,9 +38,7 @@ pub mod specimen;
 mod step;
 mod system;
 
-pub use condition::{
-    Condition, EnclosedArea, Equilibrium, Function, Linear, Linearisation, TotalForce,
-};
+pub use condition::{Condition, Equilibrium, Function, Linear, Linearisation};
 pub use correction::{ByNumber, Correction, CorrectorSettings, Describe, Multipliers, Step};
 pub use difference_scheme::DifferenceScheme;
 pub use factor::{Factor, Projection, Solver};

@@ -7,7 +7,7 @@ pub mod multigrid;
 
 #[cfg(test)]
 use gelbench_base::budget;
-use gelbench_base::{document, error, statistics};
+use gelbench_base::{error, statistics};
 #[cfg(test)]
 use gelbench_mechanics::finite_element;
 use gelbench_mechanics::{dynamics, mass_spring, material, mesh, problem, solve};

@@ -34,7 +34,7 @@ pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, Stage, State};
 pub use newton::{Convergence, Newton, NewtonSettings};
-pub use path::{PathEnd, compliance, follow, influence};
+pub use path::{PathEnd, compliance, follow};
 pub use pattern::SymmetricPattern;
 pub use potential::{
     Inadmissible, Local, Potential, Remembering, SkewCoupling, Take, evaluate_by_elements,

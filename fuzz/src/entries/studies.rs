@@ -96,7 +96,7 @@ fn plate_text(choices: &mut Choices) -> String {
     let _ = writeln!(
         text,
         "[corrector]\nscheme = \"{}\"\nmethod = \"{}\"",
-        choices.one(&["biquadratic", "gauss", "corners"]),
+        choices.one(&["biquadratic", "gauss"]),
         choices.one(&["climb", "direct"])
     );
     let cells = [4 + 4 * choices.below(3), 4 + 4 * choices.below(2)];

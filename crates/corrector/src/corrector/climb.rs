@@ -25,7 +25,6 @@ mod level;
 mod load_path;
 mod mesh;
 mod multipliers;
-mod newton;
 mod path;
 mod ratios;
 mod sheet;
@@ -79,36 +78,17 @@ pub struct ClimbSolution {
     pub field: Field,
     /// Force on the moving grip in N.
     pub force: f64,
-    /// The change from the grid before to the finest grid, and its size in mm; `None` where there is one grid only.
-    change: Option<(Field, f64)>,
     /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only.
     pub discretisation_error: f64,
     /// Whether the discretisation error is known within a factor of about two: this takes a finest grid with twice as many cells along both
     /// axes as the one before, and at least four elements in that one. Otherwise its order is right, and it is mostly too large.
     pub error_is_sure: bool,
-    /// The estimated error that the iteration left, root mean square over the nodes in mm.
-    pub iteration_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
     /// The work of the iteration on each grid, coarse to fine: number of nodes, and work.
     pub work: Vec<(usize, Work)>,
     /// The way to the field.
     pub way: Way,
-}
-
-impl ClimbSolution {
-    /// All evaluations of F, linearisations and cycles, in units of one on a grid with so many nodes.
-    pub fn fine_work(&self, nodes: usize) -> [f64; 3] {
-        let mut sums = [0.0; 3];
-        for (own, work) in &self.work {
-            let share = *own as f64 / nodes as f64;
-            let counts = [work.evaluations, work.linearisations, work.cycles];
-            for (sum, count) in sums.iter_mut().zip(counts) {
-                *sum += share * count as f64;
-            }
-        }
-        sums
-    }
 }
 
 /// A plate's grids, ready to correct at any stretch.
@@ -313,14 +293,6 @@ impl<'a> Climb<'a> {
         Ok(lines
             .map(|(line, x)| x / length * line.iter().sum::<f64>())
             .sum())
-    }
-
-    /// The field after Richardson extrapolation from the finest grid and the one before it; `None` where there is one grid only.
-    pub fn extrapolated(&self, climbed: &ClimbSolution) -> Option<Field> {
-        let (change, size) = climbed.change.as_ref()?;
-        let mut field = climbed.field.clone();
-        field.add(climbed.discretisation_error / size, change);
-        Some(field)
     }
 }
 

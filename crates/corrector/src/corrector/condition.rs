@@ -4,7 +4,7 @@ use crate::solve::{Inadmissible, SparseRows};
 
 mod forces;
 
-pub use forces::{Equilibrium, TotalForce};
+pub use forces::Equilibrium;
 
 /// The rows of a condition, linearised: c(u + δ) ≈ c(u) + B δ.
 #[derive(Clone, Debug)]
@@ -141,81 +141,6 @@ impl Condition for Linear {
 
     fn unknowns(&self) -> Option<&[usize]> {
         self.unknowns.as_deref()
-    }
-}
-
-/// A known area inside a closed line of nodes, in mm²; one row. Times a thickness it is a known volume.
-///
-/// ```text
-/// A(u) = ½ Σ (xₐ y_b − x_b yₐ),   x = X + u, over the sides (a, b) of the line, counter-clockwise
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct EnclosedArea {
-    name: String,
-    /// Nodes of the line with their reference places.
-    line: Vec<(usize, [f64; 2])>,
-    area: f64,
-}
-
-impl EnclosedArea {
-    /// The line through `line` (node and place in mm, counter-clockwise) encloses `area`.
-    pub fn new(name: &str, line: Vec<(usize, [f64; 2])>, area: f64) -> Self {
-        Self {
-            name: name.to_owned(),
-            line,
-            area,
-        }
-    }
-}
-
-impl Condition for EnclosedArea {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn rows(&self) -> usize {
-        1
-    }
-
-    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
-        let place =
-            |(node, [x, y]): &(usize, [f64; 2])| (*node, [x + u[2 * node], y + u[2 * node + 1]]);
-        let places: Vec<_> = self.line.iter().map(place).collect();
-        let mut area = 0.0;
-        let mut row = Vec::new();
-        for (index, (a, [xa, ya])) in places.iter().enumerate() {
-            let (b, [xb, yb]) = &places[(index + 1) % places.len()];
-            area += 0.5 * (xa * yb - xb * ya);
-            row.extend([(2 * a, 0.5 * yb), (2 * b + 1, 0.5 * xa)]);
-            row.extend([(2 * b, -0.5 * ya), (2 * a + 1, -0.5 * xb)]);
-        }
-        let mut jacobian = SparseRows::new(u.len());
-        jacobian.push(row);
-        Ok(Linearisation {
-            values: vec![area - self.area],
-            jacobian,
-        })
-    }
-
-    fn curvature(
-        &self,
-        u: &[f64],
-        multipliers: &[f64],
-    ) -> Result<Option<SparseRows>, Inadmissible> {
-        let half = 0.5 * multipliers[0];
-        let mut rows = vec![Vec::new(); u.len()];
-        let mut both = |row: usize, column: usize, value: f64| {
-            rows[row].push((column, value));
-            rows[column].push((row, value));
-        };
-        for (index, (a, _)) in self.line.iter().enumerate() {
-            let (b, _) = self.line[(index + 1) % self.line.len()];
-            both(2 * a, 2 * b + 1, half);
-            both(2 * b, 2 * a + 1, -half);
-        }
-        let mut curvature = SparseRows::new(u.len());
-        rows.into_iter().for_each(|row| curvature.push(row));
-        Ok(Some(curvature))
     }
 }
 

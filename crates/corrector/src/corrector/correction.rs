@@ -68,8 +68,6 @@ pub struct Step {
     pub residual: f64,
     /// Share of the linearised step that was taken to get here; 1 for the start.
     pub length: f64,
-    /// Whether the step came from a factor of another field.
-    pub retained: bool,
 }
 
 /// The result of a correction.

@@ -14,7 +14,6 @@
 //!
 //! | scheme | s² | differences | error on the PVA plate, 60 × 20 cells, at 15 % stretch: displacement, departure from affine, force |
 //! |---|---|---|---|
-//! | corners | 1 | one-sided, along one edge each | 0.062 %, 0.88 %, 0.11 % |
 //! | Gauss | ⅓ | both edges, weighted | 0.028 %, 0.39 %, 0.05 % |
 //! | biquadratic | 0, ⅗ | over two by two cells, 3 × 3 points | 0.013 %, 0.18 %, 0.02 % |
 //! | bicubic | 0.116, 0.742 | over three by three cells, 4 × 4 points | 0.009 %, 0.12 %, 0.01 % (60 × 21 cells) |
@@ -35,8 +34,6 @@ use super::sampling::{LinedPlate, Rule};
 /// Where in a cell the differences are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DifferenceScheme {
-    /// In the four corners: one-sided differences.
-    Corners,
     /// In the four Gauss points: weighted differences.
     Gauss,
     /// In nine Gauss points of two by two cells: differences of second order. The default.
@@ -48,8 +45,7 @@ pub enum DifferenceScheme {
 
 impl DifferenceScheme {
     /// The names that studies use.
-    pub const NAMES: [(&'static str, Self); 4] = [
-        ("corners", Self::Corners),
+    pub const NAMES: [(&'static str, Self); 3] = [
         ("gauss", Self::Gauss),
         ("biquadratic", Self::Biquadratic),
         ("bicubic", Self::Bicubic),
@@ -58,7 +54,7 @@ impl DifferenceScheme {
     /// Number of cells along each axis that are taken together: the degree of the polynomials.
     pub fn side(self) -> usize {
         match self {
-            Self::Corners | Self::Gauss => 1,
+            Self::Gauss => 1,
             Self::Biquadratic => 2,
             Self::Bicubic => 3,
         }
@@ -71,7 +67,7 @@ impl DifferenceScheme {
     /// [`Climb::graded`]: super::climb::Climb::graded
     pub fn grading(self) -> f64 {
         match self {
-            Self::Corners | Self::Gauss => 1.5,
+            Self::Gauss => 1.5,
             Self::Biquadratic => 2.0,
             Self::Bicubic => 2.5,
         }
@@ -120,7 +116,6 @@ impl DifferenceScheme {
             coordinates,
         };
         match self {
-            Self::Corners => plate.energy(&Rule::corners()),
             Self::Gauss => plate.energy(Rule::linear()),
             Self::Biquadratic => plate.energy(Rule::quadratic()),
             Self::Bicubic => plate.energy(Rule::cubic()),
@@ -132,7 +127,7 @@ impl DifferenceScheme {
     pub fn mesh(self, mesh: &Mesh) -> Mesh {
         let grid = mesh.grid();
         match self {
-            Self::Corners | Self::Gauss => mesh.clone(),
+            Self::Gauss => mesh.clone(),
             Self::Biquadratic => {
                 let pairs = grid.cells.map(|cells| cells / 2);
                 Mesh::of_grid(Grid::new(grid.size, pairs, grid.grading), CellShape::Quad9)

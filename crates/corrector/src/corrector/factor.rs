@@ -145,11 +145,6 @@ impl Factor {
         &self.jacobian
     }
 
-    /// The diagonal of W.
-    pub fn weights(&self) -> &[f64] {
-        &self.weights
-    }
-
     /// δ and ψ for c = `values` and ū − u = `pull`.
     ///
     /// # Errors

@@ -1,8 +1,6 @@
 //! The repeated projection: steps until the conditions are satisfied.
 
-use super::acceleration::accelerate;
-use super::correction::{Correction, CorrectorSettings, Step};
-use super::factor::Factor;
+use super::correction::{Correction, Step};
 use super::system::Corrector;
 use crate::error::SolveFault;
 use crate::solve::vector::{difference, largest};
@@ -16,38 +14,8 @@ impl Corrector<'_> {
     /// A [`SolveFault`] when the start is inverted, conditions depend on each other, or the steps end
     /// without meeting the tolerance.
     pub fn correct(&self, data: &[f64], start: &[f64]) -> Result<Correction, SolveFault> {
-        self.finish(data, start.to_vec(), Vec::new())
-    }
-
-    /// Corrects with a factor of these conditions taken at another field, such as the plate at rest, by
-    /// accelerated steps; takes fresh factors where these stall, and for the exact multipliers at the end.
-    ///
-    /// # Errors
-    /// As [`Self::correct`].
-    pub fn correct_retained(
-        &self,
-        data: &[f64],
-        start: &[f64],
-        factor: &mut Factor,
-    ) -> Result<Correction, SolveFault> {
-        let (field, steps) = accelerate(self, data, start, factor)?;
-        self.finish(data, field, steps)
-    }
-
-    /// Takes steps with a fresh factor each, until the tolerance is met.
-    fn finish(
-        &self,
-        data: &[f64],
-        mut field: Vec<f64>,
-        mut steps: Vec<Step>,
-    ) -> Result<Correction, SolveFault> {
-        let CorrectorSettings {
-            tolerance,
-            movement,
-            max_steps,
-            ..
-        } = self.settings;
-        let (mut length, first) = (1.0, steps.len());
+        let (mut field, mut steps) = (start.to_vec(), Vec::new());
+        let (settings, mut length) = (self.settings, 1.0);
         loop {
             let system = self.linearise(&field)?;
             let mut factor = self.factorise(&system)?;
@@ -64,24 +32,23 @@ impl Corrector<'_> {
                 field,
                 residual,
                 length,
-                retained: false,
             });
-            if residual <= tolerance && moved <= movement {
+            if residual <= settings.tolerance && moved <= settings.movement {
                 return Ok(Correction {
                     steps,
                     multipliers: self.by_condition(&projection.multipliers),
                     factor,
                 });
             }
-            if steps.len() > first + max_steps {
+            if steps.len() > settings.max_steps {
                 return Err(SolveFault::Stalled {
-                    iterations: max_steps,
+                    iterations: settings.max_steps,
                     residual,
-                    tolerance,
+                    tolerance: settings.tolerance,
                 });
             }
             // Near enough to the data, only the conditions have to be met.
-            let (target, projection) = if moved <= movement {
+            let (target, projection) = if moved <= settings.movement {
                 let still = vec![0.0; before.len()];
                 let back = factor.project(&system.values, &still);
                 let back = back.map_err(|fault| fault.or(self.dependent(&system)))?;

@@ -8,13 +8,14 @@
 
 use super::climb::{Climb, Way};
 use super::condition::{Condition, Equilibrium, Linear};
+use super::specimen::{CorrectedField, correct_by, state_at};
 use super::{Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step};
-use crate::error::Error;
+use crate::error::{Error, SolveFault};
 use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{ClampedPlate, Measures, Work};
+use crate::problem::{ClampedPlate, Measures, Model, Work};
 use crate::solve::vector::largest;
-use crate::solve::{Assembly, Convergence, Remembering, SparseRows, Stage, State};
+use crate::solve::{Assembly, Convergence, Remembering, Stage, State};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -85,23 +86,6 @@ impl Describe for PlateNames {
     }
 }
 
-/// Measured displacements ([x, y] in mm at rest, [ux, uy] in mm) anywhere on the plate, which the corrected
-/// field has to pass through: two rows a point.
-pub fn measured_points(name: &str, mesh: &Mesh, points: &[([f64; 2], [f64; 2])]) -> Linear {
-    let mut rows = SparseRows::new(2 * mesh.nodes.len());
-    let mut values = Vec::new();
-    for (place, displacement) in points {
-        let (cell, local) = mesh.locate(*place);
-        let shares = mesh.shape(cell).values(local);
-        for (axis, value) in displacement.iter().enumerate() {
-            let nodes = mesh.cell(cell).iter().zip(&shares);
-            rows.push(nodes.map(|(node, share)| (2 * node + axis, *share)));
-            values.push(*value);
-        }
-    }
-    Linear::new(name, rows, values)
-}
-
 impl<'a> PlateCorrector<'a> {
     /// Prepares the corrector on a mesh of four-node cells.
     pub fn new(
@@ -151,31 +135,25 @@ impl<'a> PlateCorrector<'a> {
         stretch: f64,
         known: KnownConditions,
     ) -> Result<CorrectedState, Error> {
-        let fault = |fault| Error::Solve {
-            model: "corrector".into(),
-            step: ClampedPlate::describe_step(stretch),
-            fault,
-        };
-        let correction = self
-            .corrector(stretch, known)
-            .correct(data, data)
-            .map_err(fault)?;
-        if known == KnownConditions::ALL {
-            let model = self.problem.on(self.mesh, &self.energy);
-            let stage = Stage {
-                factor: stretch,
-                history: self.energy.history(),
-            };
-            let stable = model.check_stability(stage, correction.field());
-            stable.map_err(fault)?;
-        }
-        let convergence = correction.convergence(f64::NAN);
-        let corrected = self.corrected(correction.field().to_vec(), stretch, convergence);
+        let model = self.problem.on(self.mesh, &self.energy);
+        let stage = self.stage(stretch);
+        let corrector = self.corrector(stretch, known);
+        let all = known == KnownConditions::ALL;
+        let corrected = correct_by(&corrector, &model, data, data, stage, all);
+        let CorrectedField { state, correction } = corrected.map_err(at_stretch(stretch))?;
         Ok(CorrectedState {
             steps: correction.steps,
             multipliers: correction.multipliers,
-            ..corrected
+            ..Self::corrected(&model, state)
         })
+    }
+
+    /// A stretch after what the plate remembers.
+    fn stage(&self, stretch: f64) -> Stage<'_> {
+        Stage {
+            factor: stretch,
+            history: self.energy.history(),
+        }
     }
 
     /// Names of the plate's cells and nodes, for messages.
@@ -250,7 +228,9 @@ impl<'a> PlateCorrector<'a> {
             residuals: climbed.corrections.iter().map(|z| z / size).collect(),
             ..Convergence::default()
         };
-        let mut corrected = self.corrected(field, stretch, convergence);
+        let model = self.problem.on(self.mesh, &self.energy);
+        let state = state_at(&model, self.stage(stretch), field, convergence);
+        let mut corrected = Self::corrected(&model, state.map_err(at_stretch(stretch))?);
         corrected.measures.force = climbed.force;
         Ok(CorrectedState {
             multipliers,
@@ -259,27 +239,10 @@ impl<'a> PlateCorrector<'a> {
         })
     }
 
-    /// The results that follow from a corrected field.
-    fn corrected(
-        &self,
-        displacement: Vec<f64>,
-        stretch: f64,
-        mut convergence: Convergence,
-    ) -> CorrectedState {
-        let mut residual = vec![0.0; displacement.len()];
-        convergence.energy = Assembly::residual(&self.energy, &displacement, &mut residual)
-            .expect("a corrected field is admissible");
-        let state = State {
-            factor: stretch,
-            displacement,
-            residual,
-            history: self.energy.history().to_vec(),
-            load_steps: 1,
-            convergence,
-        };
-        let model = self.problem.on(self.mesh, &self.energy);
+    /// The results that follow from a corrected state.
+    fn corrected(model: &Model, state: State) -> CorrectedState {
         CorrectedState {
-            measures: Measures::of(self.mesh, &state),
+            measures: Measures::of(model.mesh, &state),
             balance: model.reactions(&state).balance().relative(),
             work: model.work(&state),
             state,
@@ -287,5 +250,14 @@ impl<'a> PlateCorrector<'a> {
             multipliers: Vec::new(),
             way: None,
         }
+    }
+}
+
+/// A fault of the correction at a stretch.
+fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error {
+    move |fault| Error::Solve {
+        model: "corrector".into(),
+        step: ClampedPlate::describe_step(stretch),
+        fault,
     }
 }

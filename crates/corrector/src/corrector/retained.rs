@@ -4,11 +4,8 @@
 //! CRC-32 of all that. A factor fits a corrector with the same conditions by name and number of rows, the same
 //! unknowns and the same weights; it may come from another field. `output::save` writes the bytes.
 
-use std::path::Path;
-
 use super::factor::FactorParts;
 use super::{Corrector, Factor};
-use crate::document::file;
 
 /// The first bytes of the file.
 const MAGIC: &[u8] = b"gelbench factor";
@@ -32,9 +29,6 @@ pub enum RetainedFault {
     /// The factor belongs to other conditions.
     #[error("the stored factor does not fit the problem: {0}")]
     DoesNotFit(String),
-    /// The file could not be read.
-    #[error("cannot read {0}")]
-    Unreadable(String),
 }
 
 /// The names and numbers of rows of a corrector's conditions.
@@ -81,16 +75,6 @@ pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, Retaine
     }
     fits(&conditions, &parts, corrector)?;
     Factor::from_parts(parts).map_err(|_| RetainedFault::Damaged)
-}
-
-/// Reads a kept factor from a file.
-///
-/// # Errors
-/// A [`RetainedFault`].
-pub fn load(path: &Path, corrector: &Corrector) -> Result<Factor, RetainedFault> {
-    let bytes = file::read_bytes(path, file::MOST_OF_DATA)
-        .map_err(|fault| RetainedFault::Unreadable(format!("{}: {fault}", path.display())))?;
-    from_bytes(&bytes, corrector)
 }
 
 fn fits(

@@ -7,12 +7,8 @@ use crate::problem::ClampedPlate;
 use crate::problem::sampling_point::{DerivativeTable, PointMap};
 use crate::problem::sheet_energy::SheetEnergy;
 
-/// The points at which the energy of an element is sampled along one axis, and the functions there.
-///
-/// ```text
-/// corners          linear functions of one cell at both ends
-/// Gauss points     polynomials through N nodes at N points
-/// ```
+/// The Gauss points at which the energy of an element is sampled along one axis, and the polynomials through its nodes there, as
+/// many as points.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule<const NODES: usize> {
     /// Share of the element's length.
@@ -24,15 +20,6 @@ pub struct Rule<const NODES: usize> {
 }
 
 impl Rule<2> {
-    /// Linear functions at both ends.
-    pub fn corners() -> Self {
-        Self {
-            weights: [0.5; 2],
-            values: [[1.0, 0.0], [0.0, 1.0]],
-            derivatives: [[-1.0, 1.0]; 2],
-        }
-    }
-
     /// Linear functions at two Gauss points.
     pub fn linear() -> &'static Self {
         static RULE: LazyLock<Rule<2>> = LazyLock::new(|| Rule::gauss(GAUSS_2));

@@ -6,7 +6,9 @@ use super::plate::EQUILIBRIUM;
 use super::{Correction, Corrector, CorrectorSettings, Describe};
 use crate::error::SolveFault;
 use crate::problem::Model;
-use crate::solve::{Assembly, Loading, Newton, NewtonSettings, Stage, State, equilibrium};
+use crate::solve::{
+    Assembly, Convergence, Loading, Newton, NewtonSettings, Stage, State, equilibrium,
+};
 
 /// The name of the condition that the supports impose.
 pub const SUPPORTS: &str = "supports";
@@ -60,29 +62,59 @@ pub fn correct(
     ];
     let names = Names(model);
     let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
+    correct_by(&corrector, model, data, start, stage, true)
+}
+
+/// The state of a model that is nearest to a displacement field under a corrector's conditions. Where these are all that is known of the
+/// model, the state is stable.
+///
+/// # Errors
+/// A [`SolveFault`] when no corrected field was found.
+pub(super) fn correct_by(
+    corrector: &Corrector,
+    model: &Model,
+    data: &[f64],
+    start: &[f64],
+    stage: Stage<'_>,
+    all_is_known: bool,
+) -> Result<CorrectedField, SolveFault> {
     let correction = corrector.correct(data, start)?;
     let mut displacement = correction.field().to_vec();
-    // Tied unknowns, on which no condition depends, follow their masters.
-    model.impose(stage.factor, &mut displacement);
-    let mut residual = vec![0.0; size];
-    let energy =
-        Assembly::residual(&*potential, &displacement, &mut residual).map_err(|fault| {
-            SolveFault::Inverted {
-                element: model.describe(fault.element),
-            }
-        })?;
-    let convergence = correction.convergence(energy);
-    model.check_stability(stage, &displacement)?;
+    if all_is_known {
+        // Tied unknowns, on which no condition depends, follow their masters.
+        model.impose(stage.factor, &mut displacement);
+        model.check_stability(stage, &displacement)?;
+    }
+    let convergence = correction.convergence(f64::NAN);
     Ok(CorrectedField {
-        state: State {
-            factor: stage.factor,
-            displacement,
-            residual,
-            history: stage.history.to_vec(),
-            load_steps: 1,
-            convergence,
-        },
+        state: state_at(model, stage, displacement, convergence)?,
         correction,
+    })
+}
+
+/// A displacement field as a state of a model, with its energy and residual.
+///
+/// # Errors
+/// [`SolveFault::Inverted`].
+pub(super) fn state_at(
+    model: &Model,
+    stage: Stage<'_>,
+    displacement: Vec<f64>,
+    mut convergence: Convergence,
+) -> Result<State, SolveFault> {
+    let potential = model.potential(stage.factor, stage.history);
+    let mut residual = vec![0.0; displacement.len()];
+    let energy = Assembly::residual(&*potential, &displacement, &mut residual);
+    convergence.energy = energy.map_err(|fault| SolveFault::Inverted {
+        element: model.describe(fault.element),
+    })?;
+    Ok(State {
+        factor: stage.factor,
+        displacement,
+        residual,
+        history: stage.history.to_vec(),
+        load_steps: 1,
+        convergence,
     })
 }
 

@@ -114,19 +114,4 @@ impl Viscosity for Dashpots<'_> {
         }
         Ok(())
     }
-
-    fn relaxed(
-        &self,
-        element: usize,
-        displacement: &[f64],
-        memory: &mut [f64],
-    ) -> Result<(), Inadmissible> {
-        memory.fill(0.0);
-        if let Some(pose) = self.pose(element, displacement)?
-            && let Some(first) = memory.first_mut()
-        {
-            *first = Self::long(&pose);
-        }
-        Ok(())
-    }
 }

@@ -74,14 +74,6 @@ impl History {
             .collect()
     }
 
-    /// The force of a support along an axis at all instants, in N.
-    pub fn support_force(&self, support: usize, axis: usize) -> Vec<f64> {
-        let instants = self.instants.iter();
-        instants
-            .map(|instant| instant.support_forces[support][axis])
-            .collect()
-    }
-
     /// The largest departure of the energy balance from its value at the start, relative to the largest energy of the motion.
     pub fn energy_error(&self) -> f64 {
         let Some(first) = self.instants.first() else {

@@ -146,22 +146,4 @@ impl Viscosity for SheetViscosity<'_> {
         }
         Ok(())
     }
-
-    fn relaxed(
-        &self,
-        element: usize,
-        displacement: &[f64],
-        memory: &mut [f64],
-    ) -> Result<(), Inadmissible> {
-        memory.fill(0.0);
-        if self.of_point() == 0 {
-            return Ok(());
-        }
-        let points = self.points(element, displacement)?;
-        for (part, (_, kinematics)) in memory.chunks_exact_mut(self.of_point()).zip(points) {
-            let (_, long) = self.energy.law().stress(&kinematics);
-            part[..3].copy_from_slice(&second_piola_kirchhoff(&kinematics, &long));
-        }
-        Ok(())
-    }
 }

@@ -56,19 +56,6 @@ pub trait Viscosity: Sync {
         Ok(())
     }
 
-    /// The memory of an element after a long rest at its displacement.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] when the element is inverted.
-    fn relaxed(
-        &self,
-        _element: usize,
-        _displacement: &[f64],
-        _memory: &mut [f64],
-    ) -> Result<(), Inadmissible> {
-        Ok(())
-    }
-
     /// Whether the forces depend on the velocities, and not on the past alone.
     fn depends_on_rates(&self) -> bool {
         true
@@ -83,7 +70,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// The memories of a body that rests at a displacement.
+    /// The memories of a body that has rested at a displacement for long.
     ///
     /// # Errors
     /// [`Inadmissible`] with the first inverted element.
@@ -92,18 +79,19 @@ impl Memory {
         viscosity: &dyn Viscosity,
         displacement: &[f64],
     ) -> Result<Self, Inadmissible> {
-        let mut memory = Self {
-            starts: vec![0],
-            values: Vec::new(),
-        };
+        let mut starts = vec![0];
         for element in 0..connectivity.elements() {
-            let mut own = vec![0.0; viscosity.memory(element)];
-            let u = connectivity.values(element, displacement);
-            viscosity.relaxed(element, &u, &mut own)?;
-            memory.values.extend(own);
-            memory.starts.push(memory.values.len());
+            starts.push(starts[element] + viscosity.memory(element));
         }
-        Ok(memory)
+        let values = vec![0.0; starts[connectivity.elements()]];
+        let velocity = vec![0.0; displacement.len()];
+        let before = Self { starts, values };
+        before.after(
+            connectivity,
+            viscosity,
+            [displacement, &velocity],
+            f64::INFINITY,
+        )
     }
 
     /// The memory of an element.

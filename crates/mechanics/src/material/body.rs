@@ -65,22 +65,10 @@ impl<S> BodyStretches<S> {
         3.0 * logarithm_of_one_plus(self.volume_root_change)
     }
 
-    /// a = ln J.
-    #[inline(always)]
-    pub fn area(&self) -> f64 {
-        logarithm_of_one_plus(self.area_change)
-    }
-
     /// λ₃ − 1.
     #[inline(always)]
     pub fn thickness_change(&self) -> f64 {
         (self.volume_change() - self.area_change) / (1.0 + self.area_change)
-    }
-
-    /// b = ln λ₃.
-    #[inline(always)]
-    pub fn thickness(&self) -> f64 {
-        self.volume() - self.area()
     }
 }
 

@@ -4,14 +4,8 @@ use super::geometry::distance;
 
 /// A field of vectors at nodes, as the solvers store it: x and y of node after node.
 pub trait NodalField {
-    /// The vector at a node.
-    fn at(&self, node: usize) -> [f64; 2];
-
     /// The vectors of node after node.
     fn vectors(&self) -> impl Iterator<Item = [f64; 2]> + Clone;
-
-    /// The field's difference from another one.
-    fn minus(&self, other: &Self) -> Vec<f64>;
 
     /// √(Σ w |u|²) over the nodes with their weights w.
     fn weighted_norm(&self, weights: &[f64]) -> f64;
@@ -24,17 +18,8 @@ pub trait NodalField {
 }
 
 impl NodalField for [f64] {
-    #[inline]
-    fn at(&self, node: usize) -> [f64; 2] {
-        [self[2 * node], self[2 * node + 1]]
-    }
-
     fn vectors(&self) -> impl Iterator<Item = [f64; 2]> + Clone {
         self.chunks_exact(2).map(|u| [u[0], u[1]])
-    }
-
-    fn minus(&self, other: &Self) -> Vec<f64> {
-        self.iter().zip(other).map(|(u, v)| u - v).collect()
     }
 
     fn weighted_norm(&self, weights: &[f64]) -> f64 {
@@ -72,16 +57,12 @@ mod tests {
     #[test]
     fn vectors_norms_and_distances_are_those_of_the_nodes() {
         let (u, v) = ([3.0, 4.0, 1.0, -1.0], [0.0, 0.0, 1.0, 2.0]);
-        assert_eq!((u.at(1), u.vectors().count()), ([1.0, -1.0], 2));
+        assert_eq!(u.vectors().collect::<Vec<_>>(), [[3.0, 4.0], [1.0, -1.0]]);
         assert_eq!(
             u.weighted_norm(&[2.0, 3.0]),
             f64::sqrt(2.0 * 25.0 + 3.0 * 2.0)
         );
         assert_eq!(u.weighted_distance(&v, &[1.0, 1.0]), f64::sqrt(25.0 + 9.0));
-        assert_eq!(
-            u.minus(&v).weighted_norm(&[1.0, 1.0]),
-            u.weighted_distance(&v, &[1.0, 1.0])
-        );
         assert_eq!(v.largest_distance(&u), (5.0, 0));
     }
 }

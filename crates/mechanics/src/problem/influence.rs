@@ -6,9 +6,7 @@ use super::constraints::Constraints;
 use super::groups::shares;
 use super::model::Model;
 use crate::error::SolveFault;
-use crate::solve::{
-    Loading, Newton, NewtonSettings, Stage, State, Tangent, compliance, equilibrium, influence,
-};
+use crate::solve::{Loading, Newton, NewtonSettings, Stage, State, Tangent, equilibrium};
 
 /// Most unknowns of all tangents that are factorised at once.
 const SIDE_BY_SIDE: usize = 400_000;
@@ -152,9 +150,11 @@ impl Model<'_> {
             force = Some(unit);
         }
         let (stage, u) = (state.stage(), &state.displacement);
+        let potential = self.potential(stage.factor, stage.history);
+        let describe = |element| self.describe(element);
         let mut field = match force {
-            Some(force) => compliance(tangent, self, stage, u, &force)?,
-            None => influence(tangent, self, stage, u, &motion)?,
+            Some(force) => tangent.respond(&*potential, u, &force, &describe)?,
+            None => tangent.influence(&*potential, u, &motion, &describe)?,
         };
         for (unknown, tie) in ties {
             field[*unknown] = tie.share * field[tie.master];

@@ -1,9 +1,7 @@
 //! A boundary value problem on a mesh: its solution, and what follows from its states.
 
-use std::collections::BTreeMap;
-
 use super::boundary_conditions::LONGEST_TURN;
-use super::constraints::{Constraints, Motion, Tie};
+use super::constraints::{Constraints, Motion};
 use super::loads::Loads;
 use super::rigid::free_motions;
 use super::ties::TiedPotential;
@@ -150,11 +148,6 @@ impl<'a> Model<'a> {
     /// Adds forces in N at load factor 1, one for each unknown: a body force, for instance.
     pub fn add_forces(&mut self, forces: &[f64]) {
         self.loads.add_forces(forces);
-    }
-
-    /// The unknowns that are tied, each to its master.
-    pub fn ties(&self) -> &BTreeMap<usize, Tie> {
-        &self.constraints.ties
     }
 
     /// A potential whose tied unknowns follow their masters.

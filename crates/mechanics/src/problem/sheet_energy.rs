@@ -160,14 +160,6 @@ impl Potential for SheetEnergy {
         self.evaluate_after(element, u, local, &self.history)
     }
 
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        if self.history.is_empty() {
-            self.add_virgin_forces(u, forces)
-        } else {
-            evaluate_by_elements(self, u, forces, None).map(|_| ())
-        }
-    }
-
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
         if self.history.is_empty() {
             self.evaluate_virgin(u, forces, take)

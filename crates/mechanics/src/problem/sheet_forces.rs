@@ -10,38 +10,16 @@ use crate::solve::{Inadmissible, Potential, Take};
 /// Least number of points that are evaluated together.
 const BLOCK: usize = 256;
 
-/// Points of some cells side by side, with N numbers that a law returns for each.
-struct Points<const N: usize> {
+/// Points of some cells side by side, with the numbers that a law returns for each.
+struct Points {
     /// Components 11, 12, 21, 22 of the displacement gradient.
     gradients: [Vec<f64>; 4],
-    made: [Vec<f64>; N],
+    responses: [Vec<f64>; COMPONENTS],
     /// Displacements or forces of one cell.
     cell: Vec<f64>,
 }
 
-/// Evaluates a law at many points at once; returns whether all of them are admissible.
-type Make<const N: usize> = fn(&dyn HyperelasticLaw, [&[f64]; 4], [&mut [f64]; N]) -> bool;
-
 impl SheetEnergy {
-    /// Adds ∂Π/∂u in N at the displacements `u` of a body without a history.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted cell.
-    pub(super) fn add_virgin_forces(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-    ) -> Result<(), Inadmissible> {
-        let make: Make<4> = |law, h, made| law.stresses(h, made);
-        self.in_blocks(u, make, |points, cells| {
-            let mut place = 0;
-            for cell in cells {
-                points.add_forces(self, cell, place, 0, forces);
-                place += self.cell_points(cell).len();
-            }
-        })
-    }
-
     /// As [`Potential::evaluate`], of a body without a history.
     ///
     /// # Errors
@@ -53,14 +31,13 @@ impl SheetEnergy {
         mut take: Take<'_>,
     ) -> Result<f64, Inadmissible> {
         let (mut energy, mut stiffness) = (0.0, Vec::new());
-        let make: Make<COMPONENTS> = |law, h, made| law.responses(h, made);
-        self.in_blocks(u, make, |points, cells| {
+        self.in_blocks(u, |points, cells| {
             let mut place = 0;
             for cell in cells {
                 let own = (place..).zip(self.cell_points(cell));
-                let terms = own.map(|(index, point)| point.volume() * points.made[0][index]);
+                let terms = own.map(|(index, point)| point.volume() * points.responses[0][index]);
                 energy += terms.sum::<f64>();
-                points.add_forces(self, cell, place, 1, forces);
+                points.add_forces(self, cell, place, forces);
                 if let Some(take) = &mut take {
                     points.stiffness(self, cell, place, &mut stiffness);
                     take(cell, &stiffness);
@@ -72,11 +49,10 @@ impl SheetEnergy {
     }
 
     /// Evaluates a law at the points of all cells, some cells at a time.
-    fn in_blocks<const N: usize>(
+    fn in_blocks(
         &self,
         u: &[f64],
-        make: Make<N>,
-        mut take: impl FnMut(&mut Points<N>, Range<usize>),
+        mut take: impl FnMut(&mut Points, Range<usize>),
     ) -> Result<(), Inadmissible> {
         let mut points = Points::new();
         let mut first = 0;
@@ -87,11 +63,11 @@ impl SheetEnergy {
                 points.push(self, last, u);
                 last += 1;
             }
-            if !points.evaluate(self.law(), make) {
+            if !points.evaluate(self.law()) {
                 let faulty = (first..last).find(|cell| {
                     let mut alone = Points::new();
                     alone.push(self, *cell, u);
-                    !alone.evaluate(self.law(), make)
+                    !alone.evaluate(self.law())
                 });
                 return Err(Inadmissible {
                     element: faulty.unwrap_or(first),
@@ -104,11 +80,11 @@ impl SheetEnergy {
     }
 }
 
-impl<const N: usize> Points<N> {
+impl Points {
     fn new() -> Self {
         Self {
             gradients: Default::default(),
-            made: [const { Vec::new() }; N],
+            responses: [const { Vec::new() }; COMPONENTS],
             cell: Vec::new(),
         }
     }
@@ -132,39 +108,31 @@ impl<const N: usize> Points<N> {
     }
 
     /// Evaluates a law at all points; returns whether all of them are admissible.
-    fn evaluate(&mut self, law: &dyn HyperelasticLaw, make: Make<N>) -> bool {
+    fn evaluate(&mut self, law: &dyn HyperelasticLaw) -> bool {
         let count = self.gradients[0].len();
-        let sizes = self.made.iter_mut();
-        sizes.for_each(|own| own.resize(count, 0.0));
+        for component in &mut self.responses {
+            component.resize(count, 0.0);
+        }
         let gradients = self.gradients.each_ref().map(|own| &own[..]);
-        let made = self.made.each_mut().map(|own| &mut own[..]);
-        let positive = make(law, gradients, made);
-        positive && self.made.iter().flatten().all(|own| own.is_finite())
+        let responses = self.responses.each_mut().map(|own| &mut own[..]);
+        let positive = law.responses(gradients, responses);
+        positive && self.responses.iter().flatten().all(|own| own.is_finite())
     }
 
-    /// Adds the forces of a cell whose points begin at a place; P begins at a given component.
-    fn add_forces(
-        &mut self,
-        energy: &SheetEnergy,
-        cell: usize,
-        place: usize,
-        first: usize,
-        forces: &mut [f64],
-    ) {
+    /// Adds the forces of a cell whose points begin at a place.
+    fn add_forces(&mut self, energy: &SheetEnergy, cell: usize, place: usize, forces: &mut [f64]) {
         let unknowns = energy.element_unknowns(cell);
         self.cell.clear();
         self.cell.resize(unknowns.len(), 0.0);
         for (index, point) in (place..).zip(energy.cell_points(cell)) {
-            let stress = [0, 1, 2, 3].map(|own| self.made[first + own][index]);
+            let stress = [1, 2, 3, 4].map(|own| self.responses[own][index]);
             point.add_force(&stress.into(), &mut self.cell);
         }
         for (unknown, force) in unknowns.iter().zip(&self.cell) {
             forces[*unknown as usize] += force;
         }
     }
-}
 
-impl Points<COMPONENTS> {
     /// Writes the stiffness of a cell whose points begin at a place.
     fn stiffness(&self, energy: &SheetEnergy, cell: usize, place: usize, stiffness: &mut Vec<f64>) {
         let size = energy.element_unknowns(cell).len();
@@ -178,7 +146,7 @@ impl Points<COMPONENTS> {
     /// ∂P/∂F at a point, column by column.
     fn tangent(&self, point: usize) -> [f64; 16] {
         const LOWER: [usize; 16] = [0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9];
-        LOWER.map(|own| self.made[5 + own][point])
+        LOWER.map(|own| self.responses[5 + own][point])
     }
 }
 
@@ -231,8 +199,6 @@ mod tests {
                 let mut take = |element: usize, own: &[f64]| lower.push((element, own.to_vec()));
                 let take = Some(&mut take as &mut dyn FnMut(usize, &[f64]));
                 let energy = evaluate_by_elements(&*potential, &u, &mut with_energy, take).unwrap();
-                let mut alone = vec![0.0; u.len()];
-                potential.add_forces(&u, &mut alone).unwrap();
                 let (mut together, mut place) = (vec![0.0; u.len()], 0);
                 let mut take = |element: usize, own: &[f64]| {
                     let (other_element, other) = &lower[place];
@@ -250,18 +216,14 @@ mod tests {
                 assert!((found.unwrap() / energy - 1.0).abs() < 1e-13);
                 assert_eq!(place, lower.len());
                 for (unknown, other) in with_energy.iter().enumerate() {
-                    for own in [alone[unknown], together[unknown]] {
-                        let far = (own - other).abs();
-                        assert!(far < 1e-13, "{kind:?}, {unknown}: {own} {other}");
-                    }
+                    let far = (together[unknown] - other).abs();
+                    assert!(far < 1e-13, "{kind:?}, {unknown}: {far}");
                 }
                 let folded: Vec<f64> = u.iter().map(|u| -400.0 * u).collect();
                 let by_element = evaluate_by_elements(&*potential, &folded, &mut with_energy, None);
                 assert!(by_element.is_err());
-                assert_eq!(
-                    potential.add_forces(&folded, &mut alone),
-                    by_element.map(|_| ())
-                );
+                let at_once = potential.evaluate(&folded, &mut together, None);
+                assert_eq!(at_once, by_element);
             }
         }
     }

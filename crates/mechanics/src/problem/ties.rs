@@ -68,24 +68,24 @@ fn spread(places: &[(usize, f64)], u: &[f64]) -> Vec<f64> {
 
 impl TiedPotential<'_> {
     /// Evaluates the untied potential at u = T v, whose forces become those of v: f ← f + Tᵀ r.
-    fn untied<T>(
+    fn untied(
         &self,
         v: &[f64],
         forces: &mut [f64],
-        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<T, Inadmissible>,
-    ) -> Result<T, Inadmissible> {
+        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<f64, Inadmissible>,
+    ) -> Result<f64, Inadmissible> {
         let (mut u, mut untied) = (v.to_vec(), vec![0.0; v.len()]);
         for (unknown, tie) in self.ties {
             u[*unknown] = tie.share * v[tie.master];
         }
-        let found = evaluate(&u, &mut untied)?;
+        let energy = evaluate(&u, &mut untied)?;
         for (unknown, tie) in self.ties {
             untied[tie.master] += tie.share * std::mem::take(&mut untied[*unknown]);
         }
         for (force, own) in forces.iter_mut().zip(untied) {
             *force += own;
         }
-        Ok(found)
+        Ok(energy)
     }
 }
 
@@ -145,10 +145,6 @@ impl Potential for TiedPotential<'_> {
             fold(places, &matrix, stiffness);
         }
         Ok(energy)
-    }
-
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        self.untied(u, forces, |u, untied| self.potential.add_forces(u, untied))
     }
 
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {

@@ -37,14 +37,6 @@ impl Potential for After<'_> {
         }
     }
 
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        if self.history.is_empty() {
-            self.energy.add_forces(u, forces)
-        } else {
-            evaluate_by_elements(self, u, forces, None).map(|_| ())
-        }
-    }
-
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
         if self.history.is_empty() {
             self.energy.evaluate(u, forces, take)
@@ -117,12 +109,6 @@ impl Potential for Sum<'_> {
         let (part, own) = self.part(element);
         let energy = part.evaluate_element(own, u, local);
         energy.map_err(|_| Inadmissible { element })
-    }
-
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        self.first.add_forces(u, forces)?;
-        let second = self.second.add_forces(u, forces);
-        second.map_err(|fault| self.of_second(fault))
     }
 
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {

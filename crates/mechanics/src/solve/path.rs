@@ -112,24 +112,6 @@ pub fn follow(
     Ok(states)
 }
 
-/// The change of an equilibrium by its transposed tangent while held unknowns move as `motion` says and the others
-/// follow: the influence of a disturbance of the field on the support's reaction, and, where the tangent is symmetric, the
-/// sensitivity of the field to the support's motion.
-///
-/// # Errors
-/// A [`SolveFault`] when the tangent is not positive definite.
-pub fn influence(
-    tangent: &mut Tangent,
-    loading: &dyn Loading,
-    stage: Stage<'_>,
-    displacement: &[f64],
-    motion: &[f64],
-) -> Result<Vec<f64>, SolveFault> {
-    let potential = loading.potential(stage.factor, stage.history);
-    let describe = |element| loading.describe(element);
-    tangent.influence(&*potential, displacement, motion, &describe)
-}
-
 /// The change of an equilibrium by its transposed tangent under small forces on free unknowns, while held ones rest: the
 /// influence of a disturbance of the field on the forces' displacement, and, where the tangent is symmetric, the sensitivity
 /// of the field to the forces.

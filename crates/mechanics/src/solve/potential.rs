@@ -53,14 +53,6 @@ pub trait Potential: Sync {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible>;
 
-    /// Adds ∂Π/∂u at all unknowns, without the energy.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with an element that is inverted.
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        evaluate_by_elements(self, u, forces, None).map(|_| ())
-    }
-
     /// Π; adds ∂Π/∂u at all unknowns, and passes on the stiffnesses of all elements where they are wanted.
     ///
     /// # Errors
@@ -201,10 +193,6 @@ impl<P: Potential + ?Sized> Potential for &P {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
         (**self).evaluate_element(element, u, local)
-    }
-
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        (**self).add_forces(u, forces)
     }
 
     fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {

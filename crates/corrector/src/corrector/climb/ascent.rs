@@ -25,7 +25,6 @@ pub(super) struct Ascent {
     /// The ratio by which changes shrink from grid to grid.
     ratio: f64,
     ratios: Ratios,
-    iteration_error: f64,
     corrections: Vec<f64>,
     work: Vec<(usize, Work)>,
     way: Way,
@@ -49,7 +48,6 @@ impl Ascent {
             size: f64::NAN,
             ratio: ratios.first,
             ratios,
-            iteration_error: left,
             work,
             way,
         }
@@ -58,7 +56,6 @@ impl Ascent {
     /// Records that the field on a finer grid was found along a path of load steps, and the remaining error.
     fn note_load_path(&mut self, left: f64, cells: [usize; 2]) {
         self.corrections = vec![self.size, left];
-        self.iteration_error = left;
         self.way.by_load_path.push(cells);
     }
 
@@ -141,8 +138,6 @@ impl Climb<'_> {
             discretisation_error: ascent.discretisation_error(),
             error_is_sure: ascent.follows_all_grids() && self.tells_error(),
             field: ascent.field,
-            change: ascent.change.map(|change| (change, ascent.size)),
-            iteration_error: ascent.iteration_error,
             corrections: ascent.corrections,
             work: ascent.work,
             way: ascent.way,
@@ -174,7 +169,6 @@ impl Climb<'_> {
         let reached = found?;
         self.weakest = reached.fall.weakest;
         ascent.take(&self.levels, index, field, interpolated);
-        ascent.iteration_error = reached.fall.left();
         ascent.corrections = reached.fall.corrections;
         ascent
             .work

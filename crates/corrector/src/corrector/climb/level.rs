@@ -155,7 +155,8 @@ impl Level {
             ..Work::default()
         };
         self.evaluate_residual(sheet, u)?;
-        let mut found = self.precondition(multigrid, &mut work);
+        let mut found = self.precondition(multigrid);
+        work.cycles += 1;
         let mut fall = Fall::new(found.size, ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
@@ -167,7 +168,8 @@ impl Level {
             }
             let length = self.step(sheet, u, share, &mut work)?;
             let before = found.steepness;
-            found = self.precondition(multigrid, &mut work);
+            found = self.precondition(multigrid);
+            work.cycles += 1;
             share = found.steepness / before;
             fall.push(found.size, length, share);
         }
@@ -176,8 +178,7 @@ impl Level {
     }
 
     /// The correction z = M⁻¹ r of the residual, which is zero at the grips.
-    fn precondition(&mut self, multigrid: &mut Multigrid, work: &mut Work) -> Preconditioned {
-        work.cycles += 1;
+    fn precondition(&mut self, multigrid: &mut Multigrid) -> Preconditioned {
         let width = self.residual.width;
         let residual = &self.residual;
         let right = multigrid.right_hand_side(self.index);
@@ -241,10 +242,7 @@ impl Level {
     }
 
     /// Solves K x = b at the free nodes with x = 0 at the grips, K being the Jacobian of F at `u`, by the same iteration as
-    /// [`Self::iterate`]: returns x, with b − K x at the grips, and the work; `None` where K is not positive definite.
-    ///
-    /// # Errors
-    /// [`Inverted`] when `u` is not admissible.
+    /// [`Self::iterate`]: returns x, with b − K x at the grips; `None` where K is not positive definite or `u` not admissible.
     pub fn solve_linear(
         &mut self,
         sheet: Sheet,
@@ -252,18 +250,14 @@ impl Level {
         b: &Field,
         multigrid: &mut Multigrid,
         tolerance: f64,
-    ) -> Result<Option<(Field, Work)>, Inverted> {
+    ) -> Option<Field> {
         let mut at_rest = Field::zeros(&self.grid);
-        sheet.forces(&self.grid, u, &mut at_rest)?;
+        sheet.forces(&self.grid, u, &mut at_rest).ok()?;
         let mut x = Field::zeros(&self.grid);
         let mut image = Field::zeros(&self.grid);
         self.residual.clone_from(b);
         self.residual.scale(-1.0);
-        let mut work = Work {
-            evaluations: 1,
-            ..Work::default()
-        };
-        let mut found = self.precondition(multigrid, &mut work);
+        let mut found = self.precondition(multigrid);
         let first = found.size;
         self.direction.scale(0.0);
         let mut share = 0.0;
@@ -272,20 +266,20 @@ impl Level {
             let scale = DIFFERENCE * u.size() / self.direction.size().max(f64::MIN_POSITIVE);
             self.trial.clone_from(u);
             self.trial.add(scale, &self.direction);
-            sheet.forces(&self.grid, &self.trial, &mut self.trial_residual)?;
-            work.evaluations += 1;
+            let forces = sheet.forces(&self.grid, &self.trial, &mut self.trial_residual);
+            forces.ok()?;
             self.trial_residual.add(-1.0, &at_rest);
             self.trial_residual.scale(1.0 / scale);
             let curvature = self.direction.product(&self.trial_residual);
             if curvature <= 0.0 {
-                return Ok(None);
+                return None;
             }
             let length = -self.direction.product(&self.residual) / curvature;
             x.add(length, &self.direction);
             image.add(length, &self.trial_residual);
             self.residual.add(length, &self.trial_residual);
             let before = found.steepness;
-            found = self.precondition(multigrid, &mut work);
+            found = self.precondition(multigrid);
             share = found.steepness / before;
             if found.size <= tolerance * first {
                 let free = u.free();
@@ -295,10 +289,10 @@ impl Level {
                         x[node] = b.components[axis][node] - image.components[axis][node];
                     }
                 }
-                return Ok(Some((x, work)));
+                return Some(x);
             }
         }
-        Ok(None)
+        None
     }
 
     /// Turns the direction, p = β p − z, and goes along it until the residual is orthogonal to it; returns how far.

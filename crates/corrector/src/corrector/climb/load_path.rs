@@ -9,11 +9,11 @@ use super::Climb;
 use super::grid::{Field, Grid};
 use super::start::contracted_stretch;
 use crate::error::{Error, SolveFault};
-use crate::problem::ClampedPlate;
+use crate::mesh::Mesh;
+use crate::problem::Model;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{
-    Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, Stage, State,
-    Tangent, compliance, follow,
+    Assembly, LinearSolver, Loading, NewtonSettings, Potential, Stage, Tangent, compliance,
 };
 
 /// The remaining residual of Newton's method, relative to the largest reaction.
@@ -32,79 +32,20 @@ pub(super) struct Equilibrium {
     pub left: f64,
 }
 
-/// A grid's plate between its grips; the load factor is the share of the stretch, so that the sign of the stretch does not matter.
-struct GridLoading<'a> {
-    problem: &'a ClampedPlate,
+/// The scheme's plate on a grid.
+struct GridPlate<'a> {
     grid: &'a Grid,
-    energy: &'a SheetEnergy,
-    stretch: f64,
+    mesh: Mesh,
+    energy: SheetEnergy,
 }
 
-impl GridLoading<'_> {
-    fn on_left(&self, node: usize) -> bool {
-        node < self.grid.lines().nodes
-    }
-
-    fn on_right(&self, node: usize) -> bool {
-        node >= self.grid.nodes() - self.grid.lines().nodes
-    }
-
-    fn place(&self, node: usize) -> [f64; 2] {
-        let nodes = self.grid.lines().nodes;
-        let [x, y] = &self.grid.coordinates;
-        [x[node / nodes], y[node % nodes]]
-    }
-}
-
-impl Loading for GridLoading<'_> {
-    fn held(&self) -> Vec<bool> {
-        let unknowns = 0..2 * self.grid.nodes();
-        unknowns
-            .map(|unknown| self.on_left(unknown / 2) || self.on_right(unknown / 2))
-            .collect()
-    }
-
-    fn impose(&self, factor: f64, displacement: &mut [f64]) {
-        for (node, u) in displacement.chunks_exact_mut(2).enumerate() {
-            if self.on_left(node) {
-                u.fill(0.0);
-            } else if self.on_right(node) {
-                u.copy_from_slice(&[factor * self.stretch * self.problem.size[0], 0.0]);
-            }
-        }
-    }
-
-    fn potential<'a>(&'a self, _: f64, _: &'a [f64]) -> Box<dyn Potential + 'a> {
-        Box::new(self.energy)
-    }
-
-    /// The state before, scaled with the grip's motion, or the contracted stretch.
-    fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
-        // The state at rest cannot be scaled.
-        Some(match previous.filter(|own| own.factor != 0.0) {
-            Some(previous) => {
-                let ratio = factor / previous.factor;
-                previous.displacement.iter().map(|u| ratio * u).collect()
-            }
-            None => {
-                let field = contracted_stretch(self.problem.size, self.grid, factor * self.stretch);
-                field.to_nodes()
-            }
-        })
-    }
-
+impl GridPlate<'_> {
     fn describe(&self, element: usize) -> String {
         let unknowns = self.energy.element_unknowns(element);
         let [[x, y], [to_x, to_y]] = [unknowns[0], unknowns[unknowns.len() - 1]]
-            .map(|unknown| self.place(unknown as usize / 2));
+            .map(|unknown| self.mesh.nodes[unknown as usize / 2]);
         let (x, y) = (0.5 * (x + to_x), 0.5 * (y + to_y));
         format!("cell {element} near ({x:.1}, {y:.1}) mm")
-    }
-
-    fn describe_unknown(&self, unknown: usize) -> String {
-        let [x, y] = self.place(unknown / 2);
-        let axis = ["x", "y"][unknown % 2];
-        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
     }
 }
 
@@ -114,23 +55,14 @@ impl Climb<'_> {
     /// # Errors
     /// [`Error::Solve`] with the reason on the finest grid.
     pub(super) fn along_load_path(&self, from: usize, stretch: f64) -> Result<Equilibrium, Error> {
-        let mut last = None;
-        for index in from..self.levels.len() {
-            match self.load_path(index, stretch) {
-                Ok(found) => return Ok(found),
-                Err(end) => last = Some(end),
+        let mut equilibrium = self.load_path(from, stretch);
+        for index in from + 1..self.levels.len() {
+            if equilibrium.is_ok() {
+                break;
             }
+            equilibrium = self.load_path(index, stretch);
         }
-        let end = last.expect("one grid at least");
-        Err(Error::Solve {
-            model: "corrector (climb)".into(),
-            step: format!(
-                "{} (reached {} %)",
-                ClampedPlate::describe_step(stretch),
-                ClampedPlate::percent(end.reached() * stretch)
-            ),
-            fault: end.fault,
-        })
+        equilibrium
     }
 
     /// Assembles the operators of its grid and of all coarser ones at an equilibrium. Where that fails, finer grids
@@ -139,17 +71,29 @@ impl Climb<'_> {
         self.linearise_below(found.index, &found.field).ok();
     }
 
-    fn load_path(&self, index: usize, stretch: f64) -> Result<Equilibrium, PathEnd> {
-        let grid = &self.levels[index].grid;
-        let energy = self.scheme.energy_between(self.problem, &grid.coordinates);
-        let loading = GridLoading {
-            problem: self.problem,
+    fn plate_on<'a>(&self, grid: &'a Grid) -> GridPlate<'a> {
+        GridPlate {
             grid,
-            energy: &energy,
-            stretch,
-        };
-        let state = follow(&loading, &[1.0], NEWTON, Attendance::told(&|_| ()))?.remove(0);
-        let field = Field::of_nodes(grid, &state.displacement);
+            mesh: grid.mesh(1),
+            energy: self.scheme.energy_between(self.problem, &grid.coordinates),
+        }
+    }
+
+    /// The problem on a grid's plate; the first guess of a path to a stretch is the contracted stretch.
+    fn model<'a>(&self, plate: &'a GridPlate, stretch: f64) -> Model<'a> {
+        let mut guess = contracted_stretch(self.problem.size, plate.grid, stretch);
+        guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });
+        let model = self.problem.on(&plate.mesh, &plate.energy);
+        model
+            .named("corrector (climb)")
+            .describing(|element| plate.describe(element))
+            .guessing(guess.to_nodes())
+    }
+
+    fn load_path(&self, index: usize, stretch: f64) -> Result<Equilibrium, Error> {
+        let plate = self.plate_on(&self.levels[index].grid);
+        let state = self.model(&plate, stretch).reach(&[stretch], NEWTON)?;
+        let field = Field::of_nodes(plate.grid, &state.displacement);
         let residual = state.convergence.residuals.last();
         Ok(Equilibrium {
             index,
@@ -164,27 +108,22 @@ impl Climb<'_> {
     /// # Errors
     /// A [`SolveFault`] when K cannot be factorised.
     pub(super) fn solve_by_factor(&self, u: &Field, b: &Field) -> Result<Field, SolveFault> {
-        let grid = self.grid();
-        let energy = self.scheme.energy_between(self.problem, &grid.coordinates);
-        let loading = GridLoading {
-            problem: self.problem,
-            grid,
-            energy: &energy,
-            stretch: 0.0,
-        };
+        let plate = self.plate_on(self.grid());
+        let model = self.model(&plate, 0.0);
+        let held = model.held();
         let (u, b) = (u.to_nodes(), b.to_nodes());
-        let mut tangent = Tangent::new(&energy, &loading.held(), LinearSolver::Direct)?;
-        let mut x = compliance(&mut tangent, &loading, Stage::first(1.0), &u, &b)?;
+        let mut tangent = Tangent::new(&plate.energy, &held, LinearSolver::Direct)?;
+        let mut x = compliance(&mut tangent, &model, Stage::first(1.0), &u, &b)?;
         let mut image = vec![0.0; x.len()];
-        let product = Assembly::add_product(&energy, &u, &x, &mut image);
+        let product = Assembly::add_product(&plate.energy, &u, &x, &mut image);
         product.map_err(|fault| SolveFault::Inverted {
-            element: loading.describe(fault.element),
+            element: plate.describe(fault.element),
         })?;
-        for (unknown, held) in loading.held().into_iter().enumerate() {
+        for (unknown, held) in held.into_iter().enumerate() {
             if held {
                 x[unknown] = b[unknown] - image[unknown];
             }
         }
-        Ok(Field::of_nodes(grid, &x))
+        Ok(Field::of_nodes(plate.grid, &x))
     }
 }

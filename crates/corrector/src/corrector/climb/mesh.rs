@@ -43,7 +43,7 @@ impl Grid {
     }
 
     /// The mesh of cells with `side` spans of the grid along each axis, one (four nodes) or two (nine nodes).
-    fn mesh(&self, side: usize) -> Mesh {
+    pub(super) fn mesh(&self, side: usize) -> Mesh {
         let [x, y] = &self.coordinates;
         let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
         let shape = [CellShape::Quad4, CellShape::Quad9][side - 1];

@@ -50,7 +50,6 @@ impl Climb<'_> {
         self.linearise_below(finest, corrected).ok()?;
         let sheet = self.sheet();
         let (level, multigrid) = (&mut self.levels[finest], &mut self.multigrid);
-        let solved = level.solve_linear(sheet, corrected, difference, multigrid, TOLERANCE);
-        solved.ok()?.map(|(multipliers, _)| multipliers)
+        level.solve_linear(sheet, corrected, difference, multigrid, TOLERANCE)
     }
 }

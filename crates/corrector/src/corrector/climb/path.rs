@@ -153,10 +153,8 @@ impl ClimbSolution {
         Self {
             field,
             force,
-            change: None,
             discretisation_error,
             error_is_sure: false,
-            iteration_error: reached.fall.left(),
             work: vec![(nodes, reached.work)],
             corrections: reached.fall.corrections,
             way: Way::from_start(Start::StatesBefore, cells),

@@ -25,7 +25,6 @@ impl Sheet<'_> {
     pub fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
         let Sheet { law, thickness, .. } = self;
         let admissible = match self.scheme {
-            DifferenceScheme::Corners => forces(law, thickness, grid, &Rule::corners(), u, target),
             DifferenceScheme::Gauss => forces(law, thickness, grid, Rule::linear(), u, target),
             DifferenceScheme::Biquadratic => {
                 forces(law, thickness, grid, Rule::quadratic(), u, target)

@@ -27,7 +27,7 @@ const SPRINGS: NewtonSettings = NewtonSettings {
 };
 
 /// Load steps that are tried where the springs are too far away.
-const LOAD_STEPS: [usize; 4] = [2, 4, 8, 16];
+const LOAD_STEPS: [usize; 3] = [2, 4, 8];
 
 /// Most cells of a lattice of springs: more would take longer than the steps that follow.
 const MOST_CELLS: usize = 10_000;
@@ -42,11 +42,13 @@ impl Climb<'_> {
     /// # Errors
     /// [`Error::Solve`] with the reason on the finest grid.
     pub(super) fn first_field(&mut self, stretch: f64) -> Result<Ascent, Error> {
-        let steps = LOAD_STEPS.map(Start::LoadSteps);
-        let springs = [Start::Springs, Start::SpringsWithAreaTerm];
-        let starts = springs.into_iter().chain(steps);
-        for start in starts.chain([Start::ContractedStretch]) {
-            if let Some(first) = self.correct_from(start, stretch) {
+        for steps in [1].into_iter().chain(LOAD_STEPS) {
+            if let Some(first) = self.correct_springs(steps, stretch) {
+                let start = if steps == 1 {
+                    Start::Springs
+                } else {
+                    Start::LoadSteps(steps)
+                };
                 return Ok(self.begin(start, first));
             }
         }
@@ -75,18 +77,9 @@ impl Climb<'_> {
         Ascent::new(self.start, self.ratios, way, first.field, first.left, work)
     }
 
-    /// The corrected field from one start on the first grid; `None` where it cannot be corrected.
-    pub(super) fn correct_from(&mut self, start: Start, stretch: f64) -> Option<First> {
-        let (guess, steps) = match start {
-            Start::Springs => (self.springs(stretch, false)?, 1),
-            Start::SpringsWithAreaTerm => (self.springs(stretch, true)?, 1),
-            Start::LoadSteps(steps) => (self.springs(stretch / steps as f64, false)?, steps),
-            Start::ContractedStretch => {
-                let grid = &self.levels[self.start].grid;
-                (contracted_stretch(self.problem.size, grid, stretch), 1)
-            }
-            Start::LoadPath | Start::AffineStretch | Start::StatesBefore => return None,
-        };
+    /// The springs' field at the first of so many load steps, corrected and led to the stretch on the first grid; `None` where it cannot be.
+    pub(super) fn correct_springs(&mut self, steps: usize, stretch: f64) -> Option<First> {
+        let guess = self.springs(stretch / steps as f64)?;
         self.load_steps(guess, steps).ok()
     }
 
@@ -139,14 +132,14 @@ impl Climb<'_> {
     ///
     /// The lattice has about half as many cells as the grid along both axes: the error of interpolation is small
     /// compared with that of springs. Its cells have a shape that springs can make isotropic.
-    fn springs(&self, stretch: f64, area_term: bool) -> Option<Field> {
+    fn springs(&self, stretch: f64) -> Option<Field> {
         let grid = &self.levels[self.start].grid;
         let halves = grid.cells().map(|cells| cells.div_ceil(2).max(2));
         let cells = sound_cells(self.problem.size, halves);
         if cells[0] * cells[1] > MOST_CELLS {
             return None;
         }
-        let springs = MassSpring::new(self.problem, cells, LatticeSettings { area_term });
+        let springs = MassSpring::new(self.problem, cells, LatticeSettings::default());
         let lattice = Grid::even(self.problem.size, cells);
         let mut guess = contracted_stretch(self.problem.size, &lattice, stretch);
         guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });

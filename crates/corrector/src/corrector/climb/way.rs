@@ -7,39 +7,20 @@ use std::fmt;
 pub enum Start {
     /// Springs alone, in equilibrium on a coarse lattice.
     Springs,
-    /// Springs with the area term of each cell, which keeps cells from collapsing.
-    SpringsWithAreaTerm,
     /// Springs at the first of so many equal load steps.
     LoadSteps(usize),
-    /// The affine stretch, contracted across the plate away from the grips.
-    ContractedStretch,
     /// Newton's method with a sparse factor along a path of load steps.
     LoadPath,
-    /// The affine stretch on the finest grid: the ablation [`Climb::newton_from_affine`](super::Climb::newton_from_affine).
-    AffineStretch,
     /// States found before, in [`Climb::follow`](super::Climb::follow) and [`super::Interactive`].
     StatesBefore,
-}
-
-impl Start {
-    /// Whether springs took part in it.
-    pub fn by_springs(self) -> bool {
-        matches!(
-            self,
-            Self::Springs | Self::SpringsWithAreaTerm | Self::LoadSteps(_)
-        )
-    }
 }
 
 impl fmt::Display for Start {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Springs => f.write_str("springs"),
-            Self::SpringsWithAreaTerm => f.write_str("springs with the area term"),
             Self::LoadSteps(steps) => write!(f, "springs at the first of {steps} load steps"),
-            Self::ContractedStretch => f.write_str("the affine stretch with lateral contraction"),
             Self::LoadPath => f.write_str("Newton's method along a path of load steps"),
-            Self::AffineStretch => f.write_str("the affine stretch"),
             Self::StatesBefore => f.write_str("previous states"),
         }
     }
@@ -76,7 +57,7 @@ impl fmt::Display for Way {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [along, across] = self.cells;
         let corrected = match self.start {
-            Start::LoadPath | Start::AffineStretch => "",
+            Start::LoadPath => "",
             _ => ", corrected",
         };
         write!(f, "{}{corrected} on {along} × {across} cells", self.start)?;

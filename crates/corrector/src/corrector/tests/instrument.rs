@@ -224,41 +224,6 @@ fn a_factor_survives_its_file_and_a_wrong_one_is_refused() {
     assert!(fault.to_string().contains("grips (2)"), "{fault}");
 }
 
-/// From a factor taken at rest, at 100 % stretch, where the tangent has grown ninefold.
-#[test]
-fn a_factor_taken_at_rest_corrects_at_full_stretch() {
-    let problem = ClampedPlate {
-        stretches: vec![1.0],
-        ..problem()
-    };
-    let (springs, uncorrected) = lattice(&problem);
-    let plate = plate_corrector(&problem, &springs.mesh);
-    let data = &uncorrected.displacement;
-    let corrector = plate.corrector(1.0, KnownConditions::ALL);
-    let expected = corrector.correct(data, data).unwrap();
-    let mut at_rest = corrector.factor(&vec![0.0; data.len()]).unwrap();
-    let found = corrector
-        .correct_retained(data, data, &mut at_rest)
-        .unwrap();
-    assert!(largest_difference(found.field(), expected.field()) < 1e-8);
-    let fresh = found.steps.iter().filter(|step| !step.retained).count();
-    assert_eq!(fresh, 1, "only the last, for the multipliers");
-    let psi = [&found, &expected].map(|correction| correction.multipliers[0].values.clone());
-    assert!(largest_difference(&psi[0], &psi[1]) < 1e-6 * largest(&psi[1]));
-
-    // A factor that is worth nothing: it stalls, and fresh ones finish the work.
-    let (mut rows, unknowns) = (SparseRows::new(data.len()), at_rest.parts().unknowns);
-    for row in 0..data.len() {
-        let far = if row % 2 == 0 { 1e-3 } else { -1e3 };
-        rows.push([(unknowns.as_ref().unwrap()[row], far)]);
-    }
-    let mut useless = Factor::new(rows, vec![1.0; data.len()], None, Solver::Dense).unwrap();
-    let found = corrector
-        .correct_retained(data, data, &mut useless)
-        .unwrap();
-    assert!(largest_difference(found.field(), expected.field()) < 1e-8);
-}
-
 /// A line through noisy points: slope and intercept are parameters, and the estimate is that of ordinary
 /// least squares.
 #[test]

@@ -5,30 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::finding::{Exemptions, Finding, at};
 use super::sides::Sides;
 use crate::error::Diagnostic;
-
-/// Sets of numbers that are joined step by step.
-pub struct DisjointSets(Vec<usize>);
-
-impl DisjointSets {
-    pub fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    /// The number that represents the set of one.
-    pub fn of(&mut self, mut one: usize) -> usize {
-        while self.0[one] != one {
-            self.0[one] = self.0[self.0[one]];
-            one = self.0[one];
-        }
-        one
-    }
-
-    pub fn join(&mut self, one: usize, other: usize) {
-        let [one, other] = [self.of(one), self.of(other)];
-        let (low, high) = (one.min(other), one.max(other));
-        self.0[high] = low;
-    }
-}
+use crate::mesh::parts::Parts;
 
 /// Parts that are not attached to each other.
 pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
@@ -36,7 +13,7 @@ pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
         return None;
     }
     let mesh = sides.mesh;
-    let mut joined = DisjointSets::new(mesh.nodes.len());
+    let mut joined = Parts::new(mesh.nodes.len());
     for cell in sides.cells() {
         let nodes = mesh.cell(cell);
         nodes[1..]
@@ -46,7 +23,7 @@ pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
     // Cells of each part, and the centre of the first one.
     let mut parts: BTreeMap<usize, (usize, [f64; 2])> = BTreeMap::new();
     for cell in sides.cells() {
-        let part = joined.of(mesh.cell(cell)[0]);
+        let part = joined.first(mesh.cell(cell)[0]);
         parts.entry(part).or_insert((0, mesh.centre(cell))).0 += 1;
     }
     let mut parts: Vec<_> = parts.into_values().collect();

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::finding::{Exemptions, Finding};
-use super::parts::DisjointSets;
 use super::sides::{Side, Sides};
 use crate::error::Diagnostic;
 use crate::mesh::cells::Mesh;
+use crate::mesh::parts::Parts;
 
 /// Places nearer than this share of the shortest edge around are the same place.
 const NEAR: f64 = 1e-3;
@@ -203,14 +203,14 @@ impl<'a> Boundary<'a> {
 
     /// Sides of the boundary that lie on each other.
     fn seam(&self, doubled: &[[usize; 2]]) -> Option<Diagnostic> {
-        let mut same = DisjointSets::new(self.sides.mesh.nodes.len());
+        let mut same = Parts::new(self.sides.mesh.nodes.len());
         doubled
             .iter()
             .for_each(|[one, other]| same.join(*one, *other));
         let mut known: BTreeMap<[usize; 2], usize> = BTreeMap::new();
         let mut twice = Vec::new();
         for side in &self.all {
-            let [a, b] = side.ends().map(|node| same.of(node));
+            let [a, b] = side.ends().map(|node| same.first(node));
             let count = known.entry([a.min(b), a.max(b)]).or_insert(0);
             *count += 1;
             if *count == 2 {

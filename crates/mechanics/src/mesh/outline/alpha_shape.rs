@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::fault::OutlineFault;
 use crate::mesh::geometry::{distance, polygon_area};
+use crate::mesh::parts::Parts;
 use crate::mesh::triangulate::delaunay;
 use crate::statistics::median;
 
@@ -124,42 +125,31 @@ fn largest_part(
     beyond: &Neighbours,
     inside: &mut [bool],
 ) -> Result<(), OutlineFault> {
-    let mut part = vec![usize::MAX; triangles.len()];
-    let mut areas = Vec::new();
-    for start in 0..triangles.len() {
-        if !inside[start] || part[start] != usize::MAX {
-            continue;
-        }
-        let (number, mut sum, mut open) = (areas.len(), 0.0, vec![start]);
-        part[start] = number;
-        while let Some(triangle) = open.pop() {
-            let [a, b, c] = triangles[triangle];
-            sum += polygon_area(&[points[a], points[b], points[c]]);
-            for next in beyond[triangle].into_iter().flatten() {
-                if inside[next] && part[next] == usize::MAX {
-                    part[next] = number;
-                    open.push(next);
-                }
+    let mut parts = Parts::new(triangles.len());
+    for triangle in (0..triangles.len()).filter(|triangle| inside[*triangle]) {
+        for next in beyond[triangle].into_iter().flatten() {
+            if inside[next] {
+                parts.join(triangle, next);
             }
         }
-        areas.push(sum);
     }
-    let largest = (0..areas.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
-    let Some(largest) = largest else {
+    let part: Vec<usize> = (0..triangles.len()).map(|own| parts.first(own)).collect();
+    let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
+    for triangle in (0..triangles.len()).filter(|triangle| inside[*triangle]) {
+        let corners = triangles[triangle].map(|point| points[point]);
+        *areas.entry(part[triangle]).or_default() += polygon_area(&corners);
+    }
+    let largest = areas.iter().max_by(|a, b| a.1.total_cmp(b.1));
+    let Some((&largest, _)) = largest else {
         return Err(OutlineFault::TooFarApart);
     };
-    let whole: f64 = areas.iter().sum();
-    let second = (0..areas.len()).find(|part| *part != largest && areas[*part] > STRAY * whole);
-    if let Some(second) = second {
-        let triangle = part
-            .iter()
-            .position(|part| *part == second)
-            .unwrap_or_default();
-        let place = points[triangles[triangle][0]];
-        return Err(OutlineFault::SeparatedPoints(place));
+    let whole: f64 = areas.values().sum();
+    let mut others = areas.iter().filter(|(first, _)| **first != largest);
+    if let Some((&first, _)) = others.find(|(_, area)| **area > STRAY * whole) {
+        return Err(OutlineFault::SeparatedPoints(points[triangles[first][0]]));
     }
     for (inside, part) in inside.iter_mut().zip(&part) {
-        *inside = *part == largest;
+        *inside &= *part == largest;
     }
     Ok(())
 }

@@ -266,7 +266,7 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
 /// the middle of the plate, where its width is measured.
 fn check_multiples(plate: &Section, scheme: DifferenceScheme, size: [f64; 2], cells: [usize; 2]) {
     let (multiples, wanted) = match scheme {
-        DifferenceScheme::Corners | DifferenceScheme::Gauss => return,
+        DifferenceScheme::Gauss => return,
         DifferenceScheme::Biquadratic => ([2, 2], "even numbers of cells"),
         DifferenceScheme::Bicubic => (
             [6, 3],

@@ -142,12 +142,7 @@ fn where_the_iteration_never_ends_newtons_method_finds_every_grids_field() {
         assert!(distance(&climbed, &expected) < 1e-7, "{scheme:?}");
     }
     // Of Gauss points the coarsest grid's factor has nearly the equations: a single iteration is enough there.
-    let expected = [
-        Start::LoadPath,
-        Start::Springs,
-        Start::LoadPath,
-        Start::LoadPath,
-    ];
+    let expected = [Start::Springs, Start::LoadPath, Start::LoadPath];
     assert_eq!(starts, expected);
 }
 
@@ -163,7 +158,7 @@ fn a_way_that_names_springs_began_with_them() {
     let way = climb.correct(0.5).unwrap().way;
     assert_eq!((way.start, way.cells), (Start::Springs, [8, 3]));
     let grid = climb.levels[climb.start].grid.clone();
-    let mut away = climb.springs(0.5, false).unwrap();
+    let mut away = climb.springs(0.5).unwrap();
     away.add(
         -1.0,
         &climb.along_load_path(climb.start, 0.5).unwrap().field,
@@ -174,7 +169,7 @@ fn a_way_that_names_springs_began_with_them() {
         way.away,
         away.size()
     );
-    // The next start in the order is another one.
+    // The field from which the springs begin is another one.
     let mut other = contracted_stretch(problem.size, &grid, 0.5);
     other.add(
         -1.0,

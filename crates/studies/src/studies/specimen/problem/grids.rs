@@ -89,7 +89,7 @@ impl PlateGrids {
     pub fn is_own_reference(&self) -> bool {
         let scheme = self.correction.scheme;
         let element = match scheme {
-            DifferenceScheme::Corners | DifferenceScheme::Bicubic => return false,
+            DifferenceScheme::Bicubic => return false,
             DifferenceScheme::Gauss => Element::Q1,
             DifferenceScheme::Biquadratic => Element::Q2,
         };
