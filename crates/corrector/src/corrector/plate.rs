@@ -8,6 +8,7 @@
 
 use super::climb::{Climb, Way};
 use super::condition::{Condition, Equilibrium, Linear};
+pub use super::specimen::EQUILIBRIUM;
 use super::specimen::{CorrectedField, correct_by, state_at};
 use super::{Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step};
 use crate::error::{Error, SolveFault};
@@ -17,8 +18,6 @@ use crate::problem::{ClampedPlate, Measures, Model, Work};
 use crate::solve::vector::largest;
 use crate::solve::{Assembly, Convergence, Remembering, Stage, State};
 
-/// Name of the condition F.
-pub const EQUILIBRIUM: &str = "equilibrium";
 /// Name of the condition T at the grips.
 pub const GRIPS: &str = "grips";
 /// Name of the condition T at the free edges.

@@ -2,7 +2,6 @@
 //! and follows the supports.
 
 use super::condition::{Condition, Equilibrium, Linear};
-use super::plate::EQUILIBRIUM;
 use super::{Correction, Corrector, CorrectorSettings, Describe};
 use crate::error::SolveFault;
 use crate::problem::Model;
@@ -10,6 +9,8 @@ use crate::solve::{
     Assembly, Convergence, Loading, Newton, NewtonSettings, Stage, State, equilibrium,
 };
 
+/// Name of the condition F.
+pub const EQUILIBRIUM: &str = "equilibrium";
 /// The name of the condition that the supports impose.
 pub const SUPPORTS: &str = "supports";
 
