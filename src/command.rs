@@ -39,7 +39,6 @@ mod correct;
 mod export;
 mod fit;
 mod fit_message;
-mod fitted;
 mod identify;
 mod identity;
 mod interrupt;

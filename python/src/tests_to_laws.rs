@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use gelbench::calibration::{
-    self, Base, Bounds, Fit, FitSettings, Provenance, Terms, TestData, Weighting,
+    self, Bounds, FitSettings, Memory, Provenance, Terms, TestData, Weighting,
 };
 use gelbench::document::{Statements, Table};
 use gelbench::error::{Error, suggestion};
@@ -71,7 +71,7 @@ pub fn fit(
         let fit = match law {
             Some(name) => {
                 watch.tell(&name);
-                with_history(named(&name)?, &tests_read, &settings, history)?
+                memory(history)?.fit(named(&name)?, &tests_read, &settings)?
             }
             None => {
                 watch.tell("all laws");
@@ -94,29 +94,17 @@ pub fn fit(
     })
 }
 
-/// A law fitted to tests: alone, with softening, or with a Prony series of as many terms as are asked for or as AICc asks for.
-fn with_history(
-    law: &'static Law,
-    tests: &[TestData],
-    settings: &FitSettings,
-    history: Option<&str>,
-) -> Result<Fit, Error> {
-    let terms = match history {
-        None => return calibration::fit(law, tests, settings),
-        Some("softening") => return calibration::fit_softening(Base::Law(law), tests, settings),
-        Some("relaxation") => Terms::Automatic,
-        Some(text) => {
-            let number = text.parse().ok().filter(|terms| *terms <= Terms::MOST);
-            let told = || {
-                input(
-                    format!("relaxation={text} is not a number of terms"),
-                    "True, or 0 to 6",
-                )
-            };
-            Terms::Exactly(number.ok_or_else(told)?)
-        }
-    };
-    calibration::fit_relaxation(law, tests, settings, terms)
+/// What is fitted beside a law: nothing, softening, or a Prony series of as many terms as are asked for or as AICc asks for.
+fn memory(history: Option<&str>) -> Result<Memory, Error> {
+    match history {
+        None => Ok(Memory::None),
+        Some("softening") => Ok(Memory::Softening),
+        Some("relaxation") => Ok(Memory::Relaxation(Terms::Automatic)),
+        Some(text) => Terms::parse(text).map(Memory::Relaxation).ok_or_else(|| {
+            let message = format!("relaxation={text} is not a number of terms");
+            input(message, "True, or 0 to 6")
+        }),
+    }
 }
 
 fn named(name: &str) -> Result<&'static Law, Error> {
@@ -142,15 +130,6 @@ fn drawn(drawing: &Drawing) -> Result<Vec<u8>, Error> {
     output::png(drawing).map_err(|fault| refused(fault.to_string()))
 }
 
-const SHAPES: [(&str, Shape); 3] = [
-    ("free", Shape::Free),
-    ("increasing", Shape::Increasing),
-    ("decreasing", Shape::Decreasing),
-];
-
-const ARGUMENTS: [(&str, Argument); 2] =
-    [("extension", Argument::Extension), ("rate", Argument::Rate)];
-
 /// Finds K(·) and D(·) in a recording by its name and table: JSON, text of the law, picture.
 #[pyfunction]
 #[pyo3(signature = (recording, said, forms, shapes, damping_over, progress=None))]
@@ -172,10 +151,10 @@ pub fn identify(
         let settings = IdentificationSettings {
             forms: [form(stiffness)?, form(damping)?],
             shapes: [
-                chosen("stiffness_shape", of_stiffness, &SHAPES)?,
-                chosen("damping_shape", of_damping, &SHAPES)?,
+                chosen("stiffness_shape", of_stiffness, &Shape::NAMES)?,
+                chosen("damping_shape", of_damping, &Shape::NAMES)?,
             ],
-            argument: chosen("damping_over", damping_over, &ARGUMENTS)?,
+            argument: chosen("damping_over", damping_over, &Argument::NAMES)?,
         };
         let found = identified(&read, settings, &|what| watch.tell(what))?;
         let json = identification_json(&found, &read, &name).to_string();

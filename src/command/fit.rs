@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args};
+use serde_json::Value;
 
 use super::choice::one_of;
-use super::fitted::{InTime, fitted, terms};
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
-    self, Base, Bounds, Fit, FitSettings, PRECONDITIONED, Provenance, Terms, TestData, Weighting,
+    self, Base, Bounds, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData,
+    Weighting,
 };
 use crate::document::Statements;
 use crate::error::{Diagnostic, Error};
@@ -20,7 +21,7 @@ use crate::material::Card;
 use crate::material::card::FitRecord;
 use crate::material::registry::{CARDS, DATA, LAWS, Law};
 use crate::output::{self, ResultFolder};
-use crate::results::{fit_json, fit_picture};
+use crate::results::{Drawing, fit_json, fit_picture};
 
 #[derive(Args)]
 #[command(group = ArgGroup::new("laws").required(true))]
@@ -95,11 +96,12 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     arguments.printed.choose();
     let mut reading = arguments.reading.reading();
     let terms = arguments.relaxation.as_deref().map(terms).transpose()?;
-    if terms.is_some() || arguments.softening {
+    let memory = memory(terms, arguments.softening);
+    if memory != Memory::None {
         // What relaxes or softens is the whole record.
         reading.entry("cycle".into()).or_insert("all".into());
     }
-    if !arguments.softening {
+    if memory != Memory::Softening {
         check_history(&reading)?;
     }
     let files = arguments.data.iter();
@@ -110,13 +112,8 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         bounds: bounds(&arguments.bounds)?,
         starts: arguments.starts.into(),
     };
-    let wanted = if arguments.softening {
-        InTime::Softening
-    } else {
-        terms.map_or(InTime::Nothing, InTime::Relaxation)
-    };
     let base = arguments.card.as_deref().map(load).transpose()?;
-    let fit = found(arguments.law, base, &tests, &settings, wanted)?;
+    let fit = found(arguments.law, base, &tests, &settings, memory)?;
     let tests = fit.fitted_tests(&tests);
     let name = arguments
         .name
@@ -149,6 +146,28 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     Ok(0)
 }
 
+/// How many terms a Prony series is asked for.
+fn terms(text: &str) -> Result<Terms, Error> {
+    Terms::parse(text).ok_or_else(|| {
+        Error::input(
+            format!("--relaxation {text} is not a number of terms"),
+            format!(
+                "a number up to {}, or nothing, for as many as AICc selects",
+                Terms::MOST
+            ),
+        )
+    })
+}
+
+/// What is fitted beside a law.
+fn memory(terms: Option<Terms>, softening: bool) -> Memory {
+    if softening {
+        Memory::Softening
+    } else {
+        terms.map_or(Memory::None, Memory::Relaxation)
+    }
+}
+
 /// The name of a fit's files where none is stated.
 fn usual_name(data: &Path, fit: &Fit) -> String {
     let more = match (&fit.relaxed, &fit.softened) {
@@ -178,7 +197,7 @@ fn found(
     base: Option<Card>,
     tests: &[TestData],
     settings: &FitSettings,
-    wanted: InTime,
+    memory: Memory,
 ) -> Result<Fit, Error> {
     let progress = Progress::of(0);
     match (law, &base) {
@@ -188,7 +207,7 @@ fn found(
         }
         (Some(law), _) => {
             progress.tell(law.name);
-            fitted(law, tests, settings, wanted)
+            memory.fit(law, tests, settings)
         }
         _ => {
             progress.tell("all laws");
@@ -246,13 +265,25 @@ impl Written<'_> {
             }),
         };
         let text = calibration::card_text(self.fit, self.tests, &provenance);
-        results.add(&card, text.as_bytes())?;
-        let figures = format!("{:#}\n", fit_json(self.fit, self.tests));
-        results.add(&json, figures.as_bytes())?;
-        let drawn = output::write_picture(&mut results, &png, &fit_picture(self.fit, self.tests))?;
+        let figures = fit_json(self.fit, self.tests);
+        let picture = fit_picture(self.fit, self.tests);
+        let warning = add_law(&mut results, stem, &text, &figures, &picture)?;
         tell_files(&results.finish()?);
-        Ok(drawn.err())
+        Ok(warning)
     }
+}
+
+/// Adds a law or a card, its figures and its picture to a folder; returns a warning where the picture cannot be drawn.
+pub fn add_law(
+    results: &mut ResultFolder,
+    stem: &str,
+    text: &str,
+    figures: &Value,
+    picture: &Drawing,
+) -> Result<Option<Diagnostic>, Error> {
+    results.add(&format!("{stem}.toml"), text.as_bytes())?;
+    results.add(&format!("{stem}.json"), format!("{figures:#}\n").as_bytes())?;
+    Ok(output::write_picture(results, &format!("{stem}.png"), picture)?.err())
 }
 
 /// What was not written by a fit is never replaced by one.
@@ -331,13 +362,8 @@ pub fn refit(name: &str) -> Outcome {
         }
         None => {
             let terms = record.relaxation_terms.map(Terms::Exactly);
-            let wanted = if record.softening {
-                InTime::Softening
-            } else {
-                terms.map_or(InTime::Nothing, InTime::Relaxation)
-            };
             let law = Law::named(&card.law_name).expect("a card that was loaded has a known law");
-            fitted(law, &tests, &settings, wanted)?
+            memory(terms, record.softening).fit(law, &tests, &settings)?
         }
     };
     let (text, same) = fit_message::refit(&card, &fit, &fit.fitted_tests(&tests));

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-use serde_json::Value;
+use clap::Args;
 
+use super::choice::one_of;
 use super::correct::exit_code;
+use super::fit::add_law;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
@@ -17,7 +18,7 @@ use crate::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Sample, Shape,
     identify, law_text,
 };
-use crate::output::{self, ResultFolder};
+use crate::output::ResultFolder;
 use crate::results::{identification_json, identification_picture};
 use crate::units::number;
 
@@ -62,15 +63,15 @@ pub struct Options {
     /// Form of D(·)
     #[arg(long, value_name = "FORM", default_value = "spline", value_parser = Form::parse)]
     damping: Form,
-    /// Known shape of K(·)
-    #[arg(long, value_enum, default_value = "free")]
-    stiffness_shape: KnownShape,
+    /// Known shape of K(·); free: nothing is known
+    #[arg(long, default_value = "free", value_parser = one_of(&Shape::NAMES))]
+    stiffness_shape: Shape,
     /// Known shape of D(·)
-    #[arg(long, value_enum, default_value = "free")]
-    damping_shape: KnownShape,
-    /// Argument of D(·)
-    #[arg(long, value_enum, default_value = "extension")]
-    damping_over: Over,
+    #[arg(long, default_value = "free", value_parser = one_of(&Shape::NAMES))]
+    damping_shape: Shape,
+    /// Argument of D(·): the extension or its rate
+    #[arg(long, default_value = "extension", value_parser = one_of(&Argument::NAMES))]
+    damping_over: Argument,
     /// Write the law, the picture and the figures into this folder instead of output/NAME/
     #[arg(long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -84,34 +85,6 @@ pub struct Options {
     large: Large,
     #[command(flatten)]
     printed: Printed,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum KnownShape {
-    /// Nothing is known
-    Free,
-    /// It does not decrease anywhere
-    Increasing,
-    /// It does not increase anywhere
-    Decreasing,
-}
-
-impl From<KnownShape> for Shape {
-    fn from(known: KnownShape) -> Self {
-        match known {
-            KnownShape::Free => Self::Free,
-            KnownShape::Increasing => Self::Increasing,
-            KnownShape::Decreasing => Self::Decreasing,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Over {
-    /// The extension
-    Extension,
-    /// Its rate
-    Rate,
 }
 
 /// Identifies, prints, and writes law, picture and figures.
@@ -133,11 +106,8 @@ pub fn run(options: Options) -> Outcome {
     check_size(&path, &recording, options.large.budget())?;
     let settings = IdentificationSettings {
         forms: [options.stiffness, options.damping],
-        shapes: [options.stiffness_shape.into(), options.damping_shape.into()],
-        argument: match options.damping_over {
-            Over::Extension => Argument::Extension,
-            Over::Rate => Argument::Rate,
-        },
+        shapes: [options.stiffness_shape, options.damping_shape],
+        argument: options.damping_over,
     };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let usual = || Path::new("output").join(&*stem);
@@ -149,7 +119,9 @@ pub fn run(options: Options) -> Outcome {
     let found = identify(&recording, settings, &|what| progress.tell(what))?;
     progress.tell("files");
     let json = identification_json(&found, &recording, &file_name(&path));
-    let warnings = write(&found, &recording, &json, &path, &stem, &mut results)?;
+    let law = law_text(&found, &recording, &file_name(&path));
+    let picture = identification_picture(&found, &recording);
+    let warnings = add_law(&mut results, &stem, &law, &json, &picture)?;
     let files = results.finish()?;
     drop(progress);
     tell_files(&files);
@@ -193,23 +165,6 @@ fn write_sample(file: &Path, seed: u64) -> Outcome {
     Ok(0)
 }
 
-/// Writes law, figures and picture; returns a warning where the picture cannot be drawn.
-fn write(
-    found: &Identification,
-    recording: &Recording,
-    json: &Value,
-    path: &Path,
-    stem: &str,
-    results: &mut ResultFolder,
-) -> Result<Option<Diagnostic>, Error> {
-    let law = law_text(found, recording, &file_name(path));
-    results.add(&format!("{stem}.toml"), law.as_bytes())?;
-    results.add(&format!("{stem}.json"), format!("{json:#}\n").as_bytes())?;
-    let picture = identification_picture(found, recording);
-    let drawn = output::write_picture(results, &format!("{stem}.png"), &picture)?;
-    Ok(drawn.err())
-}
-
 fn file_name(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default();
     name.to_string_lossy().into_owned()
@@ -240,8 +195,6 @@ fn message(found: &Identification, recording: &Recording, path: &Path) -> String
         text += &powers(function, of);
         text += &curve(function, argument);
     }
-    let lag = found.hidden_lag.iter();
-    text.extend(lag.map(|lag| format!("\n{}\n", lag.describe())));
     text
 }
 

@@ -34,7 +34,10 @@ mod table;
 mod text;
 mod written;
 
-pub use chosen::{ChosenColumns, ColumnRole, FoundColumns, column_named};
+pub use chosen::{
+    ChosenColumns, ColumnNames, ColumnRole, FoundColumns, MACHINE_DISPLACEMENTS, MACHINE_FORCES,
+    TIMES, column_named, meaning,
+};
 pub use columns::{Column, is_pixel, plain_name};
 pub use comments::comments;
 pub use edited::{EditedDocument, NewValue};

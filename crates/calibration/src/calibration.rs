@@ -2,19 +2,23 @@
 //! be trusted.
 //!
 //! ```text
-//! table ─data─▶ TestData ─regression─▶ parameters ─trust─▶ Quality ─▶ Fit: card, picture, JSON
+//! table ─data─▶ TestData ─▶ Response ─regression─▶ Solution ─trust─▶ Quality ─▶ Fit: card, picture, JSON
+//!                            a law alone; with a Prony series; with softening
 //! ```
 
 mod card_text;
 mod data;
 mod fit;
+mod fitted;
 mod least_squares;
+mod memory;
 mod ranking;
 mod regression;
 mod relaxation;
 mod settings;
 mod softened;
 mod softening;
+mod solution;
 #[cfg(test)]
 mod tests;
 mod trust;
@@ -24,7 +28,9 @@ pub use data::{
     ColumnReading, Conversion, FoundZero, KEYS, Observation, PRECONDITIONED, StrainColumn,
     TableReading, Test, TestData, Times,
 };
-pub use fit::{Fit, Relaxed, fit};
+pub use fit::fit;
+pub use fitted::{Fit, Relaxed};
+pub use memory::Memory;
 pub use ranking::{best, rank};
 pub use regression::MovedZero;
 pub use relaxation::{Terms, fit_relaxation};

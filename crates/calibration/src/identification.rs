@@ -49,9 +49,7 @@ pub use recording::Recording;
 use resolution::largest;
 pub use sample::Sample;
 use suspects::examine;
-pub use types::{
-    FittedMotion, HiddenLag, Identification, IdentificationSettings, RecordingVerdict,
-};
+pub use types::{FittedMotion, Identification, IdentificationSettings, RecordingVerdict};
 use verdict::{Evidence, Faults, notes};
 
 #[cfg(test)]
@@ -308,7 +306,6 @@ impl<'a> Fit<'a> {
             noise: joint.noise,
             misfit,
             freedom,
-            hidden_lag: None,
             verdict: RecordingVerdict::default(),
             warnings: Vec::new(),
         };
@@ -324,12 +321,12 @@ impl<'a> Fit<'a> {
     ) -> Identification {
         let joint = self.joint;
         let faults = Faults::of(joint.recording);
-        let mut suspects = Vec::new();
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
-        if !signals.0.coarse && !signals.1.coarse && faults.are_few() {
-            let examined = examine(joint, &self.state, &found, fit);
-            (suspects, found.hidden_lag) = (examined.sure, examined.hidden_lag);
-        }
+        let suspects = if !signals.0.coarse && !signals.1.coarse && faults.are_few() {
+            examine(joint, &self.state, &found, fit)
+        } else {
+            Vec::new()
+        };
         let evidence = Evidence {
             recording: joint.recording,
             signals,
@@ -339,7 +336,6 @@ impl<'a> Fit<'a> {
         found.verdict = evidence.verdict(&found);
         found.warnings = notes(&found, joint.recording);
         if !found.is_explained() {
-            found.hidden_lag = None;
             found.stiffness.withhold_intervals();
             found.damping.withhold_intervals();
         }

@@ -11,6 +11,26 @@ pub trait ColumnRole: Copy + PartialEq + 'static {
     const EXAMPLE: &'static str;
 }
 
+/// Names of columns by what they mean, in lower case with underscores for spaces; those of one meaning are separated by spaces.
+pub type ColumnNames<R> = [(R, &'static str)];
+
+/// What a column's name means.
+pub fn meaning<R: Copy>(names: &ColumnNames<R>, name: &str) -> Option<R> {
+    let is_among = |(_, all): &&(R, &str)| all.split(' ').any(|known| known == name);
+    names.iter().find(is_among).map(|(meaning, _)| *meaning)
+}
+
+/// Names that people and testing machines give to the time.
+pub const TIMES: &str =
+    "time t elapsed_time total_time test_time running_time prüfzeit zeit temps 时间";
+
+/// Names that testing machines give to the displacement of their grip.
+pub const MACHINE_DISPLACEMENTS: &str = "tensile_extension compressive_extension tensile_displacement compressive_displacement axial_displacement crosshead \
+     crosshead_displacement crosshead_position position stroke disp standardweg traversenweg weg 位移";
+
+/// Names that testing machines give to the force.
+pub const MACHINE_FORCES: &str = "tensile_load compressive_load tensile_force compressive_force axial_load axial_force standard_force standardkraft kraft 力 载荷";
+
 /// Columns by their roles, as the user names them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChosenColumns<R>(Vec<(R, String)>);

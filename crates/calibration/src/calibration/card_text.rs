@@ -6,8 +6,7 @@ use std::path::Path;
 use nalgebra::DMatrix;
 
 use super::data::TestData;
-use super::fit::Fit;
-use super::softened::Softened;
+use super::fitted::Fit;
 use crate::document::Statements;
 use crate::document::quoted;
 use crate::material::registry::MARLOW_TABLE;
@@ -38,36 +37,39 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     };
     let mut kinds: Vec<&str> = tests.iter().map(|test| test.test.name()).collect();
     kinds.dedup();
-    let mut text = String::from(
-        "# Fitted by `gelbench materials fit`; `gelbench materials refit` fits it again and compares.\n\n",
+    let mut text = format!(
+        "# Fitted by `gelbench materials fit`; `gelbench materials refit` fits it again and compares.\n\n\
+         title = {}\nlaw = {}\n\n[parameters]\n",
+        quoted(&title),
+        quoted(fit.law.name)
     );
-    put(&mut text, "title", quoted(&title));
-    put(&mut text, "law", quoted(fit.law.name));
-    text += "\n[parameters]\n";
     parameters(&mut text, fit);
     viscosity(&mut text, fit);
     softening(&mut text, fit);
-    text += "\n[data]\n";
-    put(&mut text, "test", quoted(&kinds.join(", ")));
-    put(
-        &mut text,
-        "stress_measure",
-        quoted(fit.stress_measure().name()),
-    );
-    put(&mut text, "strain_measure", quoted("nominal"));
-    put(&mut text, "offset", quoted("subtract"));
     let [low, high] = fit.quality.stretch_range;
-    put(&mut text, "stretch_range", format!("[{low}, {high}]"));
-    text += "\n[source]\n";
+    let data = [
+        ("test", quoted(&kinds.join(", "))),
+        ("stress_measure", quoted(fit.stress_measure().name())),
+        ("strain_measure", quoted("nominal")),
+        ("offset", quoted("subtract")),
+        ("stretch_range", format!("[{low}, {high}]")),
+    ];
     let citation = source.unwrap_or_else(|| format!("data of {files}"));
-    put(&mut text, "citation", quoted(&citation));
-    if let Some(doi) = doi {
-        put(&mut text, "doi", quoted(&doi));
-    }
     let specimen = specimen.as_deref().unwrap_or("not stated in the data");
-    put(&mut text, "specimen", quoted(specimen));
-    put(&mut text, "note", quoted(&note(fit, tests)));
-    text + &recipe(fit, provenance)
+    let mut origin = vec![("citation", quoted(&citation))];
+    origin.extend(doi.map(|doi| ("doi", quoted(&doi))));
+    origin.push(("specimen", quoted(specimen)));
+    origin.push(("note", quoted(&note(fit, tests))));
+    text + &section("data", data) + &section("source", origin) + &recipe(fit, provenance)
+}
+
+/// A section of a card.
+fn section(name: &str, entries: impl IntoIterator<Item = (&'static str, String)>) -> String {
+    let entries = entries.into_iter();
+    let lines: String = entries
+        .map(|(key, value)| format!("{key} = {value}\n"))
+        .collect();
+    format!("\n[{name}]\n{lines}")
 }
 
 /// The text of a card with the softening of a fit in place of its earlier statements on softening and fits.
@@ -93,49 +95,38 @@ fn softened_card(base: &str, fit: &Fit, provenance: &Provenance) -> String {
 
 /// The settings with which the fit can be repeated.
 fn recipe(fit: &Fit, provenance: &Provenance) -> String {
-    let mut text = String::from("\n[fit]\n");
-    put(&mut text, "data", list(provenance.files.iter().cloned()));
-    put(
-        &mut text,
-        "weighting",
-        quoted(fit.settings.weighting.name()),
-    );
-    put(&mut text, "starts", fit.settings.starts);
-    if let Some(relaxed) = &fit.relaxed {
-        put(
-            &mut text,
-            "relaxation_terms",
-            relaxed.material.relaxation.len(),
-        );
-    }
+    let mut entries = vec![
+        ("data", list(provenance.files.iter().cloned())),
+        ("weighting", quoted(fit.settings.weighting.name())),
+        ("starts", fit.settings.starts.to_string()),
+    ];
+    entries.extend(fit.relaxed.as_ref().map(|relaxed| {
+        let terms = relaxed.material.relaxation.len();
+        ("relaxation_terms", terms.to_string())
+    }));
     if fit.softened.is_some() {
-        put(&mut text, "softening", true);
+        entries.push(("softening", "true".to_owned()));
     }
-    if let Some(base) = &provenance.base_card {
-        put(&mut text, "base_card", quoted(base));
-    }
+    let base = provenance.base_card.as_deref();
+    entries.extend(base.map(|card| ("base_card", quoted(card))));
     let bounds = fit.settings.bounds.iter();
     let bounds = bounds.map(|(key, [low, high])| format!("{key}={low}..{high}"));
     if bounds.len() > 0 {
-        put(&mut text, "bounds", list(bounds));
+        entries.push(("bounds", list(bounds)));
     }
-    for (key, list) in uncertainty(fit)
-        .iter()
-        .flat_map(ParameterUncertainty::lines)
-    {
-        put(&mut text, key, list);
-    }
+    let uncertainty = uncertainty(fit);
+    entries.extend(uncertainty.iter().flat_map(ParameterUncertainty::lines));
     let reading = provenance.reading.iter();
     let reading = reading.map(|(key, value)| format!("{key}: {value}"));
     if reading.len() > 0 {
-        put(&mut text, "reading", list(reading));
+        entries.push(("reading", list(reading)));
     }
     let values = fit.parameters.iter();
-    let values = values.map(|own| format!("{} = {}", own.key, own.value));
+    let values = values.map(|one| format!("{} = {}", one.key, one.value));
     if values.len() > 0 {
-        put(&mut text, "values", list(values));
+        entries.push(("values", list(values)));
     }
-    text
+    section("fit", entries)
 }
 
 /// The covariance of the law's parameters that are estimated, where the residuals are noise.
@@ -218,7 +209,7 @@ fn viscosity(text: &mut String, fit: &Fit) {
     }
     text.push_str("\n[viscosity]\nrelaxation = [\n");
     for (term, one) in relaxed.material.relaxation.iter().enumerate() {
-        let [share, time] = [0, 1].map(|part| error(fit, relaxed.of_law + 2 * term + part));
+        let [share, time] = [0, 1].map(|part| error(fit, fit.of_law + 2 * term + part));
         let (own, tau) = (one.share, one.time);
         let _ = writeln!(
             text,
@@ -243,14 +234,11 @@ fn viscosity(text: &mut String, fit: &Fit) {
 
 /// The softening.
 fn softening(text: &mut String, fit: &Fit) {
-    let Some(Softened {
-        softening, of_law, ..
-    }) = &fit.softened
-    else {
+    let Some(softened) = &fit.softened else {
         return;
     };
-    let error = |part: usize| error(fit, of_law + part);
-    let Softening { r, m, beta } = softening;
+    let error = |part: usize| error(fit, fit.of_law + part);
+    let Softening { r, m, beta } = softened.softening;
     let _ = write!(
         text,
         "\n[softening]\nr = {r} # {}\nm = \"{m} MPa\" # {}\nbeta = {beta} # {}\n",

@@ -6,24 +6,6 @@
 use nalgebra::{DMatrix, DVector};
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide};
 
-/// What a residual √n w (σ − σ(p)) is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// σ, a stress or the mean of n neighbouring ones, in MPa.
-    pub stress: f64,
-    /// w.
-    pub weight: f64,
-    /// n.
-    pub count: f64,
-}
-
-impl Measured {
-    /// The model's stress that leaves a residual, in MPa.
-    pub fn modelled(&self, residual: f64) -> f64 {
-        self.stress - residual / (self.count.sqrt() * self.weight)
-    }
-}
-
 /// Residuals of a model as a function of its parameters.
 pub trait Residuals {
     /// The number of residuals.

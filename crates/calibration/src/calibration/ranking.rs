@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::data::TestData;
-use super::fit::{Fit, nearest};
+use super::fit::nearest;
+use super::fitted::Fit;
 use super::settings::{FitSettings, MEASURE};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;

@@ -1,11 +1,11 @@
-//! The parameters with the smallest sum of squares: residuals, weights, starts, and zeros that are found with the law.
+//! The parameters with the smallest sum of squares: models of tests, residuals, weights and starts.
 
+mod elastic;
 mod misfit;
-pub mod refined_zero;
-mod reweighed;
 mod search;
+mod zero;
 
-pub use misfit::{Misfit, Rows, Zero};
-pub use refined_zero::MovedZero;
-pub use reweighed::{Reweighed, settled};
-pub use search::{Rival, Search, check_minimum, ordered};
+pub use elastic::Elastic;
+pub use misfit::{Estimated, Misfit, Response, Row, Rows};
+pub use search::{Candidate, Rival, Search, check_minimum, improved, ordered};
+pub use zero::{MovedZero, Zero};

@@ -81,6 +81,18 @@ impl Default for FitSettings {
     }
 }
 
+impl FitSettings {
+    /// The same without the bounds of some parameters.
+    pub(in crate::calibration) fn without(&self, keys: &[&str]) -> Self {
+        let bounds = self.bounds.iter();
+        let bounds = bounds.filter(|(key, _)| !keys.contains(&&**key));
+        Self {
+            bounds: bounds.cloned().collect(),
+            ..self.clone()
+        }
+    }
+}
+
 /// The least divisor of a relative residual, as a share of its test's largest stress.
 pub const SMALLEST_SHARE: f64 = 0.01;
 

@@ -9,12 +9,8 @@ use crate::statistics::farthest;
 pub struct Softened {
     /// Its parameters.
     pub softening: Softening,
-    /// The number of the fit's parameters that belong to the law; zero where the law is that of a card.
-    pub of_law: usize,
     /// The text of the card whose law it is; `None` where the law is found.
     pub card: Option<String>,
-    /// The fitted stresses at all observations of each test, in the measure of the data, in MPa.
-    pub predicted: Vec<Vec<f64>>,
     /// The cycles of all tests.
     pub cycles: Vec<SofteningCycle>,
 }

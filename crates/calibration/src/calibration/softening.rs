@@ -6,29 +6,29 @@
 use std::sync::Arc;
 
 use super::data::{Observation, TestData};
-use super::fit::{Fit, check_measures, nearest};
-use super::least_squares::Residuals;
-use super::regression::{check_minimum, settled};
+use super::fit::{check_measures, nearest};
+use super::fitted::Fit;
+use super::least_squares::{Residuals, descend};
+use super::regression::{Misfit, check_minimum};
 use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};
-use super::trust::{Deviations, Quality, taken_zeros, warnings};
+use super::solution::Solution;
+use super::trust::taken_zeros;
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
-use crate::material::{Card, HyperelasticLaw, SoftenedLaw};
+use crate::material::{Card, HyperelasticLaw, SoftenedLaw, Softening};
 use crate::statistics::farthest;
 
 mod earlier;
 mod misfit;
-mod search;
 #[cfg(test)]
 mod tests;
 
 pub use misfit::Base;
 
 use earlier::Search;
-use misfit::{SOFTENING, SofteningMisfit, softening_parameters};
-use search::{judged, minimum};
+use misfit::{SOFTENING, Softens, softening_parameters};
 
 /// Fits a law that softens to some tests together.
 ///
@@ -38,10 +38,15 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
     check_measures(tests)?;
     check_cycles(tests)?;
     let first = first_loading(base, tests, settings)?;
-    let (of_law, scale) = (first.parameters.clone(), first.fitted.youngs_modulus());
-    let misfit = SofteningMisfit::new(base, of_law.len(), tests, settings.weighting);
-    let largest = misfit.largest_energy(&*first.fitted);
-    let mut parameters = of_law;
+    let of_law = first.parameters.len();
+    let response = Softens {
+        base,
+        of_law,
+        tests,
+    };
+    let largest = response.largest_energy(&*first.fitted);
+    let misfit = Misfit::new(response, settings.weighting);
+    let mut parameters = first.parameters;
     parameters.extend(softening_parameters(largest));
     let rows = misfit.count();
     if rows <= parameters.len() + 1 {
@@ -51,35 +56,54 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         );
         return Err(Error::input(message, "measure more points"));
     }
+    let scale = first.fitted.youngs_modulus();
     let bounds = limits(first.law, &parameters, &settings.bounds, scale)?;
     let start: Vec<f64> = parameters.iter().map(|one| one.value).collect();
-    let values = minimum(&misfit, &start, &bounds, largest).ok_or_else(|| {
-        let message = format!("{}: no softening describes the data", first.law.name);
-        Error::input(message, "look at the strains, or choose another law")
-    })?;
-    check_minimum(&misfit, first.law, &parameters, &values, &bounds)?;
     let search = Search {
-        base,
-        tests,
         start: &start,
         bounds: &bounds,
         largest,
-        weighting: settings.weighting,
     };
+    let (_, rough) = search.rough_minimum(&misfit).ok_or_else(|| {
+        let message = format!("{}: no softening describes the data", first.law.name);
+        Error::input(message, "look at the strains, or choose another law")
+    })?;
+    let values = descend(&misfit, &rough, &bounds).unwrap_or(rough);
+    check_minimum(&misfit, first.law, &parameters, &values, &bounds)?;
     let doubts = search.doubts(&misfit, &values);
-    let is_noise = |misfit: &SofteningMisfit, values: &[f64]| {
-        judged(misfit, tests, values, &bounds, settings.weighting).is_noise()
+    let begun = Solution {
+        misfit,
+        values,
+        bounds,
     };
-    let (misfit, values) = settled(&misfit, values, &bounds, is_noise);
-    let whole = Whole {
-        misfit: &misfit,
-        tests,
-        settings,
-        bounds: &bounds,
-    };
-    let mut fit = whole.finished(first, parameters, &values);
+    let solution = begun.settled();
+    let mut fit = solution.fit(first.law, &parameters, settings, None);
+    fit.quality.warnings.extend(taken_zeros(tests));
     fit.quality.warnings.extend(doubts);
-    Ok(fit)
+    let softening = solution.misfit.response.softening(&solution.values);
+    fit.of_law = of_law;
+    fit.choices = first.choices;
+    Ok(softened(fit, base, tests, softening))
+}
+
+/// The fit of the law of the first loading with its softening.
+fn softened(fit: Fit, base: Base, tests: &[TestData], softening: Softening) -> Fit {
+    let virgin = fit.fitted;
+    let records = tests.iter().zip(&fit.predicted);
+    let cycles = records.flat_map(|(data, own)| cycles(data, &*virgin, softening, own));
+    let softened = Softened {
+        softening,
+        card: match base {
+            Base::Law(_) => None,
+            Base::Card(card) => Some(card.text.clone()),
+        },
+        cycles: cycles.collect(),
+    };
+    Fit {
+        fitted: Arc::new(SoftenedLaw::unloaded(virgin, softening)),
+        softened: Some(softened),
+        ..fit
+    }
 }
 
 /// Checks that the tests unload somewhere: softening does not show in a first loading.
@@ -123,18 +147,13 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
             "choose a law with parameters, or give a card of the first loading with `--card`";
         return Err(Error::input(message, hint));
     }
-    let own = |(key, _): &&(String, [f64; 2])| !SOFTENING.contains(&&**key);
-    let of_law = FitSettings {
-        bounds: settings.bounds.iter().filter(own).cloned().collect(),
-        ..settings.clone()
-    };
     let rising: Vec<TestData> = tests.iter().map(rising).collect();
-    let found = nearest(law, &rising, &of_law)?;
+    let fit = nearest(law, &rising, &settings.without(&SOFTENING))?;
     Ok(First {
         law,
-        fitted: found.fitted.into(),
-        parameters: found.parameters,
-        choices: found.choices,
+        fitted: fit.fitted,
+        parameters: fit.parameters,
+        choices: fit.choices,
     })
 }
 
@@ -179,64 +198,5 @@ fn rising(data: &TestData) -> TestData {
         // The zero stays where the record has it.
         found_zero: None,
         ..data.clone()
-    }
-}
-
-/// The data by which the values found are judged.
-struct Whole<'a> {
-    misfit: &'a SofteningMisfit<'a>,
-    tests: &'a [TestData],
-    settings: &'a FitSettings,
-    bounds: &'a [[f64; 2]],
-}
-
-impl Whole<'_> {
-    fn finished(&self, first: First, mut parameters: Vec<Parameter>, values: &[f64]) -> Fit {
-        for (parameter, value) in parameters.iter_mut().zip(values) {
-            parameter.value = *value;
-        }
-        let fitted = self.misfit.law(values);
-        let predicted = self.misfit.stresses(values);
-        let softening = self.misfit.softening(values);
-        let mut quality = self.quality(&*fitted, values, &predicted);
-        quality.warnings = warnings(&quality, &parameters, None);
-        quality.warnings.extend(taken_zeros(self.tests));
-        let tests = self.tests.iter().zip(&predicted);
-        let of_tests = tests.flat_map(|(data, own)| cycles(data, &*fitted, softening, own));
-        let softened = Softened {
-            softening,
-            of_law: self.misfit.of_law,
-            card: match self.misfit.base {
-                Base::Law(_) => None,
-                Base::Card(card) => Some(card.text.clone()),
-            },
-            cycles: of_tests.collect(),
-            predicted,
-        };
-        Fit {
-            law: first.law,
-            fitted: Box::new(SoftenedLaw::unloaded(fitted, softening)),
-            parameters,
-            choices: first.choices,
-            curve: Vec::new(),
-            stress_measure: self.misfit.measure(),
-            settings: self.settings.clone(),
-            quality,
-            relaxed: None,
-            softened: Some(softened),
-        }
-    }
-
-    fn quality(
-        &self,
-        law: &dyn HyperelasticLaw,
-        values: &[f64],
-        predicted: &[Vec<f64>],
-    ) -> Quality {
-        let weighting = self.settings.weighting;
-        let judged = judged(self.misfit, self.tests, values, self.bounds, weighting);
-        let estimates = judged.estimates(values);
-        let deviations = Deviations::of(self.tests, &|test, row| predicted[test][row]);
-        judged.quality(law, self.tests, &deviations, estimates)
     }
 }

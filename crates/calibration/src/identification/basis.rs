@@ -59,6 +59,15 @@ pub enum Shape {
     Decreasing,
 }
 
+impl Shape {
+    /// The names that the command line uses.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("free", Self::Free),
+        ("increasing", Self::Increasing),
+        ("decreasing", Self::Decreasing),
+    ];
+}
+
 /// A function's basis over the range of its argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Basis {

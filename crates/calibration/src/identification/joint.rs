@@ -19,6 +19,12 @@ pub enum Argument {
     Rate,
 }
 
+impl Argument {
+    /// The names that the command line uses.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("extension", Self::Extension), ("rate", Self::Rate)];
+}
+
 /// Both signals with their noise, and the motion's spline with its derivatives at all instants.
 pub struct Joint<'a> {
     pub recording: &'a Recording,

@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use crate::document::{Faulty, Head, Statements, Table};
+use crate::document::{
+    ColumnNames, Faulty, Head, MACHINE_DISPLACEMENTS, MACHINE_FORCES, Statements, TIMES, Table,
+};
 use crate::error::{Diagnostic, Error};
 use crate::statistics::median;
 use crate::units::{self, Dimension, QuantityFault};
@@ -28,19 +30,49 @@ pub struct Recording {
 /// Fewest instants that are accepted.
 const FEWEST: usize = 30;
 
-/// The form in which a column gives the motion.
+/// What a column records.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Motion {
+enum Signal {
+    Time,
     Extension,
     Length,
     Stretch,
+    Force,
 }
 
-const MOTIONS: [(&str, Motion, Dimension); 3] = [
-    ("extension", Motion::Extension, Dimension::Length),
-    ("length", Motion::Length, Dimension::Length),
-    ("stretch", Motion::Stretch, Dimension::Ratio),
+/// The names of columns; those of people count before those of machines.
+const NAMES: &ColumnNames<Signal> = &[
+    (Signal::Time, TIMES),
+    (Signal::Extension, "extension displacement"),
+    (Signal::Extension, MACHINE_DISPLACEMENTS),
+    (Signal::Length, "length"),
+    (Signal::Stretch, "stretch lambda λ"),
+    (Signal::Force, "force load"),
+    (Signal::Force, MACHINE_FORCES),
 ];
+
+impl Signal {
+    /// The signals that give the motion.
+    const MOTIONS: [Self; 3] = [Self::Extension, Self::Length, Self::Stretch];
+
+    /// The usual name of its column, and the dimension.
+    fn usual(self) -> (&'static str, Dimension) {
+        match self {
+            Self::Time => ("time", Dimension::Time),
+            Self::Extension => ("extension", Dimension::Length),
+            Self::Length => ("length", Dimension::Length),
+            Self::Stretch => ("stretch", Dimension::Ratio),
+            Self::Force => ("force", Dimension::Force),
+        }
+    }
+
+    /// Its column in a table.
+    fn column(self, table: &Table) -> Option<usize> {
+        let names = NAMES.iter().filter(|(signal, _)| *signal == self);
+        let mut names = names.flat_map(|(_, names)| names.split(' '));
+        names.find_map(|name| table.column(name))
+    }
+}
 
 /// Statements of a file or the command line about a recording: the mass that the force moves, length and cross-section at rest.
 const KEYS: [&str; 3] = ["mass", "length", "area"];
@@ -70,21 +102,20 @@ impl Recording {
             table,
             faults: Vec::new(),
         };
-        let times = reader.column("time", Dimension::Time);
-        let motion = MOTIONS
-            .iter()
-            .find(|(name, ..)| table.column(name).is_some());
-        let places = motion.map(|(name, _, dimension)| reader.column(name, *dimension));
+        let times = reader.column(Signal::Time);
+        let mut motions = Signal::MOTIONS.into_iter();
+        let motion = motions.find(|signal| signal.column(table).is_some());
+        let positions = motion.map(|signal| reader.column(signal));
         if motion.is_none() {
             let message = "there is no column of the motion";
             let hint = "name one `extension [mm]`, `length [mm]` or `stretch [-]`";
             reader.fault(table.columns_place.clone(), message, hint);
         }
-        let force = reader.column("force", Dimension::Force);
+        let force = reader.column(Signal::Force);
         let mass = reader.take(head.quantity("mass", Dimension::Mass));
-        let kind = motion.map_or(Motion::Extension, |(_, kind, _)| *kind);
+        let kind = motion.unwrap_or(Signal::Extension);
         let length = reader.take(match kind {
-            Motion::Extension => head.quantity("length", Dimension::Length),
+            Signal::Extension => head.quantity("length", Dimension::Length),
             _ => head
                 .required_quantity("length", Dimension::Length)
                 .map(Some),
@@ -96,12 +127,16 @@ impl Recording {
         }
         let rest = length.unwrap_or_default();
         let extension = |value: &f64| match kind {
-            Motion::Extension => *value,
-            Motion::Length => value - rest,
-            Motion::Stretch => (value - 1.0) * rest,
+            Signal::Length => value - rest,
+            Signal::Stretch => (value - 1.0) * rest,
+            _ => *value,
         };
         let recording = Self {
-            extension: places.unwrap_or_default().iter().map(extension).collect(),
+            extension: positions
+                .unwrap_or_default()
+                .iter()
+                .map(extension)
+                .collect(),
             times,
             force,
             mass: mass.unwrap_or_default(),
@@ -145,9 +180,10 @@ impl Reader<'_> {
     }
 
     /// A column in the internal unit.
-    fn column(&mut self, name: &str, dimension: Dimension) -> Vec<f64> {
+    fn column(&mut self, signal: Signal) -> Vec<f64> {
+        let (name, dimension) = signal.usual();
         let place = self.table.columns_place.clone();
-        let Some(index) = self.table.column(name) else {
+        let Some(index) = signal.column(self.table) else {
             let unit = dimension.units().next().unwrap_or("-");
             let hint = format!("name one `{name} [{unit}]`");
             self.fault(place, format!("there is no column `{name}`"), &hint);
@@ -219,6 +255,13 @@ mod tests {
         assert!((recording.force[3] - 0.009).abs() < 1e-15);
         assert!((recording.mass - 5e-6).abs() < 1e-18);
         assert_eq!(recording.length, Some(50.0));
+    }
+
+    #[test]
+    fn the_names_that_machines_give_to_columns_are_known() {
+        let usual = read(&format!("time [s],extension [mm],force [N]\n{}", rows(40))).unwrap();
+        let machine = "Elapsed Time (s),Stroke (mm),Standardkraft (N)";
+        assert_eq!(read(&format!("{machine}\n{}", rows(40))).unwrap(), usual);
     }
 
     #[test]

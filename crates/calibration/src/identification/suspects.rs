@@ -14,7 +14,7 @@ use super::basis::{Basis, Form};
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
 use super::resolution::{RESOLUTION, largest};
-use super::types::{FittedMotion, HiddenLag, Identification};
+use super::types::{FittedMotion, Identification};
 
 /// t above which a suspect is reported: by chance in less than one recording of a thousand, with eight tried.
 const LIMIT: f64 = 4.0;
@@ -66,36 +66,30 @@ impl Suspect {
 
     /// The suspect in words, with its amount.
     fn words(self, amount: f64, error: f64) -> String {
-        let of = |amount: f64, factor: f64, unit: &str| {
+        let of = |factor: f64, unit: &str| {
             format!("{:.3} ± {:.3} {unit}", factor * amount, factor * error)
         };
-        let around = |factor: f64, unit: &str| of(amount, factor, unit);
         match self {
-            Self::ForceZero => format!("a zero error of the force of {}", around(1.0, "N")),
-            Self::ExtensionZero => {
-                format!("a zero error of the extension of {}", around(1.0, "mm"))
+            Self::ForceZero => format!("a zero error of the force of {}", of(1.0, "N")),
+            Self::ExtensionZero => format!("a zero error of the extension of {}", of(1.0, "mm")),
+            Self::ForceDrift => {
+                format!("a force that drifts by {} over the recording", of(1.0, "N"))
             }
-            Self::ForceDrift => format!(
-                "a force that drifts by {} over the recording",
-                around(1.0, "N")
-            ),
-            Self::ExtensionDrift => format!(
-                "an extension that drifts by {} over the recording",
-                around(1.0, "mm")
-            ),
-            Self::Lag => format!(
-                "a force that is recorded {} later than the motion",
-                around(1e3, "ms")
-            ),
+            Self::ExtensionDrift => {
+                let drift = of(1.0, "mm");
+                format!("an extension that drifts by {drift} over the recording")
+            }
+            Self::Lag => {
+                let lag = of(1e3, "ms");
+                format!("a force that is recorded {lag} later than the motion")
+            }
             Self::Mass => {
                 let relation = if amount < 0.0 { "smaller" } else { "larger" };
-                format!(
-                    "a mass that is {relation} by {}",
-                    of(amount.abs(), 1e6, "g")
-                )
+                let [size, error] = [amount.abs(), error].map(|mass| 1e6 * mass);
+                format!("a mass that is {relation} by {size:.3} ± {error:.3} g")
             }
-            Self::StepOfK => format!("a step of K(·) at rest by {}", around(1.0, "N/mm")),
-            Self::Friction => format!("a dry friction of {}", around(1.0, "N")),
+            Self::StepOfK => format!("a step of K(·) at rest by {}", of(1.0, "N/mm")),
+            Self::Friction => format!("a dry friction of {}", of(1.0, "N")),
         }
     }
 }
@@ -141,26 +135,14 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
     (0..times.len()).map(|i| over(of(i))).collect()
 }
 
-/// What an examination of a recording found.
-pub struct Examination {
-    /// The suspects that are surely present, the surest first.
-    pub sure: Vec<Suspected>,
-    /// The lag that might be present, where it matters.
-    pub hidden_lag: Option<HiddenLag>,
-}
-
 /// A suspect in one linearised step from a fit.
 struct Trial {
-    suspect: Suspect,
-    amount: f64,
-    /// Infinite where it is part of the functions or the motion.
-    error: f64,
-    /// The share of the residuals' squares that it explains.
-    taken: f64,
+    /// Its error is infinite where it is part of the functions or the motion.
+    suspected: Suspected,
+    /// The squares of the residuals that it explains.
+    explained: f64,
     /// The largest change of a signal by it, over the largest value of that signal.
     effect: f64,
-    /// The change of the functions' coefficients for each unit of it.
-    follow: DVector<f64>,
 }
 
 /// Tries all suspects.
@@ -194,18 +176,20 @@ fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedF
         let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
         let score = reduced.gradient[place] - follow.dot(&gradient);
         let is_own = information > OWN * square;
-        let amount = if is_own { score / information } else { 0.0 };
+        let (amount, error) = if is_own {
+            let error = (fit.misfit.max(1.0) / information).sqrt();
+            (score / information, error)
+        } else {
+            (0.0, f64::INFINITY)
+        };
         Trial {
-            suspect: *suspect,
-            amount,
-            effect: amount.abs() * relative_size(joint, &columns[index]),
-            error: if is_own {
-                (fit.misfit.max(1.0) / information).sqrt()
-            } else {
-                f64::INFINITY
+            suspected: Suspected {
+                suspect: *suspect,
+                amount,
+                error,
             },
-            taken: score * score / information,
-            follow,
+            explained: score * score / information,
+            effect: amount.abs() * relative_size(joint, &columns[index]),
         }
     };
     tried.iter().enumerate().map(trial).collect()
@@ -221,58 +205,24 @@ fn relative_size(joint: &Joint, column: &Column) -> f64 {
     of_signal(0).max(of_signal(1))
 }
 
-/// Examines the recording of a fit.
+/// The suspects that are surely present in the recording of a fit, the surest first.
 pub fn examine(
     joint: &Joint,
     state: &State,
     fit: &Identification,
     found: &PenalisedFit,
-) -> Examination {
-    let trials = trials(joint, state, fit, found);
-    let beyond = (fit.misfit - 1.0).max(0.0) * fit.freedom;
-    // Friction never drives a motion.
-    let is_possible = |own: &&Trial| own.suspect != Suspect::Friction || own.amount > 0.0;
-    let is_sure = |own: &&Trial| {
-        let is_significant = own.amount.abs() > LIMIT * own.error;
-        own.taken > TAKEN * beyond && is_significant && own.effect > RESOLUTION
+) -> Vec<Suspected> {
+    let excess = (fit.misfit - 1.0).max(0.0) * fit.freedom;
+    let is_sure = |own: &Trial| {
+        // Friction never drives a motion.
+        let is_possible = own.suspected.suspect != Suspect::Friction || own.suspected.amount > 0.0;
+        let is_significant = own.suspected.size() > LIMIT;
+        is_possible && is_significant && own.explained > TAKEN * excess && own.effect > RESOLUTION
     };
-    let sure = trials.iter().filter(is_sure).filter(is_possible);
-    let mut sure: Vec<Suspected> = sure
-        .map(|own| Suspected {
-            suspect: own.suspect,
-            amount: own.amount,
-            error: own.error,
-        })
-        .collect();
+    let sure = trials(joint, state, fit, found).into_iter().filter(is_sure);
+    let mut sure: Vec<Suspected> = sure.map(|own| own.suspected).collect();
     sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
-    let lag = trials.iter().find(|own| own.suspect == Suspect::Lag);
-    let is_told = sure.iter().any(|own| own.suspect == Suspect::Lag);
-    Examination {
-        hidden_lag: lag
-            .filter(|_| !is_told)
-            .and_then(|lag| hidden_lag(joint, fit, lag)),
-        sure,
-    }
-}
-
-/// The largest lag up to a sampling interval that would not be detected, where it changes D(·) by more than its interval.
-fn hidden_lag(joint: &Joint, fit: &Identification, trial: &Trial) -> Option<HiddenLag> {
-    let lag = joint.recording.interval().min(LIMIT * trial.error);
-    let [first, count] = [0, 1].map(|index| joint.functions[index].count());
-    let change = trial.follow.rows(first, count) * lag;
-    let damping = &fit.damping;
-    let at = |x: f64| {
-        let by = damping.basis.values(x, 0).dot(&change).abs();
-        let [low, high] = damping.at(x).interval;
-        HiddenLag {
-            lag,
-            damping: by,
-            half_widths: by / (0.5 * (high - low)),
-        }
-    };
-    let places = damping.places(41).into_iter().map(at);
-    let most = places.max_by(|a, b| a.half_widths.total_cmp(&b.half_widths))?;
-    (most.half_widths > 1.0).then_some(most)
+    sure
 }
 
 /// What suspects say of the recording.

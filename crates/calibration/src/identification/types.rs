@@ -4,7 +4,6 @@ use super::band::Function;
 use super::basis::{Form, Shape};
 use super::joint::Argument;
 use crate::estimation::Answer;
-use crate::units::number;
 
 /// The settings of an identification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,35 +96,8 @@ pub struct Identification {
     pub misfit: f64,
     /// N − p.
     pub freedom: f64,
-    /// A lag that the recording does not exclude; `None` where none matters.
-    pub hidden_lag: Option<HiddenLag>,
     /// Whether a spring and a dashpot explain the recording; where they do not, standard errors, intervals and bands are NaN.
     pub verdict: RecordingVerdict,
     /// What the recording does not say, and no fault of it.
     pub warnings: Vec<String>,
-}
-
-/// A force that is recorded later than the motion, by at most one sampling interval and so little that the recording would not show it. It
-/// changes D(·) by about τ d(K x)/dx, which no interval includes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HiddenLag {
-    /// τ in s.
-    pub lag: f64,
-    /// The change of D(·) in N·s/mm where it is largest beside its interval.
-    pub damping: f64,
-    /// The same in half-widths of the interval there.
-    pub half_widths: f64,
-}
-
-impl HiddenLag {
-    /// In a sentence.
-    pub fn describe(&self) -> String {
-        format!(
-            "synchronisation: this recording would not show a force that is recorded {} ms later than the motion (sampling intervals and \
-             less are tried), which would change D(·) by up to {} N·s/mm, {} half-widths of its 95 % interval",
-            number(1e3 * self.lag),
-            number(self.damping),
-            number(self.half_widths)
-        )
-    }
 }

@@ -143,11 +143,6 @@ pub fn identification_json(found: &Identification, recording: &Recording, file: 
         "noise_of_force_N": found.noise[1],
         "misfit": found.misfit,
         "degrees_of_freedom": found.freedom,
-        "hidden_lag": found.hidden_lag.map(|hidden| json!({
-            "lag_s": hidden.lag,
-            "change_of_damping_N_s_per_mm": hidden.damping,
-            "half_widths": hidden.half_widths,
-        })),
         "functions": found.functions().into_iter().map(function).collect::<Vec<_>>(),
         "residuals": recording.times.iter().enumerate().map(|(i, t)| json!({
             "time_s": t,

@@ -12,62 +12,6 @@ use crate::units::{self, Dimension};
 /// The key under which the columns are stated.
 pub const COLUMNS: &str = "columns";
 
-/// What each column is read as, with questions where more than one reading is possible.
-pub struct Chosen {
-    /// The role of each column.
-    pub roles: Vec<Role>,
-    /// The questions about strains and stresses.
-    pub questions: Vec<Diagnostic>,
-    /// The question about times, which few fits read.
-    pub of_times: Option<Diagnostic>,
-}
-
-/// Chooses the columns of a table.
-pub fn choose(head: &Head, test: Option<Test>) -> Chosen {
-    let columns = &head.table.columns;
-    let unread = || vec![Role::OTHER; columns.len()];
-    let chosen = match chosen(head) {
-        Ok(chosen) => chosen,
-        Err(questions) => {
-            return Chosen {
-                roles: unread(),
-                questions,
-                of_times: None,
-            };
-        }
-    };
-    let mut choice = Choice {
-        head,
-        test,
-        roles: unread(),
-        questions: Vec::new(),
-        of_times: None,
-    };
-    for (_, quantity) in Quantity::NAMES {
-        if let Some(column) = chosen.of(*quantity) {
-            choice.roles[column] = stated(head, column, *quantity);
-        }
-    }
-    if columns.iter().all(|column| column.name.is_empty()) {
-        choice.order()
-    } else {
-        [Kind::Strain, Kind::Stress, Kind::Time]
-            .into_iter()
-            .for_each(|kind| choice.of_names(kind))
-    }
-    let Choice {
-        roles,
-        questions,
-        of_times,
-        ..
-    } = choice;
-    Chosen {
-        roles,
-        questions,
-        of_times,
-    }
-}
-
 /// The columns that are stated.
 fn chosen(head: &Head) -> Result<FoundColumns<Quantity>, Vec<Diagnostic>> {
     let text = head.text(COLUMNS).map_err(|fault| vec![*fault])?;
@@ -102,26 +46,54 @@ fn of_unit(head: &Head, column: &Column, kind: Kind) -> Option<&'static str> {
     }
 }
 
-/// The choice while it is made.
-struct Choice<'a> {
+/// What each column is read as, with questions where more than one reading is possible.
+pub struct Choice<'a> {
     head: &'a Head<'a>,
     test: Option<Test>,
-    roles: Vec<Role>,
-    questions: Vec<Diagnostic>,
-    of_times: Option<Diagnostic>,
+    /// The role of each column.
+    pub roles: Vec<Role>,
+    /// The questions about strains and stresses.
+    pub questions: Vec<Diagnostic>,
+    /// The question about times, which few fits read.
+    pub of_times: Option<Diagnostic>,
 }
 
-impl Choice<'_> {
+impl<'a> Choice<'a> {
+    /// Chooses the columns of a table.
+    pub fn of(head: &'a Head<'a>, test: Option<Test>) -> Self {
+        let columns = &head.table.columns;
+        let mut choice = Self {
+            head,
+            test,
+            roles: vec![Role::OTHER; columns.len()],
+            questions: Vec::new(),
+            of_times: None,
+        };
+        let chosen = match chosen(head) {
+            Ok(chosen) => chosen,
+            Err(questions) => {
+                choice.questions = questions;
+                return choice;
+            }
+        };
+        for (_, quantity) in Quantity::NAMES {
+            if let Some(column) = chosen.of(*quantity) {
+                choice.roles[column] = stated(head, column, *quantity);
+            }
+        }
+        if columns.iter().all(|column| column.name.is_empty()) {
+            choice.order();
+        } else {
+            for kind in [Kind::Strain, Kind::Stress, Kind::Time] {
+                choice.of_names(kind);
+            }
+        }
+        choice
+    }
+
     /// Whether a column of a kind has been chosen.
     fn has(&self, kind: Kind) -> bool {
         of_kind(&self.roles, kind).next().is_some()
-    }
-
-    fn readings(&self) -> Readings<'_> {
-        Readings {
-            head: self.head,
-            roles: &self.roles,
-        }
     }
 
     /// Chooses by the names of columns.
@@ -189,9 +161,12 @@ impl Choice<'_> {
             return;
         };
         self.roles[first.column] = first.role;
-        let differing =
-            |other: &&Named| other.column != first.column && !self.readings().agree(first, other);
-        if !candidates.iter().any(|other| differing(&other)) {
+        let readings = Readings {
+            head: self.head,
+            roles: &self.roles,
+        };
+        let mut others = candidates.iter().filter(|own| own.column != first.column);
+        if others.all(|other| readings.agree(first, other)) {
             return;
         }
         let each = candidates.iter();

@@ -14,9 +14,18 @@ use crate::units::Dimension;
 /// A test begins at a stretch of 1; a test that begins beyond this factor of it may be in percent.
 const AT_REST: f64 = 10.0;
 
-/// The factor from a column to a ratio; stretches without a unit are plain ratios where they begin near 1.
-pub fn ratio(head: &Head, column: usize, measure: StrainColumn) -> Faulty<f64> {
+/// The factor from a column of strains or displacements to a ratio; stretches without a unit are plain ratios where they begin near 1.
+pub fn strain_factor(
+    head: &Head,
+    column: usize,
+    is_displacement: bool,
+    measure: StrainColumn,
+) -> Faulty<f64> {
     let named = &head.table.columns[column];
+    if is_displacement {
+        let unit = head.factor("strain unit", named, Dimension::Length)?;
+        return Ok(unit / head.required_quantity("length", Dimension::Length)?);
+    }
     let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
     let begins_at_rest = || values.fold(f64::INFINITY, f64::min) < AT_REST;
     let unit = head.setting("strain unit", named.unit.as_deref())?;
@@ -24,6 +33,16 @@ pub fn ratio(head: &Head, column: usize, measure: StrainColumn) -> Faulty<f64> {
         Ok(1.0)
     } else {
         head.factor("strain unit", named, Dimension::Ratio)
+    }
+}
+
+/// The factor from a column of stresses or forces to MPa.
+pub fn stress_factor(head: &Head, column: usize, is_force: bool) -> Faulty<f64> {
+    let named = &head.table.columns[column];
+    if is_force {
+        Ok(head.factor("stress unit", named, Dimension::Force)? / area(head)?)
+    } else {
+        head.factor("stress unit", named, Dimension::Stress)
     }
 }
 
@@ -47,14 +66,7 @@ pub fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Sca
         head.choice("strain measure", role.measure, &StrainColumn::NAMES)?
     };
     let scaled = |column: usize| -> Faulty<Scaled> {
-        let factor = if displaced {
-            let named = &head.table.columns[column];
-            let unit = head.factor("strain unit", named, Dimension::Length)?;
-            unit / head.required_quantity("length", Dimension::Length)?
-        } else {
-            ratio(head, column, measure)?
-        };
-        Ok((column, factor))
+        Ok((column, strain_factor(head, column, displaced, measure)?))
     };
     let across = of_kind(roles, Kind::Strain).find(|(_, role)| role.axis() == 1);
     let across = across.map(|(column, _)| scaled(column)).transpose()?;
@@ -84,13 +96,7 @@ pub fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<Stres
     };
     let mut columns = Vec::new();
     for (column, role) in of_kind(roles, Kind::Stress) {
-        let named = &head.table.columns[column];
-        let factor = if loaded {
-            let unit = head.factor("stress unit", named, Dimension::Force)?;
-            unit / area(head)?
-        } else {
-            head.factor("stress unit", named, Dimension::Stress)?
-        };
+        let factor = stress_factor(head, column, loaded)?;
         columns.push((column, factor, role.axis().max(direction)));
     }
     Ok((measure, columns))

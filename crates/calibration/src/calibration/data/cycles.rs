@@ -196,48 +196,28 @@ fn between_holds(values: &[f64], pair: &[usize]) -> (Range<usize>, usize) {
     (leaves.unwrap_or(from)..end + 1, to)
 }
 
-/// The rows where a strain turns back: a curve of loading alone has none.
-#[derive(Default)]
-pub struct Turns {
-    last: Option<f64>,
-    /// Whether the strain rose at its last change.
-    rising: Option<bool>,
-    first: Option<usize>,
-    count: usize,
-}
-
-impl Turns {
-    /// Adds the strain of a row.
-    pub fn add(&mut self, row: usize, strain: f64) {
-        let changed = self.last.filter(|last| *last != strain);
-        if let Some(last) = changed {
-            let rising = strain > last;
-            if self.rising.is_some_and(|before| before != rising) {
-                self.first.get_or_insert(row);
-                self.count += 1;
-            }
-            self.rising = Some(rising);
-        }
-        self.last = Some(strain);
+/// The warning about rows with strains that turn back: those of loading alone do not. A user who states which cycles are taken knows that
+/// there are some.
+pub fn reversals(head: &Head, rows: &[(usize, f64)]) -> Option<Diagnostic> {
+    let changes = rows.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+    let changes: Vec<(usize, bool)> = changes
+        .map(|pair| (pair[1].0, pair[1].1 > pair[0].1))
+        .collect();
+    let turns = changes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+    let turns: Vec<usize> = turns.map(|pair| pair[1].0).collect();
+    let first = *turns.first()?;
+    if !matches!(Cycle::stated(head), Ok(None)) {
+        return None;
     }
-
-    /// The warning where it did.
-    pub fn warning(&self, head: &Head) -> Option<Diagnostic> {
-        let row = self.first?;
-        // A user who states which cycles are taken knows that there are some.
-        if !matches!(Cycle::stated(head), Ok(None)) {
-            return None;
-        }
-        let times = if self.count == 1 {
-            "once".to_owned()
-        } else {
-            format!("{} times", self.count)
-        };
-        let hint = "loading and unloading, or scatter, are fitted together; `--cycle last` or `--cycle first` takes a loading \
-                    branch alone";
-        let warning = Diagnostic::warning("", format!("the strain reverses {times}")).hint(hint);
-        Some(warning.at(&head.table.source, head.table.rows[row].1.clone()))
-    }
+    let times = if turns.len() == 1 {
+        "once".to_owned()
+    } else {
+        format!("{} times", turns.len())
+    };
+    let hint = "loading and unloading, or scatter, are fitted together; `--cycle last` or `--cycle first` takes a loading \
+                branch alone";
+    let warning = Diagnostic::warning("", format!("the strain reverses {times}")).hint(hint);
+    Some(warning.at(&head.table.source, head.table.rows[first].1.clone()))
 }
 
 #[cfg(test)]

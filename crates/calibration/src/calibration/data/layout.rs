@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::choice::{Chosen, choose};
+use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
-use super::cycles::{SPECIMEN_NAME, Turns, preconditioned};
+use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{Role, check_columns};
@@ -40,11 +40,12 @@ impl Layout {
     pub fn new(head: &Head) -> Result<Self, Vec<Diagnostic>> {
         let mut faults = Faults::default();
         let test = faults.of(head.choice("test", None, &Test::NAMES));
-        let Chosen {
+        let Choice {
             roles,
             questions,
             of_times,
-        } = choose(head, test);
+            ..
+        } = Choice::of(head, test);
         faults.0.extend(questions);
         let strains = faults.of(strains(head, &roles));
         let stresses = faults.of(stresses(head, &roles));
@@ -82,12 +83,6 @@ impl Layout {
         strains.chain(self.stresses.iter().map(|(column, ..)| *column))
     }
 
-    /// The columns that are read, including that of times.
-    pub fn all_columns(&self) -> impl Iterator<Item = usize> {
-        let time = self.time.iter().flatten().map(|(column, _)| *column);
-        self.columns().chain(time)
-    }
-
     /// The strains of an observation along an axis: the strain across a strip is not known.
     fn along(&self, axis: usize, [first, second]: [f64; 2]) -> [f64; 2] {
         if self.test == Test::Uniaxial && axis == 1 {
@@ -102,7 +97,7 @@ impl Layout {
         let table = head.table;
         let part = self.part(head)?;
         let (mut kept, mut left_out) = (Vec::new(), Vec::new());
-        let mut turns = Turns::default();
+        let mut along = Vec::new();
         for (index, (row, place)) in table.rows.iter().enumerate() {
             let [first, second] = self.strains_of(row, &part);
             if [first, second].iter().any(|x| *x <= -1.0) {
@@ -112,7 +107,7 @@ impl Layout {
             }
             let is_kept = part.rows.contains(&index);
             if part.remarks.is_empty() && is_kept {
-                turns.add(index, first);
+                along.push((index, first));
             }
             let observations = if is_kept { &mut kept } else { &mut left_out };
             for (column, factor, axis) in &self.stresses {
@@ -130,7 +125,7 @@ impl Layout {
         let widest = [0, 1].map(|axis| farthest(observations.iter().map(|one| one.strains[axis])));
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
         let warnings = [
-            turns.warning(head),
+            reversals(head, &along),
             implausible(head, self.strain, widest[0].abs().max(widest[1].abs())),
             at_rest,
         ];

@@ -1,11 +1,11 @@
 //! The values of a column in each of the measures that it may have.
 
-use super::columns::{Scaled, area, ratio, unit};
+use super::columns::{Scaled, strain_factor, stress_factor};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
 use super::test_data::StrainColumn;
 use crate::document::Head;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::units::{self, Dimension};
+use crate::units::Dimension;
 
 /// A column whose name says what it may be.
 #[derive(Clone, Copy)]
@@ -50,87 +50,57 @@ impl Readings<'_> {
     /// none where units or the dimensions of the specimen are not stated.
     fn readings(&self, own: &Named) -> Vec<Vec<f64>> {
         match own.role.kind {
-            Kind::Strain => self.strains(own),
+            Kind::Strain => self.strains(own.column, own.role.measure),
             Kind::Stress => self.stresses(own),
             Kind::Time | Kind::Other => {
-                let rise = |values: Vec<f64>| {
-                    let first = values.first().copied().unwrap_or(0.0);
-                    values.iter().map(|value| value - first).collect()
+                let column = &self.head.table.columns[own.column];
+                let Ok(factor) = self.head.factor("time unit", column, Dimension::Time) else {
+                    return Vec::new();
                 };
-                let factor = self.factor(own, Dimension::Time);
-                let scaled = factor.map(|factor| values(self.head, (own.column, factor)));
-                scaled.map(rise).into_iter().collect()
+                let times = values(self.head, (own.column, factor));
+                let first = times.first().copied().unwrap_or(0.0);
+                vec![times.iter().map(|time| time - first).collect()]
             }
         }
     }
 
-    fn strains(&self, own: &Named) -> Vec<Vec<f64>> {
-        if own.role.measure == Some(DISPLACEMENT) {
-            let length = self.head.quantity("length", Dimension::Length);
-            let factor = self.factor(own, Dimension::Length);
-            let strains = factor.zip(length.ok().flatten());
-            let strains =
-                strains.map(|(unit, length)| values(self.head, (own.column, unit / length)));
-            return strains.into_iter().collect();
-        }
-        let measures: Vec<StrainColumn> = match own.role.measure {
-            None => vec![
-                StrainColumn::Strain(StrainMeasure::Nominal),
-                StrainColumn::Strain(StrainMeasure::Logarithmic),
-            ],
-            Some(name) => {
-                let known = StrainColumn::NAMES.iter();
-                let known = known.filter(|(known, _)| *known == name);
-                known.map(|(_, measure)| *measure).collect()
+    fn strains(&self, column: usize, measure: Option<&str>) -> Vec<Vec<f64>> {
+        let is_displacement = measure == Some(DISPLACEMENT);
+        let known = StrainColumn::NAMES.iter().filter(|(name, as_read)| {
+            if is_displacement {
+                *as_read == StrainColumn::Strain(StrainMeasure::Nominal)
+            } else {
+                measure.map_or(*as_read != StrainColumn::Stretch, |own| own == *name)
             }
-        };
-        let read = |measure: StrainColumn| {
-            let factor = ratio(self.head, own.column, measure).ok()?;
-            let values = values(self.head, (own.column, factor)).into_iter();
+        });
+        let read = |(_, measure): &(&str, StrainColumn)| {
+            let factor = strain_factor(self.head, column, is_displacement, *measure).ok()?;
+            let values = values(self.head, (column, factor)).into_iter();
             Some(values.map(|value| measure.to_nominal(value)).collect())
         };
-        measures.into_iter().filter_map(read).collect()
+        known.filter_map(read).collect()
     }
 
     fn stresses(&self, own: &Named) -> Vec<Vec<f64>> {
-        if own.role.measure == Some(FORCE) {
-            let factor = self.factor(own, Dimension::Force);
-            let stresses = factor.zip(area(self.head).ok());
-            let stresses =
-                stresses.map(|(unit, area)| values(self.head, (own.column, unit / area)));
-            return stresses.into_iter().collect();
-        }
-        let Some(factor) = self.factor(own, Dimension::Stress) else {
+        let is_force = own.role.measure == Some(FORCE);
+        let Ok(factor) = stress_factor(self.head, own.column, is_force) else {
             return Vec::new();
         };
         let values = values(self.head, (own.column, factor));
+        if is_force || own.role.measure == Some("nominal") {
+            return vec![values];
+        }
         let axis = own.role.axis();
         let strains = of_kind(self.roles, Kind::Strain).find(|(_, role)| role.axis() == axis);
-        let strains = strains.and_then(|(column, role)| {
-            let named = Named {
-                column,
-                role: *role,
-                naming: Naming::Usual,
-            };
-            self.strains(&named).into_iter().next()
-        });
+        let strains = strains
+            .and_then(|(column, role)| self.strains(column, role.measure).into_iter().next());
         let as_cauchy = strains.map(|strains| {
             let pairs = values.iter().zip(strains);
             pairs
                 .map(|(stress, x)| StressMeasure::Cauchy.to_nominal(*stress, x))
                 .collect()
         });
-        match own.role.measure {
-            Some("nominal") => vec![values],
-            Some(_) => as_cauchy.into_iter().collect(),
-            None => [values].into_iter().chain(as_cauchy).collect(),
-        }
-    }
-
-    /// The factor from a column's unit, or from the stated one, to the internal unit.
-    fn factor(&self, own: &Named, dimension: Dimension) -> Option<f64> {
-        let column = &self.head.table.columns[own.column];
-        let unit = unit(self.head, column, own.role.kind)?;
-        units::factor(&unit, dimension).ok()
+        let as_nominal = own.role.measure.is_none().then_some(values);
+        as_nominal.into_iter().chain(as_cauchy).collect()
     }
 }

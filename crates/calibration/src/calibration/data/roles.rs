@@ -1,7 +1,10 @@
 //! The meaning of the names of columns.
 
 use super::test_data::Test;
-use crate::document::{Column, ColumnRole, Faulty, Head};
+use crate::document::{
+    Column, ColumnNames, ColumnRole, Faulty, Head, MACHINE_DISPLACEMENTS, MACHINE_FORCES, TIMES,
+    meaning,
+};
 
 /// The kind of quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,72 +64,6 @@ pub const DISPLACEMENT: &str = "displacement";
 /// The measure of a column of forces.
 pub const FORCE: &str = "force";
 
-/// Names that testing machines give to the displacement of their grip.
-const MACHINE_DISPLACEMENTS: [&str; 15] = [
-    "tensile_extension",
-    "compressive_extension",
-    "tensile_displacement",
-    "compressive_displacement",
-    "axial_displacement",
-    "crosshead",
-    "crosshead_displacement",
-    "crosshead_position",
-    "position",
-    "stroke",
-    "disp",
-    "standardweg",
-    "traversenweg",
-    "weg",
-    "位移",
-];
-
-/// Names that testing machines give to the force.
-const MACHINE_FORCES: [&str; 11] = [
-    "tensile_load",
-    "compressive_load",
-    "tensile_force",
-    "compressive_force",
-    "axial_load",
-    "axial_force",
-    "standard_force",
-    "standardkraft",
-    "kraft",
-    "力",
-    "载荷",
-];
-
-/// Names that testing machines give to strains and stresses without stating their measure.
-const MACHINE_STRAINS: [&str; 6] = [
-    "tensile_strain",
-    "compressive_strain",
-    "dehnung",
-    "stauchung",
-    "déformation",
-    "应变",
-];
-const MACHINE_STRESSES: [&str; 6] = [
-    "tensile_stress",
-    "compressive_stress",
-    "spannung",
-    "zugspannung",
-    "contrainte",
-    "应力",
-];
-
-/// Names that testing machines give to the time.
-const TIMES: [&str; 10] = [
-    "time",
-    "t",
-    "elapsed_time",
-    "total_time",
-    "test_time",
-    "running_time",
-    "prüfzeit",
-    "zeit",
-    "temps",
-    "时间",
-];
-
 /// What kind of name a column has: where several columns may be the same quantity, the first kind counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Naming {
@@ -159,34 +96,56 @@ impl Role {
     /// The meaning of a column by its name, and what kind of name it is.
     pub fn of(column: &Column) -> (Self, Naming) {
         let (stem, axis) = axis_of(&column.name);
-        let is = |names: &[&str]| names.contains(&stem);
-        let (kind, measure) = match stem {
-            "stretch" | "lambda" | "λ" => (Kind::Strain, Some("stretch")),
-            "strain" => (Kind::Strain, None),
-            "nominal_strain" | "engineering_strain" => (Kind::Strain, Some("nominal")),
-            "logarithmic_strain" | "true_strain" => (Kind::Strain, Some("logarithmic")),
-            "displacement" | "extension" => (Kind::Strain, Some(DISPLACEMENT)),
-            "stress" => (Kind::Stress, None),
-            "nominal_stress" | "engineering_stress" | "first_piola_kirchhoff_stress" => {
-                (Kind::Stress, Some("nominal"))
-            }
-            "cauchy_stress" | "true_stress" => (Kind::Stress, Some("cauchy")),
-            "force" | "load" => (Kind::Stress, Some(FORCE)),
-            _ if is(&TIMES) => (Kind::Time, None),
-            _ if is(&MACHINE_DISPLACEMENTS) => (Kind::Strain, Some(DISPLACEMENT)),
-            _ if is(&MACHINE_FORCES) => (Kind::Stress, Some(FORCE)),
-            _ if is(&MACHINE_STRAINS) => (Kind::Strain, None),
-            _ if is(&MACHINE_STRESSES) => (Kind::Stress, None),
-            _ => (Kind::Other, None),
-        };
-        let naming = match () {
-            () if is(&MACHINE_DISPLACEMENTS) || is(&MACHINE_FORCES) => Naming::Machine,
-            () if is(&MACHINE_STRAINS) || is(&MACHINE_STRESSES) => Naming::Evaluation,
-            () => Naming::Usual,
-        };
+        let (kind, measure, naming) =
+            meaning(NAMES, stem).unwrap_or((Kind::Other, None, Naming::Usual));
         (Self::new(kind, measure, axis), naming)
     }
 }
+
+/// The meanings of names, and whose names they are.
+const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
+    (
+        (Kind::Strain, Some("stretch"), Naming::Usual),
+        "stretch lambda λ",
+    ),
+    ((Kind::Strain, None, Naming::Usual), "strain"),
+    (
+        (Kind::Strain, Some("nominal"), Naming::Usual),
+        "nominal_strain engineering_strain",
+    ),
+    (
+        (Kind::Strain, Some("logarithmic"), Naming::Usual),
+        "logarithmic_strain true_strain",
+    ),
+    (
+        (Kind::Strain, Some(DISPLACEMENT), Naming::Usual),
+        "displacement extension",
+    ),
+    (
+        (Kind::Strain, Some(DISPLACEMENT), Naming::Machine),
+        MACHINE_DISPLACEMENTS,
+    ),
+    (
+        (Kind::Strain, None, Naming::Evaluation),
+        "tensile_strain compressive_strain dehnung stauchung déformation 应变",
+    ),
+    ((Kind::Stress, None, Naming::Usual), "stress"),
+    (
+        (Kind::Stress, Some("nominal"), Naming::Usual),
+        "nominal_stress engineering_stress first_piola_kirchhoff_stress",
+    ),
+    (
+        (Kind::Stress, Some("cauchy"), Naming::Usual),
+        "cauchy_stress true_stress",
+    ),
+    ((Kind::Stress, Some(FORCE), Naming::Usual), "force load"),
+    ((Kind::Stress, Some(FORCE), Naming::Machine), MACHINE_FORCES),
+    (
+        (Kind::Stress, None, Naming::Evaluation),
+        "tensile_stress compressive_stress spannung zugspannung contrainte 应力",
+    ),
+    ((Kind::Time, None, Naming::Usual), TIMES),
+];
 
 /// A name without the number of its axis, and the axis.
 fn axis_of(name: &str) -> (&str, Option<usize>) {

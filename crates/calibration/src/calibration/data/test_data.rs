@@ -118,6 +118,22 @@ pub struct Observation {
     pub stress: f64,
 }
 
+impl Observation {
+    /// The mean of neighbouring observations along one axis.
+    pub(in crate::calibration) fn mean(bin: &[Self]) -> Self {
+        if let [one] = bin {
+            return *one;
+        }
+        let count = bin.len() as f64;
+        let mean = |value: &dyn Fn(&Self) -> f64| bin.iter().map(value).sum::<f64>() / count;
+        Self {
+            strains: [0, 1].map(|axis| mean(&|one| one.strains[axis])),
+            axis: bin[0].axis,
+            stress: mean(&|one| one.stress),
+        }
+    }
+}
+
 /// The times of observations.
 #[derive(Clone, Debug)]
 pub enum Times {

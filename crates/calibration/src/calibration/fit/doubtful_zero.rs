@@ -4,13 +4,12 @@
 //! are wrong by many of their standard errors. So the zero of each test is tried as one more value.
 
 use crate::calibration::data::{FoundZero, TestData};
+use crate::calibration::fitted::Fit;
 use crate::calibration::least_squares::{Residuals, sum_of_squares};
-use crate::calibration::regression::Misfit;
-use crate::calibration::regression::refined_zero::Found;
-use crate::calibration::settings::Weighting;
-use crate::calibration::trust::Assessment;
+use crate::calibration::regression::{Elastic, Misfit, Response};
+use crate::calibration::settings::limits;
+use crate::calibration::solution::Solution;
 use crate::material::parameters::Parameter;
-use crate::material::registry::Law;
 use crate::statistics::Estimate;
 
 /// A zero is doubtful where it is this many halves of its 95 % interval away: one in a thousand by chance.
@@ -18,20 +17,6 @@ const DOUBTFUL: f64 = 1.7;
 
 /// More points than this are thinned before all of them are tried.
 const MANY: usize = 800;
-
-/// A law fitted to tests with the zeros that they have.
-pub struct WithGivenZeros<'a> {
-    /// The law.
-    pub law: &'static Law,
-    /// The tests.
-    pub tests: &'a [TestData],
-    /// The weights of the residuals.
-    pub weighting: Weighting,
-    /// The bounds of the parameters.
-    pub bounds: &'a [[f64; 2]],
-    /// The least size of each parameter that counts.
-    pub least: &'a [f64],
-}
 
 /// A test with another zero.
 struct MovedTest {
@@ -76,92 +61,66 @@ impl MovedTest {
     }
 }
 
-impl WithGivenZeros<'_> {
-    /// The warning about the zero that describes the data best beside the parameters found, if one is.
-    pub fn warning(&self, parameters: &[Parameter]) -> Option<String> {
+impl Fit {
+    /// Adds the warning about a zero of strain or stress that the law finds elsewhere than the tests have it, if there is one. It takes
+    /// about as long as the fit.
+    pub fn doubt_zeros(&mut self, tests: &[TestData]) {
         let kinds = [
             FoundZero::Strain { length: 1.0 },
             FoundZero::Stress { area: 1.0 },
         ];
-        let given = (0..self.tests.len()).filter(|test| self.tests[*test].found_zero.is_none());
-        let moved = given.flat_map(|test| kinds.map(|kind| self.with_zero(parameters, test, kind)));
+        let given = (0..tests.len()).filter(|test| tests[*test].found_zero.is_none());
+        let moved = given.flat_map(|test| kinds.map(|kind| self.with_zero(tests, test, kind)));
         let doubtful = moved.flatten().filter(|moved| moved.halves() > DOUBTFUL);
         let doubtful: Vec<MovedTest> = doubtful.collect();
-        let best = doubtful.iter().min_by(|a, b| a.sum.total_cmp(&b.sum))?;
+        let Some(best) = doubtful.iter().min_by(|a, b| a.sum.total_cmp(&b.sum)) else {
+            return;
+        };
         let of_test = doubtful.iter().filter(|moved| moved.test == best.test);
         let each: Vec<String> = of_test
-            .map(|moved| moved.describe(&parameters[0]))
+            .map(|moved| moved.describe(&self.parameters[0]))
             .collect();
-        Some(format!(
+        self.quality.warnings.push(format!(
             "{}: the law follows the data better if {}; or another law does. No interval holds this: check the zero, and state it (`--zero`) or \
              correct the data",
-            self.tests[best.test].name,
+            tests[best.test].name,
             each.join(", or if ")
-        ))
+        ));
     }
 
     /// The fit with the zero of a test as one more value; `None` where what is left is no noise.
-    fn with_zero(
-        &self,
-        parameters: &[Parameter],
-        test: usize,
-        kind: FoundZero,
-    ) -> Option<MovedTest> {
-        let mut tests = self.tests.to_vec();
+    fn with_zero(&self, tests: &[TestData], test: usize, kind: FoundZero) -> Option<MovedTest> {
+        self.parameters.first()?;
+        let mut tests = tests.to_vec();
         tests[test].found_zero = Some(kind);
-        let misfit = Misfit::new(self.law, &tests, self.weighting);
-        let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
-            self.assess(misfit, &tests, values, bounds, |own| own.is_noise())
+        let response = Elastic::new(self.law, &tests);
+        let bounds = &self.settings.bounds;
+        let bounds = limits(self.law, &self.parameters, bounds, response.stiffness).ok()?;
+        let solved = |misfit| {
+            let begun = Solution {
+                misfit,
+                values: self.parameters.iter().map(|one| one.value).collect(),
+                bounds: bounds.clone(),
+            };
+            begun.with_zeros()
         };
+        let misfit = Misfit::new(response, self.settings.weighting);
         // What some of many points show to be no noise, all of them do.
         if misfit.count() > MANY {
-            let some = self
-                .begun(misfit.thinned(MANY / 2), parameters)
-                .with_zeros(&is_noise);
-            if some.misfit.zeros().is_empty() {
+            let some = solved(misfit.thinned(MANY / 2));
+            if some.misfit.response.zeros().is_empty() {
                 return None;
             }
         }
-        let found = self.begun(misfit, parameters).with_zeros(&is_noise);
-        let moved = found.misfit.moved_tests(&found.values);
-        let (misfit, values) = (&found.misfit, &found.values);
-        let quality = self.assess(misfit, &moved, values, &found.bounds, |own| own.quality());
+        let solution = solved(misfit);
+        let quality = solution.quality();
         let zero = quality.zeros.iter().find(|zero| zero.test == test)?;
         Some(MovedTest {
             test,
             kind,
             by: zero.by,
-            first: found.values[0],
-            sum: sum_of_squares(misfit, values),
-        })
-    }
-
-    /// The parameters by some residuals.
-    fn begun<'m>(&self, misfit: Misfit<'m>, parameters: &[Parameter]) -> Found<'m> {
-        Found {
-            misfit,
-            values: parameters.iter().map(|one| one.value).collect(),
-            bounds: self.bounds.to_vec(),
-        }
-    }
-
-    /// An answer of the assessment of values.
-    pub fn assess<T>(
-        &self,
-        misfit: &Misfit,
-        tests: &[TestData],
-        values: &[f64],
-        bounds: &[[f64; 2]],
-        answer: impl FnOnce(&Assessment) -> T,
-    ) -> T {
-        answer(&Assessment {
-            misfit,
-            weighting: self.weighting,
-            tests,
-            law: &*misfit.build(values).0,
-            values,
-            bounds,
-            least: self.least,
+            first: solution.values[0],
+            sum: sum_of_squares(&solution.misfit, &solution.values),
         })
     }
 }

@@ -3,6 +3,7 @@
 
 use rayon::prelude::*;
 
+use super::elastic::Elastic;
 use super::misfit::Misfit;
 use crate::calibration::least_squares::{
     Precision, Residuals, descend, lower, minimise, sum_of_squares,
@@ -19,11 +20,24 @@ const REFINED: usize = 3;
 const DRAWS: usize = 80;
 
 /// Parameters with their sum of squares.
-type Candidate = (f64, Vec<f64>);
+pub type Candidate = (f64, Vec<f64>);
+
+/// The rough minima that are reached from some starts, the best first.
+pub fn improved(
+    model: &(impl Residuals + Sync),
+    starts: Vec<Vec<f64>>,
+    bounds: &[[f64; 2]],
+) -> Vec<Candidate> {
+    let minimum = |start: Vec<f64>| {
+        let found = minimise(model, &start, bounds, Precision::Rough)?;
+        Some((sum_of_squares(model, &found), found))
+    };
+    sorted(starts.into_par_iter().filter_map(minimum).collect())
+}
 
 /// What is searched.
 pub struct Search<'a> {
-    pub misfit: &'a Misfit<'a>,
+    pub misfit: &'a Misfit<Elastic<'a>>,
     pub parameters: &'a [Parameter],
     /// Lower and upper limit of each parameter.
     pub bounds: &'a [[f64; 2]],
@@ -50,14 +64,9 @@ impl Search<'_> {
     /// The parameters of the smallest sum of squares from so many starts; `None` where none describe the data at all.
     pub fn minimum(&self, starts: usize) -> Option<Minimum> {
         let thinned = self.misfit.thinned(THINNED);
-        let mut best_starts = self.starts(&thinned);
-        best_starts.truncate(starts);
-        let rough = |(_, start): Candidate| {
-            let found = minimise(&thinned, &start, self.bounds, Precision::Rough)?;
-            Some((sum_of_squares(&thinned, &found), found))
-        };
-        let minima = best_starts.into_par_iter().filter_map(rough).collect();
-        let minima = sorted(minima);
+        let best_starts = self.starts(&thinned).into_iter().take(starts);
+        let best_starts = best_starts.map(|(_, start)| start).collect();
+        let minima = improved(&thinned, best_starts, self.bounds);
         let refined: Vec<Vec<f64>> = self
             .apart(&minima)
             .into_iter()
@@ -104,10 +113,10 @@ impl Search<'_> {
     }
 
     /// Starts within the bounds, the best first.
-    fn starts(&self, misfit: &Misfit) -> Vec<Candidate> {
+    fn starts(&self, misfit: &Misfit<Elastic>) -> Vec<Candidate> {
         let stresses = self.stresses();
         let free = self.parameters.len() - stresses.len();
-        let scale = misfit.stiffness();
+        let scale = misfit.response.stiffness;
         let mut starts = Vec::new();
         for number in 0..(DRAWS * free).max(1) {
             let mut values = self.draw(scale, number);
@@ -165,7 +174,7 @@ impl Search<'_> {
     /// Whether a parameter of another minimum is a tenth away, or by what counts where it is about zero.
     pub fn differs(&self, other: &[f64], values: &[f64]) -> bool {
         const FAR: f64 = 0.1;
-        let stiffness = self.misfit.stiffness();
+        let stiffness = self.misfit.response.stiffness;
         let pairs = other.iter().zip(values).zip(self.parameters);
         let mut apart = pairs.map(|((other, value), parameter)| {
             let size = value.abs().max(parameter.least_size(stiffness));

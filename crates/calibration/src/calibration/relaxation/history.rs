@@ -93,24 +93,18 @@ impl History {
         let strain = |state: &State| state.observation.strains[state.observation.axis].abs();
         let largest = states.iter().map(strain).fold(0.0, f64::max);
         let begins_stretched = strain(&states[0]) > BEGUN * largest;
-        let mut nodes = Vec::new();
+        let first = states[0].observation;
+        let rest = Observation {
+            strains: first.strains.map(|x| 0.0 * x),
+            ..first
+        };
+        let mut nodes = vec![Node {
+            observation: if begins_stretched { rest } else { first },
+            elapsed: 0.0,
+            measured: !begins_stretched,
+        }];
         if begins_stretched {
-            let rest = states[0].observation.strains.map(|x| 0.0 * x);
-            nodes.push(Node {
-                observation: Observation {
-                    strains: rest,
-                    ..states[0].observation
-                },
-                elapsed: 0.0,
-                measured: false,
-            });
-            add_steps(&mut nodes, states[0].observation, rise);
-        } else {
-            nodes.push(Node {
-                observation: states[0].observation,
-                elapsed: 0.0,
-                measured: true,
-            });
+            add_steps(&mut nodes, first, rise);
         }
         for pair in states.windows(2) {
             add_steps(&mut nodes, pair[1].observation, pair[1].time - pair[0].time);
@@ -238,17 +232,10 @@ fn gathered_by(states: &[State], share: f64) -> Vec<State> {
 
 fn mean(group: &[State]) -> State {
     let count = group.len() as f64;
-    let mean = |value: &dyn Fn(&State) -> f64| group.iter().map(value).sum::<f64>() / count;
-    if group.len() == 1 {
-        return group[0];
-    }
+    let observations: Vec<Observation> = group.iter().map(|state| state.observation).collect();
     State {
-        time: mean(&|state| state.time),
-        observation: Observation {
-            strains: [0, 1].map(|axis| mean(&|state| state.observation.strains[axis])),
-            axis: group[0].observation.axis,
-            stress: mean(&|state| state.observation.stress),
-        },
+        time: group.iter().map(|state| state.time).sum::<f64>() / count,
+        observation: Observation::mean(&observations),
         count,
     }
 }

@@ -2,7 +2,6 @@
 
 use super::prony::MOST_SHARED;
 use crate::document::Bound;
-use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::units::Dimension;
 
@@ -37,6 +36,15 @@ pub const TIMES: [&str; Terms::MOST] = [
 impl Terms {
     /// The most terms of a series.
     pub const MOST: usize = 6;
+
+    /// Reads `automatic` or a number.
+    pub fn parse(text: &str) -> Option<Self> {
+        let number = text.parse().ok().filter(|terms| *terms <= Self::MOST);
+        match (text, number) {
+            ("automatic", _) => Some(Self::Automatic),
+            (_, number) => number.map(Self::Exactly),
+        }
+    }
 
     /// The numbers that are tried.
     pub fn tried(self) -> std::ops::RangeInclusive<usize> {
@@ -73,13 +81,9 @@ pub fn parameters(law: &[Parameter], terms: usize, [low, high]: [f64; 2]) -> Vec
 }
 
 /// Limits with times by their logarithms.
-pub fn transformed(
-    limits: Result<Vec<[f64; 2]>, Error>,
-    of_law: usize,
-) -> Result<Vec<[f64; 2]>, Error> {
-    let mut limits = limits?;
+pub fn transformed(mut limits: Vec<[f64; 2]>, of_law: usize) -> Vec<[f64; 2]> {
     for limit in limits[of_law..].iter_mut().skip(1).step_by(2) {
         *limit = limit.map(f64::ln);
     }
-    Ok(limits)
+    limits
 }

@@ -1,13 +1,13 @@
-//! The residuals of a law that softens.
+//! A law that softens as the model of tests.
 
 use std::sync::Arc;
 
 use crate::calibration::data::{Observation, TestData};
-use crate::calibration::least_squares::{Measured, Residuals};
-use crate::calibration::regression::{Reweighed, Rows};
-use crate::calibration::settings::{MEASURE, Weighting};
+use crate::calibration::least_squares::Residuals;
+use crate::calibration::regression::{Misfit, Response, Row};
+use crate::calibration::settings::MEASURE;
 use crate::document::Bound;
-use crate::material::parameters::{Parameter, StressMeasure};
+use crate::material::parameters::Parameter;
 use crate::material::registry::Law;
 use crate::material::{Card, HyperelasticLaw, Softening};
 use crate::units::Dimension;
@@ -47,56 +47,25 @@ pub fn softening_parameters(largest: f64) -> [Parameter; 3] {
     ]
 }
 
-/// The residuals of a law that softens at all rows. Parameters are those of the law, then r, m and β.
-pub struct SofteningMisfit<'a> {
+/// A law that softens at all rows, in the order of the file. Values are those of the law, then r, m and β.
+#[derive(Clone)]
+pub struct Softens<'a> {
     /// Where the law comes from.
     pub base: Base<'a>,
-    /// How many parameters of the law are found.
+    /// How many values of the law are found.
     pub of_law: usize,
-    tests: &'a [TestData],
-    weighting: Weighting,
-    weights: Vec<Vec<f64>>,
+    /// The tests.
+    pub tests: &'a [TestData],
 }
 
-impl<'a> SofteningMisfit<'a> {
-    /// The residuals with so many parameters of the law, weighted by the measured stresses.
-    pub fn new(base: Base<'a>, of_law: usize, tests: &'a [TestData], weighting: Weighting) -> Self {
-        let weights = tests.iter().map(|data| {
-            let rows = data.observations.iter();
-            rows.map(|one| weighting.weight(data, one)).collect()
-        });
-        Self {
-            base,
-            of_law,
-            tests,
-            weighting,
-            weights: weights.collect(),
-        }
-    }
-
-    /// The stress measure of the data.
-    pub fn measure(&self) -> StressMeasure {
-        self.tests[0].stress_measure
-    }
-
-    /// The law of the first loading.
-    pub fn law(&self, values: &[f64]) -> Arc<dyn HyperelasticLaw> {
-        match self.base {
-            Base::Card(card) => Arc::clone(&card.law),
-            Base::Law(law) => {
-                let own = &values[..self.of_law];
-                law.with_values(own, self.measure(), MEASURE).0.into()
-            }
-        }
-    }
-
+impl Softens<'_> {
     /// The softening of some values.
     pub fn softening(&self, values: &[f64]) -> Softening {
-        let own = &values[self.of_law..];
+        let parameters = &values[self.of_law..];
         Softening {
-            r: own[0],
-            m: own[1],
-            beta: own[2],
+            r: parameters[0],
+            m: parameters[1],
+            beta: parameters[2],
         }
     }
 
@@ -109,9 +78,45 @@ impl<'a> SofteningMisfit<'a> {
         });
         all.fold(0.0, f64::max)
     }
+}
 
-    /// The stresses at all rows of each test, in the measure of the data, in MPa.
-    pub fn stresses(&self, values: &[f64]) -> Vec<Vec<f64>> {
+impl Response for Softens<'_> {
+    fn data(&self) -> &[TestData] {
+        self.tests
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let tests = self.tests.iter().enumerate();
+        let rows = tests.flat_map(|(test, data)| {
+            let rows = data.observations.iter().enumerate();
+            rows.map(move |(number, one)| Row {
+                test,
+                axis: one.axis,
+                position: number as f64,
+                stress: one.stress,
+                count: 1.0,
+                weight: 1.0,
+            })
+        });
+        rows.collect()
+    }
+
+    fn law(&self, values: &[f64]) -> Arc<dyn HyperelasticLaw> {
+        match self.base {
+            Base::Card(card) => Arc::clone(&card.law),
+            Base::Law(law) => {
+                let measure = self.tests[0].stress_measure;
+                let of_law = &values[..self.of_law];
+                law.with_values(of_law, measure, MEASURE).0.into()
+            }
+        }
+    }
+
+    fn stresses(&self, values: &[f64]) -> Vec<f64> {
+        self.predicted(values).concat()
+    }
+
+    fn predicted(&self, values: &[f64]) -> Vec<Vec<f64>> {
         let (law, softening) = (self.law(values), self.softening(values));
         let of_test = |data: &TestData| {
             let mut most = data.energy_before(&*law);
@@ -126,83 +131,19 @@ impl<'a> SofteningMisfit<'a> {
         };
         self.tests.iter().map(of_test).collect()
     }
-
-    /// The rows of each test along each axis, in the order of the file.
-    pub fn curves(&self) -> Vec<Rows> {
-        let mut curves = Vec::new();
-        let mut first = 0;
-        for data in self.tests {
-            for axis in [0, 1] {
-                let rows = data.observations.iter().enumerate();
-                let rows = rows.filter(|(_, one)| one.axis == axis);
-                let rows: Rows = rows.map(|(row, _)| (first + row, row as f64)).collect();
-                if !rows.is_empty() {
-                    curves.push(rows);
-                }
-            }
-            first += data.observations.len();
-        }
-        curves
-    }
 }
 
 /// The residuals of the same law without softening.
-pub struct WithoutSoftening<'a>(pub &'a SofteningMisfit<'a>);
+pub struct WithoutSoftening<'a>(pub &'a Misfit<Softens<'a>>);
 
 impl Residuals for WithoutSoftening<'_> {
     fn count(&self) -> usize {
         self.0.count()
     }
 
-    fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool {
+    fn evaluate(&self, values: &[f64], residuals: &mut [f64]) -> bool {
         // η = 1 − erf(…)/r
         let none = [f64::INFINITY, 1.0, 0.0];
-        self.0.evaluate(&[parameters, &none].concat(), residuals)
-    }
-}
-
-impl Residuals for SofteningMisfit<'_> {
-    fn count(&self) -> usize {
-        self.weights.iter().map(Vec::len).sum()
-    }
-
-    fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool {
-        let found = self.stresses(parameters);
-        let found = found.iter().flatten().zip(self.weights.iter().flatten());
-        let measured = self.tests.iter().flat_map(|data| &data.observations);
-        for ((place, one), (stress, weight)) in residuals.iter_mut().zip(measured).zip(found) {
-            *place = weight * (one.stress - stress);
-        }
-        residuals.iter().all(|residual| residual.is_finite())
-    }
-}
-
-impl Reweighed for SofteningMisfit<'_> {
-    fn reweighed(&self, values: &[f64]) -> Self {
-        let stresses = self.stresses(values);
-        let weights = self.tests.iter().zip(&stresses).map(|(data, own)| {
-            let own = own.iter();
-            own.map(|stress| self.weighting.weight_of(data, *stress))
-                .collect()
-        });
-        Self {
-            weights: weights.collect(),
-            ..*self
-        }
-    }
-
-    fn is_relative(&self) -> bool {
-        self.weighting == Weighting::Relative
-    }
-
-    fn measured(&self) -> Vec<Measured> {
-        let rows = self.tests.iter().flat_map(|data| &data.observations);
-        let rows = rows.zip(self.weights.iter().flatten());
-        rows.map(|(one, weight)| Measured {
-            stress: one.stress,
-            weight: *weight,
-            count: 1.0,
-        })
-        .collect()
+        self.0.evaluate(&[values, &none].concat(), residuals)
     }
 }

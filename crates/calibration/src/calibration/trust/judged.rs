@@ -2,63 +2,51 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::quality::{Deviations, Quality, aicc, stable_ranges, stretch_range, untested};
+use super::quality::{Quality, rounded, stable_ranges, stretch_range, untested};
 use super::verdict::{LeftOver, Verdict};
 use crate::calibration::data::TestData;
-use crate::calibration::least_squares::{self, LEAST_SIZE, Measured};
-use crate::calibration::regression::{Reweighed, Rows};
-use crate::calibration::settings::SMALLEST_SHARE;
+use crate::calibration::least_squares::{self, Residuals};
+use crate::calibration::regression::{Estimated, Misfit, Response, Row};
+use crate::calibration::settings::{SMALLEST_SHARE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::statistics::{CurveNoise, Estimate};
 
-/// How near to its bound a value is held by it where the search ends a little inside: a share, and the least size that counts.
-pub const AT_BOUND: [f64; 2] = [1e-6, 1e-9];
-
-/// Which values lie at their bounds, within a share of their size and of the least size that counts.
-pub fn at_bound(values: &[f64], bounds: &[[f64; 2]], [share, least]: [f64; 2]) -> Vec<bool> {
-    let held = |(value, [low, high]): (&f64, &[f64; 2])| {
-        let near = |limit: f64| (value - limit).abs() <= share * value.abs().max(least);
-        near(*low) || near(*high)
-    };
-    values.iter().zip(bounds).map(held).collect()
-}
-
-/// The values of a fit.
-pub struct Values<'a> {
-    pub values: &'a [f64],
-    /// Which of them a bound holds.
-    pub at_bound: Vec<bool>,
-    /// Which of them are not estimated at all.
-    pub fixed: Vec<bool>,
-    /// The least size of each that counts.
-    pub least: Vec<f64>,
-}
-
-impl<'a> Values<'a> {
-    /// Values of which those at bounds are not estimated.
-    pub fn held(values: &'a [f64], at_bound: Vec<bool>) -> Self {
-        Self {
-            values,
-            fixed: at_bound.clone(),
-            at_bound,
-            least: vec![LEAST_SIZE; values.len()],
-        }
-    }
-}
-
 /// The size of the noise that the weights do not suit: one that is the same everywhere where they are relative, else one that is
 /// proportional to the stress.
-fn other_size(measured: &[Measured], residual: &DVector<f64>, is_relative: bool) -> DVector<f64> {
-    let rows = measured.iter().zip(residual.iter());
-    let stresses: Vec<f64> = rows.map(|(one, own)| one.modelled(*own).abs()).collect();
-    let least = SMALLEST_SHARE * stresses.iter().copied().fold(0.0, f64::max);
-    DVector::from_fn(measured.len(), |row, _| {
-        if is_relative {
-            measured[row].weight
-        } else {
-            stresses[row].max(least)
+fn other_size(rows: &[Row], residual: &DVector<f64>, weighting: Weighting) -> DVector<f64> {
+    if weighting == Weighting::Relative {
+        return DVector::from_iterator(rows.len(), rows.iter().map(Row::own_weight));
+    }
+    let pairs = rows.iter().zip(residual.iter());
+    let modelled = pairs.map(|(row, residual)| (row.stress - residual / row.weight).abs());
+    let modelled = DVector::from_iterator(rows.len(), modelled);
+    let least = SMALLEST_SHARE * modelled.iter().copied().fold(0.0, f64::max);
+    modelled.map(|stress| stress.max(least))
+}
+
+/// A measured and a fitted stress in MPa, and their difference.
+struct Deviation {
+    measured: f64,
+    fitted: f64,
+    absolute: f64,
+    /// Over the measured stress; zero below the least one that counts.
+    relative: f64,
+}
+
+impl Deviation {
+    fn of(measured: f64, fitted: f64, least: f64) -> Self {
+        let absolute = (measured - fitted).abs();
+        Self {
+            measured,
+            fitted,
+            absolute,
+            relative: if measured.abs() > least {
+                absolute / measured.abs()
+            } else {
+                0.0
+            },
         }
-    })
+    }
 }
 
 /// What the residuals of a fit are.
@@ -72,48 +60,43 @@ pub struct Judged {
     /// What the values are worth that are estimated; `None` likewise.
     pub noise: Option<CurveNoise>,
     /// The sum of squares of the residuals.
-    pub sum_of_squares: f64,
+    sum_of_squares: f64,
     /// −2 ln of the likelihood of the measured stresses.
     surprise: f64,
     rows: usize,
 }
 
 impl Judged {
-    /// Of the residuals at some values, in the order of their curves; `rounded` are the mean squares that
-    /// rounding alone leaves, see [`LeftOver`].
-    pub fn of<M: Reweighed>(
-        misfit: &M,
-        curves: Vec<Rows>,
-        found: Values,
-        rounded: [f64; 2],
-    ) -> Self {
-        let Values {
-            values,
+    /// Of the residuals of a model at some values within their bounds.
+    pub fn of<R: Response>(misfit: &Misfit<R>, values: &[f64], bounds: &[[f64; 2]]) -> Self {
+        let response = &misfit.response;
+        let Estimated {
             at_bound,
             fixed,
             least,
-        } = found;
-        let jacobian = least_squares::jacobian(misfit, values, &fixed, &least);
-        let free: Vec<usize> = (0..values.len()).filter(|index| !fixed[*index]).collect();
+        } = response.estimated(values, bounds);
         let mut residual = DVector::zeros(misfit.count());
         misfit.evaluate(values, residual.as_mut_slice());
-        let measured = misfit.measured();
+        let (rows, sum_of_squares) = (residual.len() as f64, residual.norm_squared());
+        let jacobian = least_squares::jacobian(misfit, values, &fixed, &least);
+        let free: Vec<usize> = (0..values.len()).filter(|index| !fixed[*index]).collect();
         let judged = jacobian.and_then(|jacobian| {
+            let law = response.law(values);
+            let rounded = rounded(&response.moved_tests(values), &*law, misfit.weighting);
             let left_over = LeftOver {
-                curves,
+                curves: misfit.curves(),
                 design: &jacobian.select_columns(&free),
                 residual: &residual,
-                other_size: &other_size(&measured, &residual, misfit.is_relative()),
-                rounded: rounded.map(|mean| mean * residual.len() as f64),
+                other_size: &other_size(&misfit.rows, &residual, misfit.weighting),
+                rounded: rounded.map(|mean| mean * rows),
             };
             left_over.judge()
         });
         let (verdict, noise): (_, Option<CurveNoise>) = judged.unzip();
-        let (rows, sum_of_squares) = (residual.len(), residual.norm_squared());
-        let white = || rows as f64 * (sum_of_squares / rows as f64).ln();
+        let white = || rows * (sum_of_squares / rows).ln();
         let of_residuals = noise.as_ref().map_or_else(white, CurveNoise::surprise);
         // The residuals of a relative fit are those of the stresses times their weights.
-        let weights = measured.iter().map(|one| one.weight.ln());
+        let weights = misfit.rows.iter().map(|row| row.own_weight().ln());
         Self {
             at_bound,
             fixed,
@@ -121,13 +104,34 @@ impl Judged {
             noise,
             sum_of_squares,
             surprise: of_residuals - 2.0 * weights.sum::<f64>(),
-            rows,
+            rows: residual.len(),
         }
     }
 
-    /// AICc of so many estimates and the variance.
-    pub fn aicc(&self, estimates: usize) -> f64 {
-        aicc(self.surprise, self.rows as f64, (estimates + 1) as f64)
+    /// Counts points that were gathered as many as their means are the less scattered; `square` is the weighted sum of squares of all of them.
+    pub fn count_gathered(&mut self, points: usize, square: f64) {
+        let (rows, estimates) = (self.rows, self.fixed.len());
+        if let Some(verdict) = &mut self.verdict
+            && rows < points
+            && verdict.answer.has_intervals()
+        {
+            let sums = [(square, points), (self.sum_of_squares, rows)];
+            let [own, of_means] =
+                sums.map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
+            let gathered = points as f64 / rows as f64;
+            verdict.effective_points *= gathered * (own / of_means).min(1.0);
+        }
+    }
+
+    /// AICc of −2 ln L, n rows, and k values and the variance; infinite where there are too few rows.
+    pub fn aicc(&self) -> f64 {
+        let [n, k] = [self.rows, self.fixed.len() + 1].map(|count| count as f64);
+        let freedom = n - k - 1.0;
+        if freedom > 0.0 {
+            self.surprise + 2.0 * k + 2.0 * k * (k + 1.0) / freedom
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Whether they are noise.
@@ -173,18 +177,29 @@ impl Judged {
         self,
         law: &dyn HyperelasticLaw,
         tests: &[TestData],
-        deviations: &Deviations,
+        predicted: &[Vec<f64>],
         (estimates, correlation): (Vec<Estimate>, DMatrix<f64>),
     ) -> Quality {
-        let points: usize = tests.iter().map(|test| test.observations.len()).sum();
+        let of_test = |(test, predicted): (&TestData, &Vec<f64>)| -> Vec<Deviation> {
+            let least = SMALLEST_SHARE * test.largest_stress;
+            let rows = test.observations.iter().zip(predicted);
+            rows.map(|(one, fitted)| Deviation::of(one.stress, *fitted, least))
+                .collect()
+        };
+        let all: Vec<Deviation> = tests.iter().zip(predicted).flat_map(of_test).collect();
+        let sum = |value: &dyn Fn(&Deviation) -> f64| all.iter().map(value).sum::<f64>();
+        let (points, squares) = (all.len() as f64, sum(&|one| one.absolute.powi(2)));
+        let mean = sum(&|one| one.measured) / points;
+        let sizes = sum(&|one| one.measured.abs()).max(sum(&|one| one.fitted.abs()));
+        let relative = all.iter().map(|one| one.relative).fold(0.0, f64::max);
         Quality {
-            points,
-            sum_of_squares: deviations.squares,
-            rmse: (deviations.squares / points as f64).sqrt(),
-            nmad_percent: deviations.nmad_percent(),
-            r_squared: 1.0 - deviations.squares / deviations.spread,
-            aicc: self.aicc(estimates.len()),
-            largest_relative_error_percent: 100.0 * deviations.largest_relative,
+            points: all.len(),
+            sum_of_squares: squares,
+            rmse: (squares / points).sqrt(),
+            nmad_percent: 100.0 * sum(&|one| one.absolute) / sizes,
+            r_squared: 1.0 - squares / sum(&|one| (one.measured - mean).powi(2)),
+            aicc: self.aicc(),
+            largest_relative_error_percent: 100.0 * relative,
             verdict: self.verdict,
             estimates,
             correlation,

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::verdict::Verdict;
 use crate::calibration::data::{Observation, Test, TestData};
 use crate::calibration::regression::{MovedZero, Zero};
-use crate::calibration::settings::{SMALLEST_SHARE, Weighting};
+use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
@@ -174,16 +174,6 @@ pub fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<Stabl
     Mode::ALL.into_iter().map(range).collect()
 }
 
-/// AICc of −2 ln L, n and k; infinite where there are too few rows.
-pub fn aicc(surprise: f64, n: f64, k: f64) -> f64 {
-    let left = n - k - 1.0;
-    if left > 0.0 {
-        surprise + 2.0 * k + 2.0 * k * (k + 1.0) / left
-    } else {
-        f64::INFINITY
-    }
-}
-
 /// The stretches between which the data of some tests lie.
 pub fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
     tests
@@ -191,50 +181,6 @@ pub fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] 
         .fold([1.0, 1.0], |all, one| {
             [all[0].min(one[0]), all[1].max(one[1])]
         })
-}
-
-/// Sums over all observations.
-#[derive(Default)]
-pub struct Deviations {
-    pub squares: f64,
-    absolute: f64,
-    /// Σ |σᵢ|.
-    measured: f64,
-    /// Σ |σ|.
-    predicted: f64,
-    pub spread: f64,
-    pub largest_relative: f64,
-}
-
-impl Deviations {
-    /// Of the stresses that are predicted for an observation of a test.
-    pub fn of(tests: &[TestData], predicted: &dyn Fn(usize, usize) -> f64) -> Self {
-        let mut sums = Self::default();
-        let all = || tests.iter().flat_map(|test| &test.observations);
-        let mean = all().map(|one| one.stress).sum::<f64>() / all().count() as f64;
-        for (number, test) in tests.iter().enumerate() {
-            let least = SMALLEST_SHARE * test.largest_stress;
-            for (row, one) in test.observations.iter().enumerate() {
-                let predicted = predicted(number, row);
-                let difference = (one.stress - predicted).abs();
-                sums.squares += difference * difference;
-                sums.absolute += difference;
-                sums.measured += one.stress.abs();
-                sums.predicted += predicted.abs();
-                sums.spread += (one.stress - mean).powi(2);
-                if one.stress.abs() > least {
-                    sums.largest_relative =
-                        sums.largest_relative.max(difference / one.stress.abs());
-                }
-            }
-        }
-        sums
-    }
-
-    /// The normalised mean absolute difference in %.
-    pub fn nmad_percent(&self) -> f64 {
-        100.0 * self.absolute / self.measured.max(self.predicted)
-    }
 }
 
 /// The usual tests that no data cover.

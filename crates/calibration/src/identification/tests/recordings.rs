@@ -122,63 +122,6 @@ fn what_smooth_functions_go_past_is_named() {
     assert_eq!(asked_for(&found), None);
 }
 
-/// A force that is a third of an interval late shifts D(·) by τ K, and in slow motion nothing tells: the lag that could hide is stated, with
-/// what it does. In quick motion it is detected, or what could hide is small.
-#[test]
-fn a_lag_that_slow_motion_hides_is_stated_with_its_effect() {
-    let late = |lag: f64, quicker: f64| {
-        let mut random = ChaCha8Rng::seed_from_u64(5);
-        let mut noise = |size: f64| -> f64 {
-            let draw: f64 = StandardNormal.sample(&mut random);
-            0.02 * size * draw
-        };
-        let mass = 2e-4;
-        let state = |t: f64| {
-            [(6.0, 4.4), (4.0, 8.2), (3.0, 13.2)].map(|(a, w): (f64, f64)| {
-                let w = quicker * w;
-                [
-                    a * (w * t).sin(),
-                    a * w * (w * t).cos(),
-                    -a * w * w * (w * t).sin(),
-                ]
-            })
-        };
-        let sum = |t: f64, order: usize| state(t).iter().map(|own| own[order]).sum::<f64>();
-        let force = |t: f64| mass * sum(t, 2) + 0.004 * sum(t, 1) + 0.2 * sum(t, 0);
-        let times: Vec<f64> = (0..1200).map(|i| f64::from(i) / 300.0).collect();
-        Recording {
-            extension: times.iter().map(|t| sum(*t, 0) + noise(6.0)).collect(),
-            force: times.iter().map(|t| force(t - lag) + noise(1.5)).collect(),
-            times,
-            mass,
-            ..Recording::default()
-        }
-    };
-    for lag in [0.0, 1.1e-3] {
-        let found = identify(&late(lag, 1.0), IdentificationSettings::default(), &|_| ()).unwrap();
-        let hidden = found.hidden_lag.unwrap();
-        assert!(hidden.lag > lag && hidden.lag < 3.4e-3, "{hidden:?}");
-        // τ d(K x)/dx
-        let expected = 0.2 * hidden.lag;
-        assert!((hidden.damping / expected - 1.0).abs() < 0.3, "{hidden:?}");
-        let off = (found.damping.at(0.0).value - 0.004).abs();
-        assert!(off < hidden.damping, "{off} {hidden:?}");
-    }
-    let quick = identify(&late(0.0, 4.0), IdentificationSettings::default(), &|_| ()).unwrap();
-    assert!(
-        quick
-            .hidden_lag
-            .is_none_or(|hidden| hidden.half_widths < 4.0)
-    );
-    let quick = identify(
-        &late(1.1e-3, 4.0),
-        IdentificationSettings::default(),
-        &|_| (),
-    )
-    .unwrap();
-    assert!(asked_for(&quick).is_some_and(|told| told.contains("recorded 1.")));
-}
-
 #[test]
 fn spikes_of_force_and_extension_are_told() {
     let spiked = |signal: fn(&mut Recording) -> &mut Vec<f64>, by: f64| {

@@ -62,34 +62,6 @@ fn a_row_that_was_left_out_hides_no_time_that_is_missing() {
     }
 }
 
-/// Copies are no measurements; alike measurements are.
-#[test]
-fn a_table_that_was_pasted_several_times_counts_once() {
-    let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
-    let rows = "1.1,0.1\n1.2,0.2\n1.3,0.3\n";
-    let once = read(&(head.to_owned() + rows), &[]).unwrap();
-    let thrice = read(&(head.to_owned() + rows + rows + rows), &[]).unwrap();
-    assert_eq!(once.observations.len(), 3);
-    let [all, own] = [&thrice, &once].map(|data| format!("{:?}", data.observations));
-    assert_eq!(all, own);
-    let told = thrice.warnings[0].to_string();
-    assert!(
-        once.warnings.is_empty() && told.contains("all rows of the table do: 6"),
-        "{told}"
-    );
-    let some = read(&(head.to_owned() + rows + "1.1,0.1\n"), &[]).unwrap();
-    assert_eq!(some.observations.len(), 4);
-    let told = some.warnings.iter().map(ToString::to_string);
-    assert!(
-        told.clone().any(|one| one.contains("repeat earlier ones")),
-        "{told:?}"
-    );
-    // A record over time may rest.
-    let timed = "# test: uniaxial; time unit: s\ntime,stretch [-],nominal_stress [MPa]\n";
-    let rest = read(&(timed.to_owned() + "0,1.1,0.1\n1,1.1,0.1\n"), &[]).unwrap();
-    assert_eq!(rest.observations.len(), 2);
-}
-
 #[test]
 fn strains_that_may_be_in_percent_deserve_a_word() {
     let head = "# test: uniaxial\nnominal_strain [-],nominal_stress [MPa]\n";

@@ -1,0 +1,121 @@
+//! A law that was fitted to tests.
+
+use std::sync::Arc;
+
+use super::data::{Observation, TestData};
+use super::least_squares::{self, LEAST_SIZE, Residuals};
+use super::settings::{FitSettings, MEASURE};
+use super::softened::Softened;
+use super::trust::Quality;
+use crate::material::HyperelasticLaw;
+use crate::material::parameters::{Parameter, StressMeasure};
+use crate::material::registry::Law;
+use crate::material::viscosity::ViscousMaterial;
+
+/// A law fitted to tests.
+#[derive(Debug)]
+pub struct Fit {
+    /// The law's entry in the registry.
+    pub law: &'static Law,
+    /// The law with its parameters.
+    pub fitted: Arc<dyn HyperelasticLaw>,
+    /// The parameters, in internal units: those of the law, and behind them those of relaxation or softening.
+    pub parameters: Vec<Parameter>,
+    /// How many of them are the law's; none where it is that of a card.
+    pub of_law: usize,
+    /// Other entries of a card of the law: key and choice.
+    pub choices: Vec<(&'static str, String)>,
+    /// The points (λ − 1, nominal stress in MPa) of a law that takes the curve as it is.
+    pub curve: Vec<[f64; 2]>,
+    pub(in crate::calibration) stress_measure: StressMeasure,
+    /// The fitted stresses at all observations of each test, in the measure of the data, in MPa.
+    pub predicted: Vec<Vec<f64>>,
+    /// The settings.
+    pub settings: FitSettings,
+    /// The quality of the fit.
+    pub quality: Quality,
+    /// The Prony series of a fit to what was measured over time.
+    pub relaxed: Option<Relaxed>,
+    /// The softening of a fit to loading and unloading.
+    pub softened: Option<Softened>,
+}
+
+/// The relaxation of a fit.
+#[derive(Clone, Debug)]
+pub struct Relaxed {
+    /// The series, and what the data cover.
+    pub material: ViscousMaterial,
+    /// The numbers of terms that were tried with their AICc.
+    pub tried: Vec<(usize, f64)>,
+}
+
+impl Fit {
+    /// The parameters of the law.
+    pub fn law_parameters(&self) -> &[Parameter] {
+        &self.parameters[..self.of_law]
+    }
+
+    /// The stress measure of the data.
+    pub fn stress_measure(&self) -> StressMeasure {
+        self.stress_measure
+    }
+
+    /// The tests as they were fitted: with the zeros that were found together with the law.
+    pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
+        let mut moved = tests.to_vec();
+        for zero in &self.quality.zeros {
+            moved[zero.test] = zero.applied(&tests[zero.test]);
+        }
+        moved
+    }
+
+    /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa; NaN where there are
+    /// none because the residuals are not noise.
+    pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
+        let known = self.known_half_widths(data, at);
+        known.unwrap_or_else(|| vec![f64::NAN; at.len()])
+    }
+
+    fn known_half_widths(&self, data: &TestData, at: &[Observation]) -> Option<Vec<f64>> {
+        let noise = self.quality.noise.as_ref();
+        let noise = noise.filter(|_| self.quality.has_intervals())?;
+        // Zeros do not enter the law's curve.
+        let fixed = &self.quality.fixed;
+        let mut values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
+        values.resize(fixed.len(), 1.0);
+        let least = vec![LEAST_SIZE; values.len()];
+        let curve = Curve {
+            fit: self,
+            data,
+            at,
+        };
+        let gradients = least_squares::jacobian(&curve, &values, fixed, &least)?;
+        let estimated: Vec<usize> = (0..fixed.len()).filter(|index| !fixed[*index]).collect();
+        let gradients = gradients.select_columns(&estimated);
+        let half = |point: usize| noise.half_width(&gradients.row(point).transpose());
+        Some((0..at.len()).map(half).collect())
+    }
+}
+
+/// The stresses of the fitted law at some observations as a function of its parameters.
+struct Curve<'a> {
+    fit: &'a Fit,
+    data: &'a TestData,
+    at: &'a [Observation],
+}
+
+impl Residuals for Curve<'_> {
+    fn count(&self) -> usize {
+        self.at.len()
+    }
+
+    fn evaluate(&self, parameters: &[f64], stresses: &mut [f64]) -> bool {
+        let Fit { law, of_law, .. } = self.fit;
+        let measure = self.fit.stress_measure;
+        let (law, _) = law.with_values(&parameters[..*of_law], measure, MEASURE);
+        for (stress, one) in stresses.iter_mut().zip(self.at) {
+            *stress = self.data.stress_of(&*law, one);
+        }
+        stresses.iter().all(|stress| stress.is_finite())
+    }
+}

@@ -1,0 +1,312 @@
+//! A law alone as the model of tests, with zeros of strain or stress that are found with it.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::misfit::{Estimated, Misfit, Response, Row, at_bound};
+use super::zero::Zero;
+use crate::calibration::data::{FoundZero, Observation, TestData};
+use crate::calibration::least_squares::{self, LEAST_SIZE};
+use crate::calibration::settings::MEASURE;
+use crate::material::HyperelasticLaw;
+use crate::material::parameters::CardEntries;
+use crate::material::registry::Law;
+
+/// Tests with more observations than this along one axis are gathered in as many bins. A curve bends so
+/// little within one that its parameters do not feel it.
+const BINS: usize = 2000;
+
+/// A law whose parameters are the values, and behind them the zeros that are found.
+#[derive(Clone)]
+pub struct Elastic<'a> {
+    law: &'static Law,
+    /// The curve of a law that takes it as it is.
+    curve: Option<Arc<dyn HyperelasticLaw>>,
+    tests: &'a [TestData],
+    /// What is fitted, with the test of each.
+    points: Vec<Row>,
+    observations: Vec<Observation>,
+    /// How many values are the law's.
+    law_values: usize,
+    /// Zeros whose values stand behind those of the law.
+    zeros: Vec<Zero>,
+    /// A stress to draw from: the secant of the data, Σ |σ| |x| / Σ x², in MPa.
+    pub stiffness: f64,
+    /// The least size of each parameter that counts.
+    least: Vec<f64>,
+}
+
+impl<'a> Elastic<'a> {
+    /// A law at all observations, or at means of many neighbouring ones.
+    pub fn new(law: &'static Law, tests: &'a [TestData]) -> Self {
+        let mut points = Vec::new();
+        for (test, data) in tests.iter().enumerate() {
+            for axis in [0, 1] {
+                let rows = data.observations.iter().filter(|one| one.axis == axis);
+                let mut along: Vec<Observation> = rows.copied().collect();
+                let each = along.len().div_ceil(BINS).max(1);
+                if each > 1 {
+                    let strain = |one: &Observation| data.drawn_strain(one);
+                    along.sort_by(|a, b| strain(a).total_cmp(&strain(b)));
+                }
+                points.extend(along.chunks(each).map(|bin| point(test, data, bin)));
+            }
+        }
+        Self::of_points(law, tests, points)
+    }
+
+    fn of_points(
+        law: &'static Law,
+        tests: &'a [TestData],
+        points: Vec<(Row, Observation)>,
+    ) -> Self {
+        let (mut product, mut square) = (0.0, f64::MIN_POSITIVE);
+        for (row, _) in &points {
+            product += (row.stress * row.position).abs();
+            square += row.position * row.position;
+        }
+        let stiffness = (product / square).max(f64::MIN_POSITIVE);
+        let entries = law
+            .with_values(&[], tests[0].stress_measure, MEASURE)
+            .1
+            .parameters;
+        let (points, observations) = points.into_iter().unzip();
+        Self {
+            law,
+            curve: None,
+            tests,
+            points,
+            observations,
+            law_values: entries.len(),
+            zeros: Vec::new(),
+            stiffness,
+            least: entries
+                .iter()
+                .map(|one| one.least_size(stiffness))
+                .collect(),
+        }
+    }
+
+    /// A law that takes a curve as it is.
+    pub fn of_curve(
+        law: &'static Law,
+        tests: &'a [TestData],
+        curve: Arc<dyn HyperelasticLaw>,
+    ) -> Self {
+        Self {
+            curve: Some(curve),
+            ..Self::new(law, tests)
+        }
+    }
+
+    /// The same with the zeros as values that were found in the records.
+    pub fn with_zeros(&self) -> Self {
+        let zero = |(test, data): (usize, &TestData)| {
+            let strains = data.observations.iter().map(|one| data.drawn_strain(one));
+            let scale = match data.found_zero? {
+                FoundZero::Strain { .. } => strains.fold(0.0, |most: f64, x| most.max(x.abs())),
+                FoundZero::Stress { .. } => data.largest_stress,
+            };
+            Some(Zero { test, scale })
+        };
+        Self {
+            zeros: self.tests.iter().enumerate().filter_map(zero).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Every n-th point, so that about `count` are left.
+    pub fn thinned(&self, count: usize) -> Self {
+        let stride = self.points.len().div_ceil(count);
+        let points = self.points.iter().copied();
+        let points = points.zip(self.observations.iter().copied());
+        Self::of_points(self.law, self.tests, points.step_by(stride).collect())
+    }
+
+    /// The law of some values with the entries of its card.
+    pub fn build(&self, values: &[f64]) -> (Box<dyn HyperelasticLaw>, CardEntries) {
+        let measure = self.tests[0].stress_measure;
+        let of_law = &values[..values.len().min(self.law_values)];
+        self.law.with_values(of_law, measure, MEASURE)
+    }
+
+    /// By how much some values move the zero of a test.
+    fn moved(&self, values: &[f64], test: usize) -> f64 {
+        let index = self.zeros.iter().position(|zero| zero.test == test);
+        index.map_or(0.0, |index| {
+            self.zeros[index].by(values[self.law_values + index])
+        })
+    }
+}
+
+/// The mean of neighbouring observations of a test.
+fn point(test: usize, data: &TestData, bin: &[Observation]) -> (Row, Observation) {
+    let observation = Observation::mean(bin);
+    let row = Row {
+        test,
+        axis: observation.axis,
+        position: data.drawn_strain(&observation),
+        stress: observation.stress,
+        count: bin.len() as f64,
+        weight: 1.0,
+    };
+    (row, observation)
+}
+
+impl Response for Elastic<'_> {
+    fn data(&self) -> &[TestData] {
+        self.tests
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        self.points.clone()
+    }
+
+    fn law(&self, values: &[f64]) -> Arc<dyn HyperelasticLaw> {
+        match &self.curve {
+            Some(curve) => Arc::clone(curve),
+            None => self.build(values).0.into(),
+        }
+    }
+
+    fn stresses(&self, values: &[f64]) -> Vec<f64> {
+        let law = self.law(values);
+        let pairs = self.points.iter().zip(&self.observations);
+        let stress = |(row, one): (&Row, &Observation)| {
+            let data = &self.tests[row.test];
+            data.stress_of(&*law, &data.moved(one, self.moved(values, row.test)))
+        };
+        pairs.map(stress).collect()
+    }
+
+    fn predicted(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let law = self.law(values);
+        let tests = self.moved_tests(values);
+        let of_test = |data: &TestData| {
+            let rows = data.observations.iter();
+            rows.map(|one| data.stress_of(&*law, one)).collect()
+        };
+        tests.iter().map(of_test).collect()
+    }
+
+    fn moved_tests(&self, values: &[f64]) -> Cow<'_, [TestData]> {
+        if self.zeros.is_empty() {
+            return Cow::Borrowed(self.tests);
+        }
+        let tests = self.tests.iter().enumerate();
+        let moved = tests.map(|(test, data)| data.with_zero_moved(self.moved(values, test)));
+        Cow::Owned(moved.collect())
+    }
+
+    fn zeros(&self) -> &[Zero] {
+        &self.zeros
+    }
+
+    fn stress_moved(&self, values: &[f64], test: usize) -> f64 {
+        match self.tests[test].found_zero {
+            Some(FoundZero::Stress { .. }) => self.moved(values, test),
+            _ => 0.0,
+        }
+    }
+
+    /// A value that a bound holds may lie elsewhere, as far as the data say: the others are as uncertain as if it were free. Only what
+    /// bounds leave no room is known, and what nothing depends on to first order.
+    fn estimated(&self, values: &[f64], bounds: &[[f64; 2]]) -> Estimated {
+        let mut fixed: Vec<bool> = bounds.iter().map(|[low, high]| low == high).collect();
+        for (fixed, parameter) in fixed.iter_mut().zip(self.build(values).1.parameters) {
+            *fixed |= parameter.is_symmetric_at(parameter.value);
+        }
+        let mut least = self.least.clone();
+        least.resize(values.len(), LEAST_SIZE);
+        Estimated {
+            at_bound: at_bound(values, bounds, [1e-9, 1e-300]),
+            fixed,
+            least,
+        }
+    }
+}
+
+impl Misfit<Elastic<'_>> {
+    /// Every n-th point by the weights of the measured stresses.
+    pub fn thinned(&self, count: usize) -> Self {
+        Self::new(self.response.thinned(count), self.weighting)
+    }
+
+    /// The values of the parameters that are stresses, by linear least squares.
+    pub fn complete(&self, values: &mut [f64], stresses: &[usize]) -> Option<()> {
+        let target = self.rows.iter().map(|row| row.weight * row.stress);
+        let target = DVector::from_iterator(self.rows.len(), target);
+        let mut columns = DMatrix::zeros(self.rows.len(), stresses.len());
+        for (column, parameter) in stresses.iter().enumerate() {
+            let mut unit = values.to_vec();
+            stresses.iter().for_each(|other| unit[*other] = 0.0);
+            unit[*parameter] = 1.0;
+            let modelled = self.response.stresses(&unit);
+            for (index, (row, stress)) in self.rows.iter().zip(modelled).enumerate() {
+                columns[(index, column)] = row.weight * stress;
+            }
+        }
+        let completed = least_squares::linear(&columns, &target)?;
+        for (index, value) in stresses.iter().zip(completed.iter()) {
+            values[*index] = *value;
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::settings::Weighting;
+    use crate::document::Statements;
+
+    const TEXT: &str =
+        "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.2,0.05\n1.6,0.13\n2.0,0.15\n";
+
+    fn tests() -> [TestData; 1] {
+        [TestData::parse("a.csv", TEXT, &Statements::new()).unwrap()]
+    }
+
+    /// Σ w² f σ/Σ w² f² with the slope f = 2 (λ − λ⁻²), and the secant Σ |σ x|/Σ x².
+    #[test]
+    fn parameters_that_are_stresses_are_completed_by_weighted_linear_regression() {
+        let tests = tests();
+        let law = Law::named("neo-hooke").unwrap();
+        let data = [(1.2_f64, 0.05_f64), (1.6, 0.13), (2.0, 0.15)];
+        for weighting in [Weighting::Absolute, Weighting::Relative] {
+            let sum = |value: &dyn Fn(f64, f64) -> f64| -> f64 {
+                let weight = |stress: f64| match weighting {
+                    Weighting::Absolute => 1.0,
+                    Weighting::Relative => stress.powi(-2),
+                };
+                let slope = |l: f64| 2.0 * (l - l.powi(-2));
+                data.iter()
+                    .map(|(l, s)| weight(*s) * value(slope(*l), *s))
+                    .sum()
+            };
+            let mut values = [7.0];
+            let misfit = Misfit::new(Elastic::new(law, &tests), weighting);
+            misfit.complete(&mut values, &[0]).unwrap();
+            let expected = sum(&|f, s| f * s) / sum(&|f, _| f * f);
+            assert!((values[0] / expected - 1.0).abs() < 1e-12, "{weighting:?}");
+            let products: f64 = data.iter().map(|(l, s)| (l - 1.0) * s).sum();
+            let squares: f64 = data.iter().map(|(l, _)| (l - 1.0) * (l - 1.0)).sum();
+            let stiffness = misfit.response.stiffness;
+            assert!((stiffness / (products / squares) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    /// The mean pulls on a line as the points do together: Σ w² (σ − s)² differs by a constant.
+    #[test]
+    fn the_mean_of_points_weighs_as_all_of_them() {
+        let tests = tests();
+        let (row, mean) = point(0, &tests[0], &tests[0].observations);
+        assert!((mean.stress - 0.11).abs() < 1e-15 && (row.position - 0.6).abs() < 1e-15);
+        let response =
+            Elastic::of_points(Law::named("neo-hooke").unwrap(), &tests, vec![(row, mean)]);
+        let misfit = Misfit::new(response, Weighting::Absolute);
+        assert!((misfit.rows[0].weight - 3.0_f64.sqrt()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,188 @@
+//! Values of a model of tests: their weights, what they are worth, and the fit that follows.
+//!
+//! ```text
+//! rᵢ = (σᵢ − σ(p; λᵢ))/σ(p₀; λᵢ),   p₀ = p at the end
+//! ```
+//!
+//! Weights 1/σᵢ share the noise of the stresses that they weigh. A stress is of the first degree in the parameters that are
+//! stresses, σ = Σ p ∂σ/∂p, so that (σᵢ − σ)/σᵢ = 1 − Σ p ∂(σ/σᵢ)/∂p: a constant and the derivatives take all of it, whatever the
+//! noise, and no test tells noise from pattern. And what is measured too low weighs more: a noise of s makes stresses too
+//! small by 2 s². Fitted stresses as weights have neither; where the residuals are noise, the fit is repeated with them until
+//! it comes out as it went in (quasi-likelihood). A law that misses the data keeps the weights of the data for its values.
+//!
+//! # References
+//! R. W. M. Wedderburn, Biometrika 61, 439 (1974), doi:10.1093/biomet/61.3.439
+
+use super::data::TestData;
+use super::fitted::Fit;
+use super::least_squares::{Precision, descend, minimise, sum_of_squares};
+use super::regression::{Elastic, Misfit, Response, Rival};
+use super::settings::{FitSettings, Weighting};
+use super::trust::{Judged, Quality, warnings};
+use crate::material::parameters::Parameter;
+use crate::material::registry::Law;
+use crate::statistics::Estimate;
+
+/// Values within their bounds, and the residuals that they leave.
+pub struct Solution<R> {
+    pub misfit: Misfit<R>,
+    pub values: Vec<f64>,
+    pub bounds: Vec<[f64; 2]>,
+}
+
+impl<R: Response> Solution<R> {
+    /// What the residuals are.
+    pub fn judged(&self) -> Judged {
+        Judged::of(&self.misfit, &self.values, &self.bounds)
+    }
+
+    /// By the weights of the fitted stresses; the values are repeated by them where the residuals are noise.
+    pub fn settled(self) -> Self {
+        let reweighed = Self {
+            misfit: self.misfit.reweighed(&self.values),
+            ..self
+        };
+        let is_relative = reweighed.misfit.weighting == Weighting::Relative;
+        if is_relative && reweighed.judged().is_noise() {
+            reweighed.repeated().unwrap_or(reweighed)
+        } else {
+            reweighed
+        }
+    }
+
+    /// The values that are the best ones by the weights of their own stresses; `None` where they do not come to rest.
+    fn repeated(&self) -> Option<Self> {
+        const REPEATS: usize = 20;
+        const SAME: f64 = 1e-8;
+        let (mut misfit, mut values) = (self.misfit.clone(), self.values.clone());
+        for _ in 0..REPEATS {
+            values = minimise(&misfit, &values, &self.bounds, Precision::Full)?;
+            let before = sum_of_squares(&misfit, &values);
+            misfit = misfit.reweighed(&values);
+            let now = sum_of_squares(&misfit, &values);
+            if (now - before).abs() <= SAME * now {
+                return Some(Self {
+                    misfit,
+                    values,
+                    bounds: self.bounds.clone(),
+                });
+            }
+        }
+        None
+    }
+
+    /// The figures of the fit, without warnings.
+    pub fn quality(&self) -> Quality {
+        self.quality_of(&self.misfit.response.predicted(&self.values))
+    }
+
+    fn quality_of(&self, predicted: &[Vec<f64>]) -> Quality {
+        let response = &self.misfit.response;
+        let mut judged = self.judged();
+        let tests = response.moved_tests(&self.values);
+        let points = predicted.iter().map(Vec::len).sum();
+        let square = weighted_square(self.misfit.weighting, &tests, predicted);
+        judged.count_gathered(points, square);
+        let (mut estimates, correlation) = judged.estimates(&self.values);
+        for (index, estimate) in estimates.iter_mut().enumerate() {
+            if response.is_logarithmic(index) {
+                *estimate = Estimate {
+                    value: estimate.value.exp(),
+                    standard_error: estimate.value.exp() * estimate.standard_error,
+                    interval: estimate.interval.map(f64::exp),
+                };
+            }
+        }
+        let law = response.law(&self.values);
+        let quality = judged.quality(&*law, &tests, predicted, (estimates, correlation));
+        quality.with_zeros(response.zeros())
+    }
+
+    /// The fit of a law that has the first of the parameters, with the warnings that all fits have.
+    pub fn fit(
+        &self,
+        law: &'static Law,
+        parameters: &[Parameter],
+        settings: &FitSettings,
+        rival: Option<&Rival>,
+    ) -> Fit {
+        let response = &self.misfit.response;
+        let with_value = |(index, (parameter, value)): (usize, (&Parameter, &f64))| Parameter {
+            value: if response.is_logarithmic(index) {
+                value.exp()
+            } else {
+                *value
+            },
+            ..parameter.clone()
+        };
+        let pairs = parameters.iter().zip(&self.values).enumerate();
+        let parameters: Vec<Parameter> = pairs.map(with_value).collect();
+        let predicted = response.predicted(&self.values);
+        let mut quality = self.quality_of(&predicted);
+        quality.warnings = warnings(&quality, &parameters, rival);
+        Fit {
+            law,
+            fitted: response.law(&self.values),
+            of_law: parameters.len(),
+            parameters,
+            choices: Vec::new(),
+            curve: Vec::new(),
+            stress_measure: response.data()[0].stress_measure,
+            predicted,
+            settings: settings.clone(),
+            quality,
+            relaxed: None,
+            softened: None,
+        }
+    }
+}
+
+/// Σ (w (σᵢ − σ))² of all observations by the weights of the fitted stresses.
+fn weighted_square(weighting: Weighting, tests: &[TestData], predicted: &[Vec<f64>]) -> f64 {
+    let of_test = |(data, predicted): (&TestData, &Vec<f64>)| -> f64 {
+        let rows = data.observations.iter().zip(predicted);
+        rows.map(|(one, fitted)| {
+            (weighting.weight_of(data, *fitted) * (one.stress - fitted)).powi(2)
+        })
+        .sum()
+    };
+    tests.iter().zip(predicted).map(of_test).sum()
+}
+
+/// Zeros are moved by less than this share of the largest strain or stress.
+const FARTHEST: f64 = 0.25;
+
+/// Zeros of strain or stress that were found at the beginning of a record, found again with the law.
+///
+/// The parabola that follows a beginning back to rest, [`super::data`], sees a few rows; the law sees all of them. Taken as known, the
+/// zero that the parabola finds makes the law's parameters wrong by many of their standard errors. So the zero is one more
+/// value of the fit, r(p, δ) = σᵢ − σ(p; λᵢ + δ) or σᵢ + δ − σ(p; λᵢ), and its uncertainty is part of the intervals. Where what
+/// is left then is no noise, the law would take its own misfit for a zero: the zero stays.
+impl<'a> Solution<Elastic<'a>> {
+    /// With the zeros among the values, where the records had any and what is left is noise then.
+    pub fn with_zeros(self) -> Self {
+        self.wider().unwrap_or(self)
+    }
+
+    fn wider(&self) -> Option<Self> {
+        let misfit = Misfit {
+            response: self.misfit.response.with_zeros(),
+            ..self.misfit.clone()
+        };
+        let count = misfit.response.zeros().len();
+        if count == 0 {
+            return None;
+        }
+        let mut values = self.values.clone();
+        values.resize(values.len() + count, 1.0);
+        let mut bounds = self.bounds.clone();
+        bounds.resize(values.len(), [1.0 - FARTHEST, 1.0 + FARTHEST]);
+        let wider = Solution {
+            values: descend(&misfit, &values, &bounds)?,
+            misfit,
+            bounds,
+        };
+        let settled = wider.settled();
+        settled.judged().is_noise().then_some(settled)
+    }
+}

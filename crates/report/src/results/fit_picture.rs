@@ -1,0 +1,288 @@
+//! Pictures of fits: measured and fitted stresses with the residuals below, over the stretch, over time, or row by row.
+
+use std::path::Path;
+
+use super::stress_unit::readable;
+use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke};
+use crate::calibration::{Fit, Test, TestData, Times};
+use crate::material::curve::Mode;
+use crate::statistics::extremes;
+
+const INK: [u8; 3] = [60, 60, 60];
+/// The colour of the part of a record that is not fitted.
+const LEFT_OUT: [u8; 3] = [190, 190, 190];
+/// Most markers: more are not distinguishable.
+const MOST_MARKERS: usize = 1000;
+/// Times that span more than this factor are drawn on a logarithmic scale.
+const WIDE: f64 = 300.0;
+
+/// Time since the first row in s, stretch, number of the row, measured and fitted stress in MPa.
+type Row = [f64; 5];
+const TIME: usize = 0;
+const STRETCH: usize = 1;
+const NUMBER: usize = 2;
+const MEASURED: usize = 3;
+const FITTED: usize = 4;
+
+/// The observations of one file along one axis, in the order of the file.
+struct Course<'a> {
+    data: &'a TestData,
+    axis: usize,
+    label: String,
+    colour: [u8; 3],
+    rows: Vec<Row>,
+}
+
+impl<'a> Course<'a> {
+    fn all(fit: &Fit, tests: &'a [TestData]) -> Vec<Self> {
+        let mut courses: Vec<Self> = Vec::new();
+        for (data, predicted) in tests.iter().zip(&fit.predicted) {
+            for axis in [0, 1] {
+                let rows = rows(data, predicted, axis);
+                if rows.is_empty() {
+                    continue;
+                }
+                let direction = if axis == 1 { ", direction 2" } else { "" };
+                let mut label = format!("{}{direction}", data.test.name());
+                if courses.iter().any(|other| other.label == label) {
+                    let stem = Path::new(&data.name).file_stem();
+                    label = stem.map_or(label, |stem| stem.to_string_lossy().into_owned());
+                }
+                courses.push(Self {
+                    data,
+                    axis,
+                    label,
+                    colour: PALETTE[courses.len() % PALETTE.len()],
+                    rows,
+                });
+            }
+        }
+        courses
+    }
+
+    fn points(&self, x: usize, y: impl Fn(&Row) -> f64) -> Vec<[f64; 2]> {
+        self.rows.iter().map(|row| [row[x], y(row)]).collect()
+    }
+
+    fn markers(&self, label: &str, points: Vec<[f64; 2]>) -> Line {
+        Line::new(label, points, self.colour, Stroke::Points)
+    }
+
+    /// Darker than the markers that it lies on.
+    fn dark(&self) -> [u8; 3] {
+        self.colour.map(|part| part / 2)
+    }
+
+    /// Measured stresses as markers, and the fitted ones as a curve.
+    fn lines(&self, x: usize, scale: Scale) -> [Line; 2] {
+        let measured = spread(self.points(x, |row| row[MEASURED]), scale);
+        let fitted = shown(self.points(x, |row| row[FITTED]), scale);
+        [
+            self.markers(&self.label, measured),
+            Line::new("", fitted, self.dark(), Stroke::Solid),
+        ]
+    }
+
+    fn residuals(&self, x: usize, scale: Scale) -> Line {
+        let residuals = self.points(x, |row| row[MEASURED] - row[FITTED]);
+        self.markers("", spread(residuals, scale))
+    }
+
+    /// The stretches within which the fitted law is stable in this test.
+    fn stable(&self, fit: &Fit) -> [f64; 2] {
+        let mode = match self.data.test {
+            Test::Uniaxial => Mode::Uniaxial,
+            Test::Planar => Mode::Planar,
+            Test::Equibiaxial => Mode::Equibiaxial,
+            Test::Biaxial => return [0.0, f64::INFINITY],
+        };
+        let found = fit.quality.stable.iter().find(|range| range.mode == mode);
+        found.map_or([0.0, f64::INFINITY], |range| range.stretches)
+    }
+
+    /// Whether the stretch comes back by a fifth of its range.
+    fn turns_back(&self) -> bool {
+        let [low, high] = extremes(self.rows.iter().map(|row| row[STRETCH]));
+        let far = |row: &Row| (row[STRETCH] - self.rows[0][STRETCH]).abs();
+        let furthest = self.rows.iter().map(far).fold(0.0, f64::max);
+        furthest - self.rows.last().map_or(0.0, far) > 0.2 * (high - low)
+    }
+}
+
+fn rows(data: &TestData, predicted: &[f64], axis: usize) -> Vec<Row> {
+    let time = |row: usize| match &data.times {
+        Times::Known(times) => times[row] - times[0],
+        _ => f64::NAN,
+    };
+    let rows = data.observations.iter().zip(predicted).enumerate();
+    let rows = rows.filter(|(_, (one, _))| one.axis == axis).enumerate();
+    rows.map(|(number, (row, (one, fitted)))| {
+        let stretch = 1.0 + data.drawn_strain(one);
+        [time(row), stretch, number as f64, one.stress, *fitted]
+    })
+    .collect()
+}
+
+/// The points that a scale can show.
+fn shown(mut points: Vec<[f64; 2]>, scale: Scale) -> Vec<[f64; 2]> {
+    points.retain(|point| scale != Scale::Logarithmic || point[0] > 0.0);
+    points
+}
+
+/// A limited number of points, on a logarithmic scale evenly distributed along it.
+fn spread(points: Vec<[f64; 2]>, scale: Scale) -> Vec<[f64; 2]> {
+    let points = shown(points, scale);
+    if points.len() <= MOST_MARKERS || scale != Scale::Logarithmic {
+        let stride = points.len().div_ceil(MOST_MARKERS).max(1);
+        return points.into_iter().step_by(stride).collect();
+    }
+    let [low, high] = extremes(points.iter().map(|point| point[0].ln()));
+    let width = (high - low) / MOST_MARKERS as f64;
+    let mut last = f64::NEG_INFINITY;
+    let mut kept = Vec::new();
+    for point in points {
+        if point[0].ln() - last >= width {
+            last = point[0].ln();
+            kept.push(point);
+        }
+    }
+    kept
+}
+
+/// A chart of stresses in MPa, in the unit that suits the largest of them.
+fn chart(title: String, x: Axis, stress: &str, largest: f64, mut lines: Vec<Line>) -> LineChart {
+    let unit = readable(largest);
+    unit.scale(&mut lines);
+    let y = Axis::linear(&format!("{stress} [{}]", unit.name));
+    LineChart::new(title, x, y, lines)
+}
+
+fn residual_chart(x: Axis, lines: Vec<Line>) -> LineChart {
+    let points = lines.iter().flat_map(|line| &line.points);
+    let largest = points.fold(0.0, |most: f64, point| most.max(point[1].abs()));
+    let title = "Residuals: measured less fitted".to_owned();
+    chart(title, x, "stress", largest, lines)
+}
+
+/// Data with the fitted stresses, and the residuals below.
+pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
+    let courses = Course::all(fit, tests);
+    let largest = tests.iter().map(|test| test.largest_stress);
+    let largest = largest.fold(0.0, f64::max);
+    let stress = format!("{} stress", fit.stress_measure().title());
+    let over = |title: String, x: Axis, lines| chart(title, x, &stress, largest, lines);
+    let law = fit.law.name;
+    Drawing::Charts(if let Some(relaxed) = &fit.relaxed {
+        let times = courses.iter().flat_map(|course| &course.rows);
+        let [shortest, longest] = extremes(times.map(|row| row[TIME]).filter(|time| *time > 0.0));
+        let cyclic = courses.iter().any(Course::turns_back);
+        let scale = if longest / shortest > WIDE && !cyclic {
+            Scale::Logarithmic
+        } else {
+            Scale::Linear
+        };
+        let time = || Axis::new("time since the first row [s]", scale);
+        let terms = relaxed.material.relaxation.len();
+        let title = format!("{law} with {terms} terms of a Prony series");
+        let mut charts = vec![(over(title, time(), lines(&courses, TIME, scale)), 380)];
+        if cyclic {
+            let title = "Over the stretch".to_owned();
+            let lines = lines(&courses, STRETCH, Scale::Interval);
+            charts.push((over(title, Axis::stretch(), lines), 320));
+        }
+        let residuals = courses.iter().map(|course| course.residuals(TIME, scale));
+        charts.push((residual_chart(time(), residuals.collect()), 220));
+        charts
+    } else if fit.softened.is_some() {
+        let title = format!("{law} with softening after Ogden and Roxburgh");
+        let lines = lines(&courses, STRETCH, Scale::Interval);
+        let residuals = courses.iter();
+        let residuals = residuals.map(|course| course.residuals(NUMBER, Scale::Linear));
+        let rows = Axis::linear("row of the test");
+        vec![
+            (over(title, Axis::stretch(), lines), 460),
+            (residual_chart(rows, residuals.collect()), 250),
+        ]
+    } else {
+        let title = format!("{law} fitted to {}", names(tests));
+        let zero = fit.quality.stretch_range.map(|stretch| [stretch, 0.0]);
+        let residuals = courses.iter();
+        let residuals = residuals.map(|course| course.residuals(STRETCH, Scale::Interval));
+        let residuals = [Line::new("", zero, INK, Stroke::Solid)]
+            .into_iter()
+            .chain(residuals);
+        let lines = curves_with_bands(fit, &courses);
+        vec![
+            (over(title, Axis::stretch(), lines), 460),
+            (residual_chart(Axis::stretch(), residuals.collect()), 250),
+        ]
+    })
+}
+
+/// Measured and fitted stresses of all courses, with an entry in the legend.
+fn lines(courses: &[Course], x: usize, scale: Scale) -> Vec<Line> {
+    let lines = courses.iter().flat_map(|course| course.lines(x, scale));
+    let legend = Line::new("fitted", [], INK, Stroke::Solid);
+    lines.chain([legend]).collect()
+}
+
+/// 95 % bands, data and the curve of the law, which is dashed where it is unstable, with their names for the legend.
+fn curves_with_bands(fit: &Fit, courses: &[Course]) -> Vec<Line> {
+    let (mut bands, mut points, mut curves) = (Vec::new(), Vec::new(), Vec::new());
+    let mut any_unstable = false;
+    for course in courses {
+        let data = course.data;
+        let path = data.path(course.axis, 120);
+        let curve: Vec<[f64; 2]> = path
+            .iter()
+            .map(|one| {
+                let stress = data.stress_of(&*fit.fitted, one);
+                [1.0 + data.drawn_strain(one), stress]
+            })
+            .collect();
+        let halves = fit.half_widths(data, &path);
+        if halves.iter().all(|half| half.is_finite()) && !fit.parameters.is_empty() {
+            let edge = |sign: f64| {
+                let pairs = curve.iter().zip(&halves);
+                pairs.map(move |([x, y], half)| [*x, y + sign * half])
+            };
+            let outline = edge(1.0).chain(edge(-1.0).rev());
+            bands.push(Line::new("", outline, course.colour, Stroke::Filled));
+        }
+        let [low, high] = course.stable(fit);
+        any_unstable |= !curve.iter().all(|[x, _]| (low..=high).contains(x));
+        curves.extend(Line::within("", &curve, course.dark(), [low, high]));
+        let left_out = data.left_out.iter().filter(|one| one.axis == course.axis);
+        let left_out = left_out.map(|one| [1.0 + data.drawn_strain(one), one.stress]);
+        let left_out = spread(left_out.collect(), Scale::Interval);
+        if !left_out.is_empty() {
+            let label = if points.is_empty() {
+                "left out: slack, holds, other cycles"
+            } else {
+                ""
+            };
+            bands.push(Line::new(label, left_out, LEFT_OUT, Stroke::Points));
+        }
+        let [measured, _] = course.lines(STRETCH, Scale::Interval);
+        points.push(measured);
+    }
+    let has_bands = bands.iter().any(|line| line.stroke == Stroke::Filled);
+    let legend = [
+        (true, "fitted curve", Stroke::Solid),
+        (any_unstable, "unstable (Drucker)", Stroke::Dashed),
+        (has_bands, "95 % band of the curve", Stroke::Filled),
+    ];
+    let legend = legend.into_iter().filter(|(shown, ..)| *shown);
+    let legend = legend.map(|(_, label, stroke)| Line::new(label, [], INK, stroke));
+    let drawn = [bands, points, curves].into_iter().flatten();
+    drawn.chain(legend).collect()
+}
+
+fn names(tests: &[TestData]) -> String {
+    match tests {
+        [test] => Path::new(&test.name)
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+        _ => format!("{} tests", tests.len()),
+    }
+}
