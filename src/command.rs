@@ -240,7 +240,6 @@ fn perform(command: Command) -> u8 {
         }
         Command::Check { study, large } => check(&study, large.budget()),
         Command::Compare(options) => compare::run(options),
-        Command::Correct(options) if options.is_together() => correct::together::run(*options),
         Command::Correct(options) => correct::run(*options),
         Command::Export(options) => export::run(&options),
         Command::Identify(options) => identify::run(*options),

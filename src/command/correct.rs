@@ -1,54 +1,75 @@
-//! `gelbench correct`: a measured displacement field made to satisfy the physics.
+//! `gelbench correct`: measured displacement fields made to satisfy the physics.
+//!
+//! ```text
+//! one specimen                         ─▶ every frame by itself ─▶ folder
+//! several, or parameters of all frames ─▶ parameters ─▶ every frame with these ─▶ folder/specimens/NAME, folder
+//! ```
 
 use std::path::Path;
 
-use super::identity;
 use super::progress::Progress;
 use super::terminal::{Outcome, print_report, warn};
+use crate::error::Error;
 use crate::material::Card;
 use crate::studies::markers::{MarkerStudy, worst_answer};
 use crate::studies::name;
 use crate::studies::sections::read_text;
 
 mod frames;
+mod job;
+mod joint;
 mod options;
 mod pictures;
 mod request;
-pub mod together;
 mod values;
 
-pub use frames::exit_code;
-use frames::{Told, correct};
+use frames::correct;
+use job::Job;
+pub use job::exit_code;
 pub use options::Options;
 use request::request;
 
 /// Corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {
     options.printed.choose();
-    let folder = options.output.clone();
-    let inputs = options.inputs();
-    let study = options.study.as_deref();
-    let text = study.map_or(Ok(String::new()), read_text)?;
-    let name = name(study.unwrap_or(&options.fields[0]));
-    let said = format!("{options:?}");
-    let pictures = options.pictures.chosen();
-    let refine = options.refine;
-    let request = request(options)?;
-    let mut field = if refine {
-        let progress = Progress::of(0);
-        let card = Card::load(&request.material, Path::new("."))?;
-        MarkerStudy::prepare_refined(card, request, &|what| progress.tell(what))?
+    let job = Job {
+        name: String::new(),
+        text: options
+            .study
+            .as_deref()
+            .map_or(Ok(String::new()), read_text)?,
+        inputs: options.inputs(),
+        folder: options.output.clone(),
+        arguments: format!("{options:?}"),
+        pictures: options.pictures.chosen(),
+    };
+    if options.is_joint() {
+        joint::run(options, job)
     } else {
-        MarkerStudy::prepare(request)?
+        each_frame(options, job)
+    }
+}
+
+/// Corrects every frame of one specimen by itself.
+fn each_frame(options: Options, job: Job) -> Outcome {
+    let study = options.study.as_ref().unwrap_or(&options.fields[0]);
+    let job = Job {
+        name: name(study),
+        ..job
     };
+    let mut field = prepared(options)?;
     warn(&field.warnings);
-    let told = Told {
-        name,
-        text,
-        identity: identity::of(&said),
-        pictures,
-    };
-    let (estimates, results) = correct(&mut field, told, &inputs, &folder)?;
+    let (estimates, results) = correct(&mut field, job)?;
     print_report(|| results.json())?;
     Ok(exit_code(worst_answer(&estimates), results.passed()))
+}
+
+fn prepared(options: Options) -> Result<MarkerStudy, Error> {
+    if !options.refine {
+        return MarkerStudy::prepare(request(options)?);
+    }
+    let request = request(options)?;
+    let progress = Progress::of(0);
+    let card = Card::load(&request.material, Path::new("."))?;
+    MarkerStudy::prepare_refined(card, request, &|action| progress.tell(action))
 }

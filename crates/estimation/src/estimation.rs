@@ -23,14 +23,15 @@
 //! The multipliers ζ of F(u) = 0 follow from one solution with the residuals, K ζ = Hᵀ W (d − H u): they show where the data
 //! pull the field away from equilibrium.
 
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::markers::Marker;
+use input::{Task, observe};
 
 mod edges;
 mod equations;
 mod forces;
 mod free_edges;
-mod given;
+mod input;
 mod joint;
 mod judge;
 mod noise;
@@ -41,13 +42,13 @@ mod search;
 mod transfer;
 mod uncertainty;
 
-pub use given::{
+pub use input::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Specimen,
     UncertainLaw, Unnamed, name_parts,
 };
 pub use joint::{
     Direction, ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame,
-    JointSettings, Told, VAGUE, check_joint_frames, estimate_jointly,
+    JointSettings, VAGUE, Watch, check_joint_frames, estimate_jointly, residual_products,
 };
 pub use outcome::{
     Alternative, Answer, Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck,
@@ -68,9 +69,9 @@ pub fn estimate(
     markers: &[Marker],
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
-    let found = estimate_with(specimen, markers, knowledge);
+    let estimate = estimate_with(specimen, markers, knowledge);
     if knowledge.law.is_some() || knowledge.measured_forces().is_empty() {
-        return found;
+        return estimate;
     }
     let compared = || {
         let checked = Knowledge {
@@ -79,15 +80,15 @@ pub fn estimate(
         };
         estimate_with(specimen, markers, &checked)
     };
-    match found {
+    match estimate {
         // Where no field has such forces, the field of the markers alone is compared with them.
         Err(Error::Solve { .. }) => compared(),
         // A wrong force leaves smooth residuals too, which must not pass for noise.
-        Ok(found) if found.verdict.answer == Answer::Undecided => match compared() {
+        Ok(estimate) if estimate.verdict.answer == Answer::Undecided => match compared() {
             Ok(other) if other.force_checks.iter().any(ForceCheck::contradicts) => Ok(other),
-            _ => Ok(found),
+            _ => Ok(estimate),
         },
-        found => found,
+        estimate => estimate,
     }
 }
 
@@ -96,48 +97,26 @@ fn estimate_with(
     markers: &[Marker],
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
-    let input = |fault: Diagnostic| Error::Input(vec![fault]);
-    let outline = given::parts(specimen.mesh, &knowledge.edges).map_err(input)?;
-    knowledge.check().map_err(input)?;
-    let observations = given::Observations::new(specimen.mesh, markers, knowledge.noise);
-    let mut observations = observations.map_err(input)?;
-    let edges: Vec<_> = outline
-        .iter()
-        .map(|segment| given::Edge::new(segment, knowledge))
-        .collect();
-    let search = |observations: &given::Observations| {
-        let task = given::Task {
-            specimen,
+    let (edges, mut observations) = observe(specimen.mesh, markers, knowledge)?;
+    let (estimate, noise_ratio) = noise::with_observed_noise(&mut observations, |observations| {
+        let task = Task {
+            specimen: specimen.clone(),
             observations,
             knowledge,
         };
-        result_of(&task, edges.clone())
-    };
-    let (found, ratio) = noise::with_own_noise(&mut observations, search)?;
+        let (nearest, edges) = free_edges::search(&task, edges.clone())?;
+        let other = nearest.other_noise(&nearest.markers(), &edges);
+        if other.is_none() {
+            Ok((nearest.into_estimate(&edges)?, other))
+        } else {
+            Ok((FieldEstimate::default(), other))
+        }
+    })?;
     Ok(FieldEstimate {
-        noise_ratio: ratio,
-        ..found
+        noise_ratio,
+        ..estimate
     })
 }
 
-/// The estimate; where the noise differs from the assumed one, that noise alone.
-fn result_of(
-    task: &given::Task,
-    edges: Vec<given::Edge>,
-) -> Result<(FieldEstimate, noise::OtherNoise), Error> {
-    let (mut found, edges) = free_edges::search(task, edges)?;
-    let markers = found.markers();
-    let other = found.other_noise(&markers, &edges);
-    if !other.is_none() {
-        return Ok((FieldEstimate::default(), other));
-    }
-    let own = found.mesh_error(&edges);
-    let judged = judge::judge(task, &mut found, &edges, own.as_ref())?;
-    let found = found.into_estimate(&edges, own.as_ref(), markers, judged)?;
-    Ok((found, other))
-}
-
-#[cfg(test)]
-mod coverage;
 #[cfg(test)]
 mod tests;

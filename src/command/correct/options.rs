@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgAction, Args};
 
 use super::pictures::PictureOptions;
-use super::values::{Cells, Holds, Holes, Places, Weights, YAxis};
+use super::values::{CELLS, HOLES, PLACES, Y_AXIS, named};
 use super::values::{encoding, force, force_column, gap, length, scale_error, size, unit};
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
 use crate::document::TextEncoding;
-use crate::estimation::{JointSettings, MeasuredForce};
-use crate::mesh::Exemptions;
+use crate::estimation::{JointSettings, MeasuredForce, Physics, Robust};
+use crate::mesh::{CellShape, Exemptions};
 use crate::studies::markers::ForceColumn;
 
 /// What the command line says about a correction.
@@ -97,12 +97,12 @@ pub struct Options {
     /// If positions or displacements are named, other unknown columns are ignored
     #[arg(long, value_name = "WHAT=COLUMN", value_delimiter = ',')]
     pub columns: Vec<String>,
-    /// Where the y axis of a table points, if not as usual for the program that wrote it
-    #[arg(long, value_enum)]
-    pub y_axis: Option<YAxis>,
-    /// What the positions in a table are, if not as usual for the program that wrote it
-    #[arg(long, value_enum)]
-    pub places: Option<Places>,
+    /// Where the y axis of a table points, up as on paper or down as in an image, if not as usual for the program that wrote it
+    #[arg(long, value_parser = named(&Y_AXIS))]
+    pub y_axis: Option<bool>,
+    /// The positions in a table, at rest or in the frame, if not as usual for the program that wrote it
+    #[arg(long, value_parser = named(&PLACES))]
+    pub places: Option<bool>,
     /// The encoding of a table, such as latin1, gb18030 or shift_jis, if its bytes do not show it
     #[arg(long, value_name = "NAME", value_parser = encoding)]
     pub encoding: Option<TextEncoding>,
@@ -120,21 +120,22 @@ pub struct Options {
     /// data are not explained
     #[arg(long, conflicts_with_all = ["together", "specimen", "laws"])]
     pub refine: bool,
-    /// Kind of the cells of a generated mesh
-    #[arg(long, value_enum, default_value = "triangle6")]
-    pub cells: Cells,
-    /// What gaps among the markers are, if a mesh is generated
-    #[arg(long, value_enum, default_value = "found")]
-    pub holes: Holes,
+    /// Kind of the cells of a generated mesh: triangles or quadrilaterals, by their number of nodes
+    #[arg(long, value_parser = named(&CELLS), default_value = "triangle6")]
+    pub cells: CellShape,
+    /// What gaps among the markers are, if a mesh is generated: holes if they are much wider than the spacing, or lost markers
+    #[arg(long, value_parser = named(&HOLES), action = ArgAction::Set, default_value = "found")]
+    pub holes: bool,
     /// Standard deviation of the displacement's components, such as "0.1 mm"; estimated if omitted
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub noise: Option<f64>,
-    /// Weights of outlying markers; tukey if some are farther off than noise can explain
-    #[arg(long, value_enum)]
-    pub robust: Option<Weights>,
-    /// How exactly equilibrium holds
-    #[arg(long, value_enum)]
-    pub physics: Option<Holds>,
+    /// Weights of outlying markers: full, decreasing with the residual (huber), or zero beyond one (tukey); tukey if some are farther off
+    /// than noise can explain
+    #[arg(long, value_parser = named(&Robust::NAMES))]
+    pub robust: Option<Robust>,
+    /// How equilibrium holds: exactly, or up to smooth forces that are weighted against the data, for a law that is not exact
+    #[arg(long, value_parser = named(&Physics::NAMES))]
+    pub physics: Option<Physics>,
     /// Write into this folder
     #[arg(long, value_name = "FOLDER", default_value = "output/correct")]
     pub output: PathBuf,
@@ -157,8 +158,8 @@ Exit codes: 0 explained, also with correlated noise; 1 the data cannot judge, or
 3 no solution, 4 cannot write.";
 
 impl Options {
-    /// Whether parameters are found with all frames together.
-    pub fn is_together(&self) -> bool {
+    /// Whether parameters are estimated from all frames together.
+    pub fn is_joint(&self) -> bool {
         self.together || !self.specimen.is_empty() || !self.laws.is_empty()
     }
 

@@ -1,71 +1,37 @@
-//! What the options of `gelbench correct` may be.
+//! The values of the options of `gelbench correct`.
 
-use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::document::TextEncoding;
 use crate::error::Diagnostic;
 use crate::estimation::MeasuredForce;
+use crate::mesh::CellShape;
 use crate::studies::markers::{ForceColumn, measured_force};
 use crate::units::{self, Dimension};
 
 /// Kinds of cells.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Cells {
-    /// Triangles of three nodes
-    Triangle3,
-    /// Triangles of six nodes
-    Triangle6,
-    /// Quadrilaterals of four nodes
-    Quadrilateral4,
-    /// Quadrilaterals of nine nodes
-    Quadrilateral9,
-}
+pub const CELLS: [(&str, CellShape); 4] = [
+    ("triangle3", CellShape::Triangle3),
+    ("triangle6", CellShape::Triangle6),
+    ("quadrilateral4", CellShape::Quad4),
+    ("quadrilateral9", CellShape::Quad9),
+];
+/// Whether the y axis points down.
+pub const Y_AXIS: [(&str, bool); 2] = [("up", false), ("down", true)];
+/// Whether the positions of markers are those in the frame.
+pub const PLACES: [(&str, bool); 2] = [("rest", false), ("frame", true)];
+/// Whether gaps among markers are holes.
+pub const HOLES: [(&str, bool); 2] = [("found", true), ("closed", false)];
 
-/// Where a y axis points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum YAxis {
-    /// Upwards, as on paper
-    Up,
-    /// Downwards, as in an image
-    Down,
-}
-
-/// What the places of markers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Places {
-    /// Positions at rest
-    Rest,
-    /// Positions in the frame
-    Frame,
-}
-
-/// What gaps among markers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Holes {
-    /// Holes of the specimen, if much wider than the spacing
-    Found,
-    /// Lost markers
-    Closed,
-}
-
-/// Weights of markers that are far off.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Weights {
-    /// Full weight
-    No,
-    /// Weight that decreases with the residual
-    Huber,
-    /// Zero weight beyond a certain residual
-    Tukey,
-}
-
-/// How far the physics holds.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Holds {
-    /// Equilibrium holds exactly
-    Exact,
-    /// Equilibrium holds up to smooth forces that are weighted against the data, for a law that is not exact
-    Weighted,
+/// One of several values by their names.
+pub fn named<T: Copy + Send + Sync>(
+    values: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = T> {
+    let names = PossibleValuesParser::new(values.iter().map(|(name, _)| *name));
+    names.try_map(|name| {
+        let value = values.iter().find(|(known, _)| *known == name);
+        value.map(|(_, value)| *value).ok_or("an unknown value")
+    })
 }
 
 /// An edge, an axis, a force and its standard deviation.

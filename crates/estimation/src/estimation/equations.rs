@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::edges::{Body, EdgeMotion, bodies};
-use super::given::{
+use super::input::{
     DEGREE, Edge, Neighbours, Physics, Polynomial, Specimen, Task, singular_corners,
 };
 use super::regression::{Robust, Roughness};
@@ -51,7 +51,7 @@ pub struct Equations<'a> {
 
 /// A state of the search.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct SearchState {
     pub parameters: Vec<f64>,
     pub field: Vec<f64>,
 }
@@ -66,10 +66,10 @@ impl<'a> Equations<'a> {
             mesh,
             law,
             thickness,
-        } = task.specimen;
+        } = &task.specimen;
         let conditions: Vec<_> = edges
             .iter()
-            .map(|edge| (edge.segment, edge.condition))
+            .map(|edge| (&edge.segment, edge.condition))
             .collect();
         let spacing = task.observations.spacing(mesh);
         let motion = EdgeMotion::new(mesh, &conditions, &singular_corners(edges), spacing);
@@ -95,7 +95,7 @@ impl<'a> Equations<'a> {
             Newton::new(&energy, &held)
         };
         Ok(Self {
-            task: *task,
+            task: task.clone(),
             bodies: bodies(mesh, conditions.iter().copied()),
             motion,
             law,
@@ -107,7 +107,7 @@ impl<'a> Equations<'a> {
     }
 
     /// A smooth field near the data, in equilibrium, and its trust of the markers.
-    pub fn start(&mut self) -> Result<(Place, Vec<f64>), Error> {
+    pub fn start(&mut self) -> Result<(SearchState, Vec<f64>), Error> {
         let points = self.task.observations.points();
         let mut last = None;
         for degree in (1..=DEGREE).rev() {
@@ -126,7 +126,7 @@ impl<'a> Equations<'a> {
             }
             let body = self.body.as_ref().map_or(0, |body| body.columns().len());
             parameters.resize(parameters.len() + body, 0.0);
-            let mut place = Place { parameters, field };
+            let mut place = SearchState { parameters, field };
             match self.settle(&mut place, ON_THE_WAY) {
                 Ok(_) => {
                     let trust = match self.task.knowledge.robust {
@@ -178,7 +178,7 @@ impl<'a> Equations<'a> {
     /// Brings the inner nodes into equilibrium while the edges stay; returns the residual.
     pub fn settle(
         &mut self,
-        place: &mut Place,
+        place: &mut SearchState,
         settings: NewtonSettings,
     ) -> Result<Vec<f64>, Error> {
         self.take(&place.parameters);
@@ -280,7 +280,7 @@ impl<'a> Equations<'a> {
     }
 
     /// Checks the equilibrium of a state, and restores it where it is lost.
-    pub fn balance(&mut self, place: &mut Place) -> Result<(), Error> {
+    pub fn balance(&mut self, place: &mut SearchState) -> Result<(), Error> {
         const LOST: f64 = 1e-2;
         self.take(&place.parameters);
         self.motion.at(&place.parameters).write(&mut place.field);

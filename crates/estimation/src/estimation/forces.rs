@@ -2,7 +2,7 @@
 
 use super::edges::Body;
 use super::equations::Grip;
-use super::given::Edge;
+use super::input::Edge;
 use super::outcome::{EdgeForce, ForceCheck, FoundParameter};
 use super::search::NearestField;
 use super::uncertainty::{MeshError, ScaleChange};
@@ -27,6 +27,17 @@ impl NearestField<'_> {
         Ok((grip, row))
     }
 
+    /// A value of each body along x and along y.
+    pub(super) fn by_body<T>(
+        &self,
+        value: impl Fn(usize, usize) -> Result<T, Error>,
+    ) -> Result<Vec<[T; 2]>, Error> {
+        let bodies = 0..self.equations.bodies.len();
+        bodies
+            .map(|body| Ok([value(body, 0)?, value(body, 1)?]))
+            .collect()
+    }
+
     /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known, and the standard errors due to the law's
     /// parameters if there are any.
     pub fn forces(
@@ -48,18 +59,12 @@ impl NearestField<'_> {
             let error = self.error(&row).hypot(mesh).hypot(division).hypot(by_law);
             Ok(Estimate::new(force, error, reach))
         };
-        let force = |(index, body): (usize, &Body)| {
-            Ok(EdgeForce {
-                edge: body.name.clone(),
-                force: [along(index, 0)?, along(index, 1)?],
-            })
+        let bodies = self.equations.bodies.iter().zip(self.by_body(along)?);
+        let force = |(body, force): (&Body, [Estimate; 2])| EdgeForce {
+            edge: body.name.clone(),
+            force,
         };
-        self.equations
-            .bodies
-            .iter()
-            .enumerate()
-            .map(force)
-            .collect()
+        Ok(bodies.map(force).collect())
     }
 
     /// The parameters of the law that were found.
@@ -103,7 +108,7 @@ impl NearestField<'_> {
                     [value + force.value, square + force.standard_error.powi(2)]
                 })
             };
-            let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_all));
+            let ([estimated, noise], [_, whole]) = (sum(&plain), sum(&with_all));
             let variance = measured.standard_deviation.powi(2);
             let left = if knowledge.forces_are_checks {
                 variance + noise
@@ -118,8 +123,8 @@ impl NearestField<'_> {
                 let spread = (left + (whole - noise).max(0.0)).sqrt().hypot(by_scale);
                 checks.push(ForceCheck {
                     measured: measured.clone(),
-                    found,
-                    standardised: (measured.force - found) / spread,
+                    estimated,
+                    standardised: (measured.force - estimated) / spread,
                 });
             }
         }

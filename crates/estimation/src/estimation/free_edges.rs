@@ -1,7 +1,7 @@
 //! Which of the edges without a stated condition are free, as decided by the data.
 
 use super::equations::Equations;
-use super::given::{Edge, EdgeCondition, Task, singular_corners};
+use super::input::{Edge, EdgeCondition, Task, singular_corners};
 use super::outcome::EdgeForce;
 use super::regression::weighted_square;
 use super::search::{MOST_STEPS, NearestField};
@@ -21,13 +21,16 @@ const TRIAL_STEPS: usize = 20;
 /// As the search with the edges as they are.
 pub fn search<'a>(
     task: &Task<'a>,
-    edges: Vec<Edge<'a>>,
-) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
-    let loaded = Equations::new(task, &edges).and_then(|search| search.run(MOST_STEPS));
-    match loaded {
+    edges: Vec<Edge>,
+) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+    match nearest(task, &edges, MOST_STEPS) {
         Ok(found) => from_loaded(task, found, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }
+}
+
+fn nearest<'a>(task: &Task<'a>, edges: &[Edge], most: usize) -> Result<NearestField<'a>, Error> {
+    Equations::new(task, edges)?.run(most)
 }
 
 /// The edges to be tested, the longest first.
@@ -44,8 +47,8 @@ fn open(edges: &[Edge]) -> Vec<usize> {
 fn from_loaded<'a>(
     task: &Task<'a>,
     mut found: NearestField<'a>,
-    mut edges: Vec<Edge<'a>>,
-) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    mut edges: Vec<Edge>,
+) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     let open = open(&edges);
     let level = LEVEL / open.len() as f64;
     for index in open {
@@ -59,7 +62,7 @@ fn from_loaded<'a>(
             continue;
         }
         // Where no equilibrium with the free edge is found, the edge is not free.
-        let trial = Equations::new(task, &freed).and_then(|search| search.run(TRIAL_STEPS));
+        let trial = nearest(task, &freed, TRIAL_STEPS);
         let probability = trial
             .as_ref()
             .map_or(0.0, |trial| probability(&found, trial));
@@ -75,19 +78,19 @@ fn from_loaded<'a>(
 /// Releases edges that are free at first, where the data contradict that.
 fn from_free<'a>(
     task: &Task<'a>,
-    given: Vec<Edge<'a>>,
-) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    given: Vec<Edge>,
+) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     let mut edges = given.clone();
     let open = open(&edges);
     let level = LEVEL / open.len() as f64;
     for index in &open {
         edges[*index].condition = EdgeCondition::Free;
     }
-    let mut found = Equations::new(task, &edges)?.run(MOST_STEPS)?;
+    let mut found = nearest(task, &edges, MOST_STEPS)?;
     for index in open {
         let mut released = edges.clone();
         released[index].condition = given[index].condition;
-        let Ok(trial) = Equations::new(task, &released).and_then(|own| own.run(TRIAL_STEPS)) else {
+        let Ok(trial) = nearest(task, &released, TRIAL_STEPS) else {
             continue;
         };
         let probability = probability(&trial, &found);
@@ -103,8 +106,8 @@ fn from_free<'a>(
 fn settle<'a>(
     task: &Task<'a>,
     found: NearestField<'a>,
-    mut edges: Vec<Edge<'a>>,
-) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    mut edges: Vec<Edge>,
+) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     let before = singular_corners(&edges);
     for edge in edges.iter_mut().filter(|edge| edge.tested) {
         edge.of_body = true;
@@ -112,7 +115,7 @@ fn settle<'a>(
     if singular_corners(&edges) == before {
         Ok((found, edges))
     } else {
-        Ok((Equations::new(task, &edges)?.run(MOST_STEPS)?, edges))
+        Ok((nearest(task, &edges, MOST_STEPS)?, edges))
     }
 }
 

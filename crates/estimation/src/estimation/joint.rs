@@ -3,7 +3,7 @@
 //! ```text
 //! minimise over θ  Σₖ Qₖ(θ),    Qₖ(θ) = min over pₖ of  ‖H uₖ − dₖ‖²_W + ‖fₖ − Fₖ‖²/σ² + Σ λ ‖ρ‖²   subject to F(uₖ; θ) = 0
 //!
-//! Sₖ = M_θθ − M_θp M_pp⁻¹ M_pθ,   tₖ = m_θ − M_θp M_pp⁻¹ m_p          what frame k says of θ, its edges being free to follow
+//! Sₖ = M_θθ − M_θp M_pp⁻¹ M_pθ,   tₖ = m_θ − M_θp M_pp⁻¹ m_p          the information of frame k on θ, its edges being free to follow
 //! δθ = (Σ Sₖ)⁻¹ Σ tₖ,             Cov(θ) = S⁻¹ (Σ Jₖ + ρ (K − 1) Jₖ') S⁻¹
 //! ```
 //!
@@ -13,7 +13,6 @@
 //! determined, and keep the card's values but for a common factor of all stresses. Jₖ = Sₖ where the noise of the markers is white; otherwise it is
 //! that of the noise found; Jₖ' is the markers' part of it. ρ is the correlation of a marker's residuals in one frame and the next: noise of the
 //! picture at rest is common to all frames.
-//! correlation of what is left of a marker in one frame and the next: noise of the picture at rest is common to all frames.
 //!
 //! The error of the meshes themselves is the effect on the right-hand sides of the equilibria on cells half as large, at the same motions
 //! of the edges: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::mesh_error) has d, G and d_F of one frame). ± 1.96
@@ -30,30 +29,30 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::given::RegressedLaw;
-use crate::error::{Diagnostic, Error};
+use super::input::{MeasuredForce, RegressedLaw};
+use crate::error::Error;
 use crate::statistics::{normal_reach, student_reach};
 use descent::{Course, Descent};
 use direction::directions;
-use found::Step;
-use frame::{FrameInformation, FrameSetup, Judged};
+use estimate::Step;
+use frame::{CrossPrediction, Frame, FrameInformation};
 
 mod descent;
 mod direction;
-mod found;
+mod estimate;
 mod frame;
-mod left_out;
 mod profile;
 mod reduced;
 #[cfg(test)]
 mod tests;
 
 pub use direction::{Direction, VAGUE};
-pub use found::{
-    ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame, JointSettings, Told,
+pub use estimate::{
+    ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame, JointSettings, Watch,
 };
+pub use frame::residual_products;
 
-/// Finds the parameters of a law from all frames together.
+/// Estimates the parameters of a law from all frames together.
 ///
 /// # Errors
 /// [`Error::Input`] when the data, meshes and conditions do not match, no force was measured in any frame, or the
@@ -62,20 +61,15 @@ pub fn estimate_jointly(
     frames: &[JointFrame],
     law: &RegressedLaw,
     settings: &JointSettings,
-    told: Told,
+    watch: Watch,
 ) -> Result<JointEstimate, Error> {
     check_joint_frames(frames)?;
-    told("edges of the frames");
-    let grounds: Result<Vec<FrameSetup>, Error> = frames.par_iter().map(FrameSetup::new).collect();
-    let grounds = grounds?;
-    let judged: Result<Vec<Judged>, Error> = grounds
-        .par_iter()
-        .map(|ground| ground.judged(law))
-        .collect();
-    let judged = judged?;
-    let mut descent = Descent::new(judged.iter().collect(), law);
-    let (course, scales) = descent.find(told)?;
-    outcome(&descent, course, scales, settings, told)
+    watch("edges of the frames");
+    let frames = frames.par_iter().map(|source| Frame::new(source, law));
+    let frames = frames.collect::<Result<Vec<Frame>, Error>>()?;
+    let mut descent = Descent::new(frames.iter().collect(), law);
+    let (course, scales) = descent.run(watch)?;
+    outcome(&descent, course, scales, settings, watch)
 }
 
 /// Checks that a force was measured in some frame.
@@ -83,19 +77,16 @@ pub fn estimate_jointly(
 /// # Errors
 /// [`Error::Input`] where none was.
 pub fn check_joint_frames(frames: &[JointFrame]) -> Result<(), Error> {
-    let measured = frames
+    if frames
         .iter()
-        .any(|frame| !frame.knowledge.forces.is_empty());
-    if measured {
+        .any(|frame| !frame.knowledge.forces.is_empty())
+    {
         return Ok(());
     }
-    let fault = Diagnostic::error(
-        "",
+    Err(Error::input(
         "parameters of the law are to be estimated, but no force was measured in any frame",
-    );
-    Err(Error::Input(vec![fault.hint(
         "give the force on an edge with its standard deviation: displacements alone do not determine a stiffness",
-    )]))
+    ))
 }
 
 /// The results at the end of the search.
@@ -104,17 +95,13 @@ fn outcome(
     course: Course,
     scales: Vec<f64>,
     settings: &JointSettings,
-    told: Told,
+    watch: Watch,
 ) -> Result<JointEstimate, Error> {
-    let says: Result<Vec<FrameInformation>, Error> = descent
-        .frames
-        .par_iter()
-        .zip(&course.states)
-        .map(|(frame, state)| frame.say(&descent.law, &course.values, state))
-        .collect();
-    let says = says?;
-    let whole = course.information();
-    let directions = directions(&whole, &scales);
+    let law = descent.law.beginning_at(&course.values);
+    let states = descent.frames.par_iter().zip(&course.states);
+    let parts = states.map(|(frame, state)| frame.information(&law, state));
+    let parts = parts.collect::<Result<Vec<FrameInformation>, Error>>()?;
+    let directions = directions(&course.information(), &scales);
     if course.ended.is_none() && !directions.iter().any(Direction::is_determined) {
         return Err(Error::input(
             "the data determine no parameter of the law",
@@ -122,64 +109,63 @@ fn outcome(
         ));
     }
     let inverse = direction::inverse(&directions, &scales, VAGUE);
-    let common = frame::common_noise(&descent.frames, &says);
-    let sum = |value: fn(&FrameInformation) -> f64| says.iter().map(value).sum::<f64>();
+    let common = frame::common_noise(&descent.frames, &parts);
+    let sum = |value: fn(&FrameInformation) -> f64| parts.iter().map(value).sum::<f64>();
     let determined = directions.iter().filter(|one| one.is_determined()).count() as f64;
     let measured = descent.measured();
-    let scatter = ForceScatter::new(sum(|say| say.force_misfit), measured - determined);
-    let covariance = covariance(&says, &inverse, common, scatter.widening());
-    told("intervals");
-    let mesh = mesh_error(&says, &inverse);
-    let alike = alike(&says, &inverse, mesh.as_ref());
-    let effective = sum(|say| say.effective) + determined;
+    let force_scatter = ForceScatter {
+        misfit: sum(|part| part.force_misfit),
+        freedom: measured - determined,
+    };
+    let covariance = covariance(&parts, &inverse, common, force_scatter.widening());
+    watch("intervals");
+    let mesh = mesh_error(&parts, &inverse);
+    let effective = sum(|part| part.effective) + determined;
     let ends = profile::Ends {
         descent,
         course: &course,
         inverse: &inverse,
         covariance: &covariance,
-        alike: &alike,
-        reach: reach(descent, sum(|say| say.independent) - effective),
+        alike: &alike(&parts, &inverse, mesh.as_ref()),
+        reach: reach(descent, sum(|part| part.independent) - effective),
         directions: &directions,
     };
-    let parameters = ends.intervals(settings.profiles);
-    let frames = left_out::outcomes(descent, &course, &says, &inverse, settings, told)?;
     Ok(JointEstimate {
-        law: descent.law.beginning_at(&course.values),
-        parameters,
-        directions,
+        parameters: ends.intervals(settings.profiles),
+        law,
         holds_mesh_error: mesh.is_some(),
-        frames,
+        frames: frame_outcomes(descent, &course, &parts, &inverse, settings.groups, watch)?,
         common,
         misfit: course.misfit(),
-        force_scatter: scatter,
-        deviance: sum(|say| say.deviance),
+        force_scatter,
+        deviance: sum(|part| part.deviance),
         effective_parameters: effective,
-        independent: sum(|say| say.independent) + measured,
+        independent: sum(|part| part.independent) + measured,
         steps: course.steps,
         ended: course.ended,
+        directions,
     })
 }
 
 /// S⁻¹ (Σ Jₖ) S⁻¹, with the noise of markers counted as often as it is the same in other frames, and multiplied by
 /// the scatter of forces where it exceeds both noises.
 fn covariance(
-    says: &[FrameInformation],
+    parts: &[FrameInformation],
     inverse: &DMatrix<f64>,
     common: f64,
     widening: f64,
 ) -> DMatrix<f64> {
-    let alike = common * (says_that_count(says, inverse) - 1.0).max(0.0);
-    let sum = says.iter().fold(inverse * 0.0, |sum, say| {
-        sum + &say.spread + &say.spread_of_markers * alike
+    let alike = common * (equal_frames(parts, inverse) - 1.0).max(0.0);
+    let sum = parts.iter().fold(inverse * 0.0, |sum, part| {
+        sum + &part.spread + &part.spread_of_markers * alike
     });
-    let sum = sum * widening;
-    inverse * sum * inverse
+    inverse * (sum * widening) * inverse
 }
 
 /// The effects on each parameter of errors that all frames have in common: those of forces, of pictures, and of meshes, taken as independent.
-fn alike(says: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
+fn alike(parts: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
     let common = [0, 1].map(|kind| {
-        let targets = says.iter().map(|say| &say.common[kind]);
+        let targets = parts.iter().map(|part| &part.common[kind]);
         inverse * targets.sum::<Step>()
     });
     let all = common.iter().chain(mesh);
@@ -189,10 +175,9 @@ fn alike(says: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>)
 }
 
 /// S⁻¹ Σ tₖ from the effects of the meshes' own errors on the right-hand sides, which are as alike in all frames as their meshes are.
-fn mesh_error(says: &[FrameInformation], inverse: &DMatrix<f64>) -> Option<Step> {
-    let targets = says.iter().map(|say| say.mesh.as_ref());
-    let sum = targets.sum::<Option<Step>>()?;
-    Some(inverse * sum)
+fn mesh_error(parts: &[FrameInformation], inverse: &DMatrix<f64>) -> Option<Step> {
+    let targets = parts.iter().map(|part| part.mesh.as_ref());
+    Some(inverse * targets.sum::<Option<Step>>()?)
 }
 
 /// Half the width of a 95 % interval in standard errors, with so many degrees of freedom of the noise.
@@ -206,10 +191,65 @@ fn reach(descent: &Descent, freedom: f64) -> f64 {
 }
 
 /// The number of equal frames with the same information on the parameters: (Σ s)²/Σ s² of the frames' shares s.
-fn says_that_count(says: &[FrameInformation], inverse: &DMatrix<f64>) -> f64 {
-    let shares = says.iter().map(|say| say.information.dot(inverse).max(0.0));
+fn equal_frames(parts: &[FrameInformation], inverse: &DMatrix<f64>) -> f64 {
+    let shares = parts
+        .iter()
+        .map(|part| part.information.dot(inverse).max(0.0));
     let [sum, square] = shares.fold([0.0; 2], |[sum, square], share| {
         [sum + share, square + share * share]
     });
     sum * sum / square.max(f64::MIN_POSITIVE)
+}
+
+/// The results of every frame: its share, and its forces with the law of the other groups of frames, where these determine one.
+fn frame_outcomes(
+    descent: &Descent,
+    course: &Course,
+    parts: &[FrameInformation],
+    inverse: &DMatrix<f64>,
+    groups: usize,
+    watch: Watch,
+) -> Result<Vec<FrameOutcome>, Error> {
+    let count = course.states.len();
+    let groups = groups.clamp(1, count);
+    let mut outcomes = Vec::with_capacity(count);
+    for group in 0..groups {
+        let members = group * count / groups..(group + 1) * count / groups;
+        watch(&format!("frames left out, group {} of {groups}", group + 1));
+        let others = if groups == 1 {
+            None
+        } else {
+            descent.without(course, &members, watch)?
+        };
+        let law = descent
+            .law
+            .beginning_at(others.as_ref().unwrap_or(&course.values));
+        let outcome = |index: usize| {
+            let frame = descent.frames[index];
+            let found = frame.cross_predict(&law, Some(&course.states[index]))?;
+            let share = parts[index].information.dot(inverse) / course.values.len() as f64;
+            Ok(frame_outcome(frame, found, share, others.is_some()))
+        };
+        let found = members.into_par_iter().map(outcome);
+        outcomes.extend(found.collect::<Result<Vec<FrameOutcome>, Error>>()?);
+    }
+    Ok(outcomes)
+}
+
+fn frame_outcome(
+    frame: &Frame,
+    prediction: CrossPrediction,
+    share: f64,
+    is_predicted: bool,
+) -> FrameOutcome {
+    let forces = frame.measured().iter().zip(prediction.forces);
+    let force = |(measured, predicted): (&MeasuredForce, f64)| ForcePrediction {
+        measured: measured.clone(),
+        predicted: is_predicted.then_some(predicted),
+    };
+    FrameOutcome {
+        share,
+        forces: forces.map(force).collect(),
+        residual_rms: prediction.residual_rms,
+    }
 }

@@ -5,7 +5,7 @@
 //! latter, determine which alternative reduces the misfit more than noise would (F test, in one linearised step).
 
 use super::equations::Equations;
-use super::given::{Edge, EdgeCondition, Task};
+use super::input::{Edge, EdgeCondition};
 use super::outcome::{
     Alternative, Answer, Contradiction, ForceCheck, NoiseCorrelation, Reason, Trial, Verdict, Worst,
 };
@@ -52,12 +52,11 @@ pub struct Judgement {
 /// # Errors
 /// Where the tangent cannot be used to solve systems.
 pub fn judge(
-    task: &Task,
     found: &mut NearestField,
     edges: &[Edge],
     own: Option<&MeshError>,
 ) -> Result<Judgement, Error> {
-    let all = let_go(task, found, edges, &|_| true);
+    let all = released(found, edges, &|_| true);
     let weights = &found.observations().weights;
     let sound = match &all {
         Some(all) => soundness(weights, &all.fit, &all.variances),
@@ -94,7 +93,7 @@ pub fn judge(
     let few = few(correlation, found);
     let mut contradiction = None;
     if against.is_some() {
-        let each = basis.edge_by_edge(task, found, edges, &granted);
+        let each = basis.edge_by_edge(found, edges, &granted);
         contradiction = contradicted(together.as_ref(), &each);
         trials.extend(together.filter(|_| each.len() > 1));
         trials.extend(each);
@@ -102,17 +101,23 @@ pub fn judge(
         trials.extend(moved.filter_map(|edge| basis.moved(found, edge)));
     }
     // An alternative that hardly changes the misfit explains nothing.
-    let left = base.plain_left(&rows, found);
-    trials.retain(|trial| trial.left < EXPLAINS * left);
+    let residual_rms = base.residual_rms(&rows, found);
+    trials.retain(|trial| trial.residual_rms < EXPLAINS * residual_rms);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let answer = answer(against, few, correlation);
+    // Evidence against the equations counts most, then that there can be none.
+    let answer = match (against, few, correlation) {
+        (Some(_), ..) => Answer::NotExplained,
+        (None, Some(_), _) => Answer::Undecided,
+        (None, None, Some(_)) => Answer::Correlated,
+        (None, None, None) => Answer::Explained,
+    };
     if answer != Answer::Undecided {
         noises.truncate(1);
     }
     let verdict = Verdict {
         answer,
         correlation,
-        worst: against.map(|_| rows.worst(found)),
+        worst: against.and_then(|_| rows.worst(found)),
         reasons: against.or(few).into_iter().collect(),
         trials,
     };
@@ -122,20 +127,6 @@ pub fn judge(
         verdict,
         contradiction,
     })
-}
-
-/// Evidence against the equations counts most, then that there can be none.
-fn answer(
-    against: Option<Reason>,
-    few: Option<Reason>,
-    correlation: Option<NoiseCorrelation>,
-) -> Answer {
-    match (against, few, correlation) {
-        (Some(_), ..) => Answer::NotExplained,
-        (None, Some(_), _) => Answer::Undecided,
-        (None, None, Some(_)) => Answer::Correlated,
-        (None, None, None) => Answer::Explained,
-    }
 }
 
 /// The basis on which alternatives are tried.
@@ -148,7 +139,7 @@ struct Basis<'a> {
 impl Basis<'_> {
     fn try_out(&self, found: &NearestField, alternative: Alternative, model: &Model) -> Trial {
         Trial {
-            left: model.plain_left(self.rows, found),
+            residual_rms: model.residual_rms(self.rows, found),
             ..self.reference.test(alternative, self.base, model)
         }
     }
@@ -156,18 +147,17 @@ impl Basis<'_> {
     /// What each of the edges with a stated condition explains by itself where it is released.
     fn edge_by_edge(
         &self,
-        task: &Task,
         found: &NearestField,
         edges: &[Edge],
         granted: &[Granted],
     ) -> Vec<Trial> {
-        let names = said(edges).into_iter();
-        let released = names.filter_map(|name| {
-            let scored = let_go(task, found, edges, &|other| other == name)?;
+        let names = stated(edges).into_iter();
+        let trials = names.filter_map(|name| {
+            let scored = released(found, edges, &|other| other == name)?;
             let model = Model::of_score(self.rows, found, &scored).granting(self.rows, granted);
             Some(self.try_out(found, Alternative::Edge(name.to_owned()), &model))
         });
-        released.collect()
+        trials.collect()
     }
 
     /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
@@ -194,35 +184,32 @@ fn few(correlation: Option<NoiseCorrelation>, found: &NearestField) -> Option<Re
 }
 
 /// The names of the edges with a stated condition, except those that moved in an unknown way.
-fn said<'a>(edges: &'a [Edge]) -> Vec<&'a str> {
-    let said = edges.iter().filter(|edge| is_said(edge));
-    let mut names: Vec<&str> = said.map(|edge| edge.segment.name.as_str()).collect();
+fn stated(edges: &[Edge]) -> Vec<&str> {
+    let stated = edges.iter().filter(|edge| is_stated(edge));
+    let mut names: Vec<&str> = stated.map(|edge| edge.segment.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     names
 }
 
-fn is_said(edge: &Edge) -> bool {
+fn is_stated(edge: &Edge) -> bool {
     let named = edge.segment.condition.is_some() && !edge.segment.inside;
     named && edge.condition != EdgeCondition::Unknown
 }
 
 /// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
-fn let_go(
-    task: &Task,
-    found: &NearestField,
-    edges: &[Edge],
-    goes: &dyn Fn(&str) -> bool,
-) -> Option<Scored> {
+fn released(found: &NearestField, edges: &[Edge], goes: &dyn Fn(&str) -> bool) -> Option<Scored> {
     let mut relaxed = edges.to_vec();
     let mut any = false;
     for edge in &mut relaxed {
-        if is_said(edge) && goes(&edge.segment.name) {
+        if is_stated(edge) && goes(&edge.segment.name) {
             edge.condition = EdgeCondition::Unknown;
             any = true;
         }
     }
-    let search = any.then(|| Equations::new(task, &relaxed).ok()).flatten()?;
+    let search = any
+        .then(|| Equations::new(&found.equations.task, &relaxed).ok())
+        .flatten()?;
     search.score(found).ok()
 }
 
@@ -249,11 +236,11 @@ impl Verdict {
         if let Some(worst) = worst.filter(|check| check.contradicts()) {
             self.answer = Answer::NotExplained;
             self.reasons.push(Reason::Force(worst.standardised.abs()));
-            let factor = worst.measured.force / worst.found;
+            let factor = worst.measured.force / worst.estimated;
             if factor > 0.0 && factor.is_finite() {
                 self.trials.push(Trial {
                     alternative: Alternative::Factor(factor),
-                    left: f64::NAN,
+                    residual_rms: f64::NAN,
                     probability: normal_tail(worst.standardised),
                     gain: worst.standardised.powi(2) - 2.0,
                 });
@@ -275,7 +262,7 @@ impl Rows {
     }
 
     /// The place at which the mean residual of a marker and its neighbours is largest.
-    fn worst(&self, found: &NearestField) -> Worst {
+    fn worst(&self, found: &NearestField) -> Option<Worst> {
         const NEIGHBOURS: usize = 8;
         let around = nearest(self.sites.places(), NEIGHBOURS);
         let mean = |index: usize| {
@@ -289,15 +276,9 @@ impl Rows {
         let all = (0..self.chosen.len()).map(|index| (index, mean(index)));
         let size = |[x, y]: [f64; 2]| x.hypot(y);
         let worst = all.max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
-        worst.map_or(
-            Worst {
-                place: [f64::NAN; 2],
-                misfit: [f64::NAN; 2],
-            },
-            |(index, misfit)| Worst {
-                place: self.sites.places()[index],
-                misfit,
-            },
-        )
+        worst.map(|(index, misfit)| Worst {
+            place: self.sites.places()[index],
+            misfit,
+        })
     }
 }

@@ -8,7 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::given::{Edge, Observations};
+use super::input::{Edge, Observations};
 use super::judge::Judgement;
 use super::outcome::MarkerEstimate;
 use super::regression::{MarkerRows, VarianceComponents};
@@ -34,12 +34,12 @@ pub struct OtherNoise {
     pub unevenness: Option<Unevenness>,
 }
 
-/// A search with the noise that the data show: where they contradict the stated noise its size is estimated, and markers where
+/// A search with the noise of the data: where they contradict the stated noise its size is estimated, and markers where
 /// noise is larger have less weight. Also returns the ratio of the scatter to the stated noise, where that is contradicted.
 ///
 /// # Errors
 /// As the search.
-pub fn with_own_noise<T>(
+pub fn with_observed_noise<T>(
     observations: &mut Observations,
     search: impl Fn(&Observations) -> Result<(T, OtherNoise), Error>,
 ) -> Result<(T, Option<f64>), Error> {
@@ -186,9 +186,9 @@ impl NearestField<'_> {
     /// Sets the covariance under the noise that was found, including what smoothing takes away; returns the degrees
     /// of freedom of the noise's size where it is correlated.
     pub(super) fn widen(&mut self, judged: &Judgement) -> Option<f64> {
-        let smoothed_away = self.smoothed_away();
+        let smoothing_bias = self.smoothing_bias();
         let freedom = self.take_noise(judged);
-        self.fit.covariance += smoothed_away;
+        self.fit.covariance += smoothing_bias;
         freedom
     }
 

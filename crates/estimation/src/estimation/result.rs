@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
 use super::equations::{Equations, solve};
-use super::given::{Edge, Neighbours};
-use super::judge::Judgement;
+use super::input::{Edge, Neighbours};
+use super::judge::{Judgement, judge};
 use super::outcome::{
     Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing,
     StressEstimate,
@@ -23,13 +23,11 @@ const FALSE_ALARMS: f64 = 1e-3;
 
 impl NearestField<'_> {
     /// The field with all results that follow from it.
-    pub fn into_estimate(
-        mut self,
-        edges: &[Edge],
-        own: Option<&MeshError>,
-        markers: Vec<Option<MarkerEstimate>>,
-        judged: Judgement,
-    ) -> Result<FieldEstimate, Error> {
+    pub fn into_estimate(mut self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
+        let mesh_error = self.mesh_error(edges);
+        let own = mesh_error.as_ref();
+        let judged = judge(&mut self, edges, own)?;
+        let markers = self.markers();
         let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
@@ -61,7 +59,11 @@ impl NearestField<'_> {
                 None => RULE.into(),
             },
             interior_forces: self.equations.forces.clone(),
-            edges: edges.iter().zip(&idle).map(outcome).collect(),
+            edges: edges
+                .iter()
+                .zip(&idle)
+                .map(|(edge, idle)| edge.outcome(*idle))
+                .collect(),
             steps: self.steps,
             reactions: self.reactions(),
             multipliers: self.multipliers,
@@ -183,7 +185,7 @@ impl NearestField<'_> {
         better: [f64; 4],
     ) -> Result<StressEstimate, Error> {
         let Equations { task, law, .. } = &self.equations;
-        let specimen = task.specimen;
+        let specimen = &task.specimen;
         let mesh = specimen.mesh;
         let centre = mesh.shape(cell).centre();
         let (gradients, _) = mesh.gradients(cell, centre);
@@ -267,12 +269,15 @@ impl NearestField<'_> {
     }
 }
 
-fn outcome((edge, idle): (&Edge, &bool)) -> EdgeOutcome {
-    EdgeOutcome {
-        edge: edge.segment.name.clone(),
-        length: edge.segment.length(),
-        condition: edge.condition,
-        probability: edge.probability,
-        idle: *idle,
+impl Edge {
+    /// Its condition, and whether it is idle.
+    pub(super) fn outcome(&self, idle: bool) -> EdgeOutcome {
+        EdgeOutcome {
+            edge: self.segment.name.clone(),
+            length: self.segment.length(),
+            condition: self.condition,
+            probability: self.probability,
+            idle,
+        }
     }
 }

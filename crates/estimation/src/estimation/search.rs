@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, Place, solve};
-use super::given::Observations;
+use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, SearchState, solve};
+use super::input::Observations;
 use super::regression::{Fit, Regression, Undetermined, VarianceComponents};
 use crate::error::{Error, SolveFault};
 use crate::solve::vector::largest;
@@ -67,7 +67,7 @@ impl<'a> Equations<'a> {
     /// As [`Self::run`].
     pub fn run_from(
         mut self,
-        mut place: Place,
+        mut place: SearchState,
         mut variances: VarianceComponents,
         adjusting: usize,
         most: usize,
@@ -119,7 +119,7 @@ impl<'a> Equations<'a> {
         let mut parameters = self.nearest_parameters(&found.field);
         let others = &found.parameters[found.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
-        let mut place = Place {
+        let mut place = SearchState {
             parameters,
             field: found.field.clone(),
         };
@@ -139,33 +139,25 @@ impl<'a> Equations<'a> {
 
     /// The largest negligible move, in mm.
     fn close(&self, variances: &VarianceComponents, field: &[f64]) -> f64 {
-        let Observations {
-            weights,
-            known_noise,
-            ..
-        } = self.task.observations;
-        let most = weights
-            .iter()
-            .fold(0.0, |most: f64, weight| most.max(*weight));
-        let variance = if *known_noise {
+        let observations = self.task.observations;
+        let variance = if observations.known_noise {
             1.0
         } else {
             variances.variance
         };
+        let most = largest(&observations.weights);
         (MOVEMENT * (variance / most).sqrt()).max(1e-9 * largest(field))
     }
 
     fn regress(
         &self,
-        place: &Place,
+        place: &SearchState,
         settled: bool,
         linear: &Linear,
         variances: &mut VarianceComponents,
     ) -> Result<Fit, Error> {
-        let fitted = self.with_regression(place, settled, linear, |regression| {
-            regression.fit(variances)
-        });
-        fitted.map_err(|Undetermined| {
+        let regression = self.regression(place, settled, linear);
+        regression.fit(variances).map_err(|Undetermined| {
             Error::input(
                 "the data do not determine the motion of the edges, or the parameters of the law",
                 "state more about the edges (free, rigid, known), measure more markers near them, or estimate fewer parameters",
@@ -173,28 +165,26 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// Calls `work` with the regression about a state.
-    pub(super) fn with_regression<T>(
-        &self,
-        place: &Place,
+    /// The regression about a state.
+    pub(super) fn regression<'b>(
+        &'b self,
+        place: &SearchState,
         settled: bool,
-        linear: &Linear,
-        work: impl FnOnce(&Regression) -> T,
-    ) -> T {
-        let Linear { still, design, .. } = linear;
-        let ahead: Vec<f64> = place.field.iter().zip(still).map(|(u, s)| u + s).collect();
-        let residual = self.task.observations.residual(&ahead);
-        let priors = self.priors(&place.parameters);
-        work(&Regression {
-            design,
-            residual: &residual,
-            weights: &self.task.observations.weights,
-            known_noise: self.task.observations.known_noise,
+        linear: &'b Linear,
+    ) -> Regression<'b> {
+        let ahead = place.field.iter().zip(&linear.still);
+        let ahead: Vec<f64> = ahead.map(|(u, still)| u + still).collect();
+        let observations = self.task.observations;
+        Regression {
+            design: &linear.design,
+            residual: observations.residual(&ahead),
+            weights: &observations.weights,
+            known_noise: observations.known_noise,
             force_rows: (&linear.force_rows.0, &linear.force_rows.1),
-            priors: &priors,
+            priors: self.priors(&place.parameters),
             robust: self.task.knowledge.robust,
             settled,
-        })
+        }
     }
 
     /// K⁻¹ Hᵀ W (d − H u) by the last tangent, with weights relative to their mean.
@@ -203,26 +193,24 @@ impl<'a> Equations<'a> {
         fit: &Fit,
         variances: &VarianceComponents,
     ) -> Result<Vec<f64>, Error> {
-        let Observations { weights, .. } = self.task.observations;
+        let observations = self.task.observations;
+        let weights = &observations.weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let weight = |row: usize| variances.weight(weights, row) / mean;
         let residual = fit.residual.iter().enumerate();
-        let pull: Vec<f64> = residual.map(|(row, r)| -weight(row) * r).collect();
-        let force = self
-            .task
-            .observations
-            .interpolation
-            .multiply_transposed(&pull);
+        let pull = residual.map(|(row, r)| -variances.weight(weights, row) / mean * r);
+        let pull: Vec<f64> = pull.collect();
+        let force = observations.interpolation.multiply_transposed(&pull);
         let mut changes = self.newton.tangent.changes(&[force]).map_err(solve)?;
         Ok(changes.remove(0))
     }
 
     /// The variance at the start.
     fn first_variance(&self, field: &[f64]) -> f64 {
-        if self.task.observations.known_noise {
+        let observations = self.task.observations;
+        if observations.known_noise {
             return 1.0;
         }
-        let residual = self.task.observations.residual(field);
+        let residual = observations.residual(field);
         (residual.norm_squared() / residual.len() as f64).max(1e-12 * largest(field).powi(2))
     }
 
@@ -230,7 +218,7 @@ impl<'a> Equations<'a> {
     /// restored where it is lost. At most the share `most` of it is taken; returns whether it was cut beyond that.
     fn advance(
         &mut self,
-        place: &mut Place,
+        place: &mut SearchState,
         change: &[f64],
         step: &[f64],
         most: f64,
@@ -284,6 +272,14 @@ fn combined(still: &[f64], columns: &[Vec<f64>], step: &[f64]) -> Vec<f64> {
 }
 
 impl NearestField<'_> {
+    /// The state from which another search may begin.
+    pub fn place(&self) -> SearchState {
+        SearchState {
+            parameters: self.parameters.clone(),
+            field: self.field.clone(),
+        }
+    }
+
     /// The markers.
     pub fn observations(&self) -> &Observations {
         self.equations.task.observations

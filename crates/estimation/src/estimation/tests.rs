@@ -6,6 +6,7 @@ use crate::material::{Card, HyperelasticLaw};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::NewtonSettings;
 
+mod coverage;
 mod pads;
 mod places;
 mod truth;

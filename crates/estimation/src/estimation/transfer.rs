@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 use super::edges::{Body, bodies};
 use super::equations::{approach, solve};
-use super::given::{Edge, EdgeCondition, Knowledge, Segment, Specimen, parts};
-use super::outcome::{EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate};
+use super::input::{Edge, EdgeCondition, Knowledge, Specimen};
+use super::outcome::{EdgeForce, FieldEstimate, MarkerEstimate, StressEstimate};
 use crate::error::{Error, SolveFault};
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
@@ -51,7 +51,7 @@ pub fn transfer(
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
     let mesh = specimen.mesh;
-    let edges = conditions(mesh, knowledge)?;
+    let edges = Edge::of_boundary(mesh, knowledge)?;
     let start = given.displacement_on(displacement, mesh);
     let imposed = imposed(mesh, &edges, &start);
     if imposed.iter().all(Option::is_none) {
@@ -87,7 +87,7 @@ pub fn transfer(
         markers: differences(mesh, &field, given, displacement),
         known_noise: true,
         rule: RULE.into(),
-        edges: edges.iter().map(outcome).collect(),
+        edges: edges.iter().map(|edge| edge.outcome(false)).collect(),
         steps,
         reactions,
         multipliers,
@@ -96,54 +96,36 @@ pub fn transfer(
     })
 }
 
-/// The segments of the boundary, each with its condition.
-fn conditions(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<(Segment, EdgeCondition)>, Error> {
-    let segments = parts(mesh, &knowledge.edges).map_err(|fault| Error::Input(vec![fault]))?;
-    let with = |segment: Segment| {
-        let condition = Edge::new(&segment, knowledge).condition;
-        (segment, condition)
-    };
-    Ok(segments.into_iter().map(with).collect())
-}
-
-fn outcome((segment, condition): &(Segment, EdgeCondition)) -> EdgeOutcome {
-    EdgeOutcome {
-        edge: segment.name.clone(),
-        length: segment.length(),
-        condition: *condition,
-        probability: None,
-        idle: false,
-    }
-}
-
 /// The values of the held unknowns.
-fn imposed(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], start: &[f64]) -> Vec<Option<f64>> {
+fn imposed(mesh: &Mesh, edges: &[Edge], start: &[f64]) -> Vec<Option<f64>> {
     let mut imposed = vec![None; start.len()];
-    for (segment, condition) in edges {
-        let nodes = &segment.nodes;
-        let mut put = |node: usize, values: [Option<f64>; 2]| {
-            for (axis, value) in values.into_iter().enumerate() {
-                imposed[2 * node + axis] = value.or(imposed[2 * node + axis]);
-            }
-        };
+    let mut impose = |node: usize, values: [Option<f64>; 2]| {
+        for (axis, value) in values.into_iter().enumerate() {
+            imposed[2 * node + axis] = value.or(imposed[2 * node + axis]);
+        }
+    };
+    for Edge {
+        segment, condition, ..
+    } in edges
+    {
         match condition {
             EdgeCondition::Free => {}
-            EdgeCondition::Known(values) => nodes.iter().for_each(|node| put(*node, *values)),
+            EdgeCondition::Known(values) => {
+                segment.nodes.iter().for_each(|node| impose(*node, *values));
+            }
             EdgeCondition::Unknown => {
-                for node in nodes {
-                    put(*node, [Some(start[2 * node]), Some(start[2 * node + 1])]);
+                for node in &segment.nodes {
+                    impose(*node, [0, 1].map(|axis| Some(start[2 * node + axis])));
                 }
             }
             EdgeCondition::Rigid => {
-                let sides = edges.iter().filter(|(other, condition)| {
-                    let is_rigid = *condition == EdgeCondition::Rigid;
-                    is_rigid && other.name == segment.name
+                let sides = edges.iter().filter(|other| {
+                    other.condition == EdgeCondition::Rigid && other.segment.name == segment.name
                 });
-                let body: BTreeSet<usize> =
-                    sides.flat_map(|(side, _)| side.nodes.clone()).collect();
-                let body: Vec<usize> = body.into_iter().collect();
+                let body = sides.flat_map(|side| side.segment.nodes.iter().copied());
+                let body: Vec<usize> = body.collect::<BTreeSet<_>>().into_iter().collect();
                 for (node, u) in body.iter().zip(rigid(mesh, &body, start)) {
-                    put(*node, u.map(Some));
+                    impose(*node, u.map(Some));
                 }
             }
         }
@@ -155,11 +137,8 @@ fn imposed(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], start: &[f64]) -> Ve
 fn rigid(mesh: &Mesh, nodes: &[usize], field: &[f64]) -> Vec<[f64; 2]> {
     let pairs = nodes.iter().map(|node| {
         let rest = mesh.nodes[*node];
-        (
-            1.0,
-            rest,
-            [0, 1].map(|axis| rest[axis] + field[2 * node + axis]),
-        )
+        let moved = [0, 1].map(|axis| rest[axis] + field[2 * node + axis]);
+        (1.0, rest, moved)
     });
     let (middle, motion) = RigidMotion::nearest(&pairs.collect::<Vec<_>>());
     let arm = |node: &usize| [0, 1].map(|axis| mesh.nodes[*node][axis] - middle[axis]);
@@ -219,18 +198,13 @@ fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstima
 }
 
 /// The forces of the bodies that hold the sheet.
-fn forces(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], reactions: &[f64]) -> Vec<EdgeForce> {
-    let bodies = bodies(
-        mesh,
-        edges
-            .iter()
-            .map(|(segment, condition)| (segment, *condition)),
-    );
+fn forces(mesh: &Mesh, edges: &[Edge], reactions: &[f64]) -> Vec<EdgeForce> {
+    let edges = edges.iter().map(|edge| (&edge.segment, edge.condition));
     let force = |body: Body| EdgeForce {
         force: body.force(reactions).map(Estimate::exact),
         edge: body.name,
     };
-    bodies.into_iter().map(force).collect()
+    bodies(mesh, edges).into_iter().map(force).collect()
 }
 
 /// The given field at its nodes minus the corrected one.

@@ -5,7 +5,7 @@ mod considered;
 mod mesh_error;
 mod moved_edges;
 mod picture_scale;
-mod smoothed_away;
+mod smoothing_bias;
 mod unknown_places;
 
 pub use mesh_error::{MOST_REFINED_CELLS, MeshDifference, MeshError};

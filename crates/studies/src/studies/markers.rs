@@ -21,27 +21,23 @@ use crate::results::locking;
 
 mod alike;
 mod area;
-mod computed;
 mod conditions;
-mod doubts;
 mod edge_place;
 mod figures;
+mod finding;
+mod findings;
 mod force_signs;
-mod force_words;
-mod frame_agreement;
+mod forces;
 mod gross_errors;
 pub mod joint;
 mod json;
 mod machine;
 mod mistakes;
-mod noise;
-mod of_frames;
 mod quantities;
 mod reading;
 mod refined;
 mod report;
 mod request;
-mod scale;
 mod specimen_file;
 mod specimen_mesh;
 mod tables;
@@ -51,8 +47,8 @@ pub mod written;
 pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
+use finding::{Finding, once};
 pub use machine::{ForceColumn, FrameForces};
-use of_frames::{OfFrame, once};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
 use specimen_mesh::{SpecimenMesh, mesh};
@@ -152,13 +148,10 @@ impl MarkerStudy {
             // Interpolation needs all nodes.
             placed.series = field.series;
             placed.outside = 0;
-            warnings.extend(computed::told(&request.conditions));
+            warnings.extend(request.conditions.ignored_for_computed_fields());
         }
-        force_signs::check(
-            request.conditions.forces_with_frames(&placed.series),
-            &mesh,
-            &*card.law,
-        )?;
+        let forces = &request.conditions.forces;
+        force_signs::check(forces, &placed.series, &mesh, &*card.law)?;
         if placed.outside > 0 {
             let message = format!("markers outside the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
@@ -193,17 +186,31 @@ impl MarkerStudy {
         }
     }
 
+    /// The frames with their estimates.
+    pub(super) fn frames_with<'a>(
+        &'a self,
+        estimates: &'a [FieldEstimate],
+    ) -> impl DoubleEndedIterator<Item = (&'a Frame, &'a FieldEstimate)> + ExactSizeIterator {
+        self.series.frames.iter().zip(estimates)
+    }
+
+    /// The frame whose markers move most.
+    fn most_moved(&self) -> Option<&Frame> {
+        let frames = self.series.frames.iter();
+        frames.max_by(|a, b| a.motion().total_cmp(&b.motion()))
+    }
+
     /// Estimates the field of every frame, and compares the residuals of each with those of the one before. Frames
     /// that cannot be corrected are left out as by [`Self::leave_out`]; each is reported before it begins.
     ///
     /// # Errors
     /// As [`estimate`], with the frame in its message, where none can be.
-    pub fn estimate(&mut self, told: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
+    pub fn estimate(&mut self, watch: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
         let (mut compared, mut failed) = (ComparedFrames::default(), Vec::new());
         for frame in &self.series.frames {
-            told(frame);
+            watch(frame);
             match self.estimate_frame(frame) {
-                Ok(found) => drop(compared.push(frame, found)),
+                Ok(estimate) => drop(compared.push(frame, estimate)),
                 Err(fault) => failed.push((frame.number, fault)),
             }
         }
@@ -218,8 +225,7 @@ impl MarkerStudy {
     /// The first fault where no frame remains, or the mistake in the file that it follows from.
     pub fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
         if !failed.is_empty() && failed.len() == self.series.frames.len() {
-            let frames = self.series.frames.iter();
-            let most = frames.max_by(|a, b| a.motion().total_cmp(&b.motion()));
+            let most = self.most_moved();
             let mistake = most.and_then(|frame| self.mistake_without_solution(frame));
             return Err(mistake.map_or_else(
                 || failed.swap_remove(0).1,
@@ -229,13 +235,13 @@ impl MarkerStudy {
         let all = self.frame_numbers();
         let faults = failed.into_iter().flat_map(|(number, fault)| {
             self.series.frames.retain(|frame| frame.number != number);
-            faults(fault).map(move |(message, hint)| {
+            faults(fault).map(move |(message, remedy)| {
                 let named = format!("frame {number}: ");
                 let message = message.strip_prefix(&named).unwrap_or(&message);
-                OfFrame {
+                Finding {
                     frame: number,
                     message: format!("{message}; the frame is left out"),
-                    hint,
+                    remedy,
                 }
             })
         });
@@ -260,7 +266,7 @@ impl MarkerStudy {
             uncertain_law: UncertainLaw::of_card(&self.card),
             ..self.conditions.knowledge(frame.number, law)
         };
-        let found = match &self.coarse {
+        let estimate = match &self.coarse {
             None => self.weighted(&frame.markers, knowledge, &|knowledge| {
                 estimate(&specimen, &frame.markers, knowledge)
             }),
@@ -270,8 +276,8 @@ impl MarkerStudy {
                 transfer(&specimen, coarse, &field, &knowledge)
             }
         };
-        let found = found.map(|found| self.with_unknown_edge(found));
-        found.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
+        let estimate = estimate.map(|estimate| self.with_unknown_edge(estimate));
+        estimate.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bodies that hold the sheet: all sides with one name move and pull as one body, and share the reactions of the nodes where they meet.
 
-use crate::estimation::given::{EdgeCondition, Segment};
+use crate::estimation::input::{EdgeCondition, Segment};
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares, shared_rests};
 
@@ -120,7 +120,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::estimation::given::segments;
+    use crate::estimation::input::segments;
     use crate::mesh::CellShape;
 
     #[test]

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::DMatrix;
 
 use super::edge_displacements::{Combination, EdgeDisplacements};
-use crate::estimation::given::{EdgeCondition, Segment};
+use crate::estimation::input::{EdgeCondition, Segment};
 use crate::estimation::regression::Roughness;
 use crate::mesh::Mesh;
 use crate::statistics::{BSpline, Ends};

@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::body_force::BodyForce;
 use crate::error::Error;
-use crate::estimation::equations::{Equations, Place, solve};
-use crate::estimation::given::MeasuredForce;
+use crate::estimation::equations::{Equations, SearchState, solve};
+use crate::estimation::input::MeasuredForce;
 use crate::problem::corner_forces::Share;
 use crate::solve::Assembly;
 use crate::solve::vector::dot;
@@ -24,7 +24,10 @@ pub struct Linear {
 
 impl Equations<'_> {
     /// The equations and the observations about a place.
-    pub(in crate::estimation) fn linearise(&mut self, place: &Place) -> Result<Linear, Error> {
+    pub(in crate::estimation) fn linearise(
+        &mut self,
+        place: &SearchState,
+    ) -> Result<Linear, Error> {
         let (mesh, field) = (self.task.specimen.mesh, &place.field);
         let describe = |cell: usize| mesh.describe_cell(cell);
         let residual =
@@ -79,24 +82,24 @@ impl Equations<'_> {
         let mut rows = DMatrix::zeros(measured.len(), sensitivities.len());
         let mut values = DVector::zeros(measured.len());
         for (row, measured) in measured.iter().enumerate() {
-            let MeasuredForce {
-                edge,
-                axis,
-                force,
-                standard_deviation,
-                ..
-            } = measured;
-            let own = self.bodies.iter().filter(|body| body.name == *edge);
-            let shares: Vec<Share> = own.flat_map(|body| &body.shares[*axis]).copied().collect();
-            let grip = self.grip(&shares, *axis, field)?;
-            let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
-            values[row] = (force - there) / standard_deviation;
+            let grip = self.grip_of_edge(measured, field)?;
+            let force = dot(&grip.marks, residual) + dot(&grip.pull, still);
+            values[row] = (measured.force - force) / measured.standard_deviation;
             let slopes = grip.slopes(sensitivities, self.motion.parameters(), slopes);
             for (column, slope) in slopes.into_iter().enumerate() {
-                rows[(row, column)] = slope / standard_deviation;
+                rows[(row, column)] = slope / measured.standard_deviation;
             }
         }
         Ok((rows, values))
+    }
+
+    /// A measured force as a function of the field.
+    pub fn grip_of_edge(&self, measured: &MeasuredForce, field: &[f64]) -> Result<Grip, Error> {
+        let bodies = self.bodies.iter();
+        let bodies = bodies.filter(|body| body.name == measured.edge);
+        let shares = bodies.flat_map(|body| &body.shares[measured.axis]);
+        let shares: Vec<Share> = shares.copied().collect();
+        self.grip(&shares, measured.axis, field)
     }
 
     /// The force of some reactions along an axis as a function of the field.

@@ -6,11 +6,11 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::direction::{Direction, LOOSE, VAGUE, directions, inverse};
-use super::found::{Step, Told};
-use super::frame::{Judged, State};
+use super::estimate::{Step, Watch};
+use super::frame::{Frame, State};
 use crate::error::{Error, SolveFault};
 use crate::estimation::equations::solve;
-use crate::estimation::given::RegressedLaw;
+use crate::estimation::input::RegressedLaw;
 
 /// Steps allowed.
 const MOST_STEPS: usize = 40;
@@ -29,7 +29,7 @@ const SHORTEST: f64 = 1.0 / 64.0;
 
 /// All frames and the law.
 pub struct Descent<'a> {
-    pub frames: Vec<&'a Judged<'a>>,
+    pub frames: Vec<&'a Frame<'a>>,
     pub law: RegressedLaw,
     /// The scale of every parameter, once the determined combinations are known; before, it follows the search.
     scales: Option<Vec<f64>>,
@@ -59,13 +59,17 @@ impl Course {
     /// Σ Sₖ.
     pub fn information(&self) -> DMatrix<f64> {
         let count = self.values.len();
-        let own = self.states.iter().map(|state| &state.information);
-        own.fold(DMatrix::zeros(count, count), |sum, own| sum + own)
+        let states = self.states.iter();
+        states.fold(DMatrix::zeros(count, count), |sum, state| {
+            sum + &state.information
+        })
     }
 
     fn score(&self) -> Step {
-        let own = self.states.iter().map(|state| &state.score);
-        own.fold(DVector::zeros(self.values.len()), |sum, own| sum + own)
+        let states = self.states.iter();
+        states.fold(DVector::zeros(self.values.len()), |sum, state| {
+            sum + &state.score
+        })
     }
 
     /// The length √(δᵀ Σ Sₖ δ) of a step in standard errors.
@@ -87,7 +91,7 @@ impl<'a> Descent<'a> {
     }
 
     /// The search over frames, with a law that begins at its first values.
-    pub fn new(frames: Vec<&'a Judged<'a>>, law: &RegressedLaw) -> Self {
+    pub fn new(frames: Vec<&'a Frame<'a>>, law: &RegressedLaw) -> Self {
         Self {
             frames,
             law: law.clone(),
@@ -95,25 +99,24 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Finds the parameters, and their scales: first all that the data determine at all, then, where some
-    /// combinations are vague, the others alone, with the vague ones at their first values.
+    /// The parameters of the least misfit, and their scales: first of all combinations that the data determine at all, then, where some
+    /// are vague, of the others alone, with the vague ones at their first values.
     ///
     /// # Errors
     /// As [`Self::descend`].
-    pub fn find(&mut self, told: Told) -> Result<(Course, Vec<f64>), Error> {
+    pub fn run(&mut self, watch: Watch) -> Result<(Course, Vec<f64>), Error> {
         self.scale()?;
         let start = self.law.start();
-        let found = self.descend(Course::of_start(start.clone()), None, told);
-        let values = found.as_ref().map_or(&start, |found| &found.values);
-        let scales = self.scales_at(values);
+        let first = self.descend(Course::of_start(start.clone()), None, watch);
+        let scales = self.scales_at(first.as_ref().map_or(&start, |course| &course.values));
         self.scales = Some(scales.clone());
-        let states = match found {
-            Ok(found) => {
-                let all = directions(&found.information(), &scales);
-                if found.ended.is_some() || all.iter().all(Direction::is_determined) {
-                    return Ok((found, scales));
+        let states = match first {
+            Ok(course) => {
+                let all = directions(&course.information(), &scales);
+                if course.ended.is_some() || all.iter().all(Direction::is_determined) {
+                    return Ok((course, scales));
                 }
-                found.states
+                course.states
             }
             Err(_) => Vec::new(),
         };
@@ -121,7 +124,7 @@ impl<'a> Descent<'a> {
             states,
             ..Course::of_start(start)
         };
-        Ok((self.descend(begin, None, told)?, scales))
+        Ok((self.descend(begin, None, watch)?, scales))
     }
 
     /// Takes the initial stiffness from the measured forces, where the law can be scaled.
@@ -129,26 +132,24 @@ impl<'a> Descent<'a> {
     /// # Errors
     /// As the search of a frame.
     fn scale(&mut self) -> Result<(), Error> {
-        let start = self.law.start();
-        let found: Result<Vec<_>, Error> = self
-            .frames
-            .par_iter()
-            .map(|frame| frame.foreign(&self.law, &start, None))
-            .collect();
-        let found = found?;
-        let forces = self.frames.iter().zip(&found);
-        let forces = forces.flat_map(|(frame, found)| frame.measured().iter().zip(&found.forces));
-        let [product, square] = forces.fold([0.0; 2], |[product, square], (measured, there)| {
+        let frames = self.frames.par_iter();
+        let predicted = frames.map(|frame| frame.cross_predict(&self.law, None));
+        let predicted = predicted.collect::<Result<Vec<_>, Error>>()?;
+        let forces = self.frames.iter().zip(&predicted);
+        let forces = forces.flat_map(|(frame, own)| frame.measured().iter().zip(&own.forces));
+        let [product, square] = forces.fold([0.0; 2], |[product, square], (measured, force)| {
             let weight = measured.standard_deviation.powi(-2);
             [
-                product + weight * measured.force * there,
-                square + weight * there * there,
+                product + weight * measured.force * force,
+                square + weight * force * force,
             ]
         });
         let factor = product / square;
-        if factor > 0.0 && factor.is_finite() {
-            let scaled = self.law.with_stress_times(factor);
-            self.law = scaled.unwrap_or(self.law.clone());
+        if factor > 0.0
+            && factor.is_finite()
+            && let Some(scaled) = self.law.with_stress_times(factor)
+        {
+            self.law = scaled;
         }
         Ok(())
     }
@@ -157,7 +158,12 @@ impl<'a> Descent<'a> {
     ///
     /// # Errors
     /// As the search of a frame at the first values; [`SolveFault::Stalled`] when [`MOST_STEPS`] do not reach it.
-    pub fn descend(&self, from: Course, held: Option<usize>, told: Told) -> Result<Course, Error> {
+    pub fn descend(
+        &self,
+        from: Course,
+        held: Option<usize>,
+        watch: Watch,
+    ) -> Result<Course, Error> {
         let warm = !from.states.is_empty();
         let mut course = self.moved(&from, from.values.clone(), warm)?;
         let mut length = f64::NAN;
@@ -165,7 +171,7 @@ impl<'a> Descent<'a> {
             let settled = warm || step > JOINT_VARIANCE_STEPS;
             let change = self.step(&course, held);
             length = course.standard_errors(&change);
-            told(&format!(
+            watch(&format!(
                 "step {step}, change of {length:.1e} standard errors"
             ));
             if length <= CLOSE && settled {
@@ -188,20 +194,19 @@ impl<'a> Descent<'a> {
         }))
     }
 
-    /// The values on which all frames but some agree, beginning with those of all; `None` where no force remains.
+    /// The values on which all frames but some members agree, beginning with those of all; `None` where no force remains.
     ///
     /// # Errors
     /// As [`Self::descend`].
     pub fn without(
         &self,
         course: &Course,
-        left_out: &Range<usize>,
-        told: Told,
+        members: &Range<usize>,
+        watch: Watch,
     ) -> Result<Option<Vec<f64>>, Error> {
-        let stays = |index: &usize| !left_out.contains(index);
-        let others: Vec<usize> = (0..self.frames.len()).filter(stays).collect();
+        let others = || (0..self.frames.len()).filter(|index| !members.contains(index));
         let rest = Descent {
-            frames: others.iter().map(|index| self.frames[*index]).collect(),
+            frames: others().map(|index| self.frames[index]).collect(),
             law: self.law.clone(),
             scales: self.scales.clone(),
         };
@@ -210,27 +215,20 @@ impl<'a> Descent<'a> {
         }
         let from = Course {
             values: course.values.clone(),
-            states: others
-                .iter()
-                .map(|index| course.states[*index].clone())
-                .collect(),
+            states: others().map(|index| course.states[index].clone()).collect(),
             ..Course::of_start(Vec::new())
         };
-        let found = rest.descend(from, None, told)?;
-        Ok(Some(found.values))
+        Ok(Some(rest.descend(from, None, watch)?.values))
     }
 
     /// All frames at other values.
     fn moved(&self, course: &Course, values: Vec<f64>, settled: bool) -> Result<Course, Error> {
-        let states: Result<Vec<State>, Error> = self
-            .frames
-            .par_iter()
-            .enumerate()
-            .map(|(index, frame)| frame.at(&self.law, &values, course.states.get(index), settled))
-            .collect();
+        let law = self.law.beginning_at(&values);
+        let frames = self.frames.par_iter().enumerate();
+        let states = frames.map(|(index, frame)| frame.at(&law, course.states.get(index), settled));
         Ok(Course {
             values,
-            states: states?,
+            states: states.collect::<Result<Vec<State>, Error>>()?,
             steps: course.steps,
             ended: None,
         })

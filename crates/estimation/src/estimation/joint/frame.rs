@@ -1,42 +1,37 @@
 //! One frame among all, at given parameters of the law.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::found::{JointFrame, Step};
-use super::reduced::{Order, Ordered, Reduced};
-use crate::error::{Diagnostic, Error};
-use crate::estimation::equations::{Equations, Place};
+use super::estimate::{JointFrame, Step};
+use super::reduced::Reduced;
+use crate::error::Error;
+use crate::estimation::equations::{Equations, SearchState};
 use crate::estimation::free_edges;
-use crate::estimation::given::{
-    Edge, Knowledge, MeasuredForce, Observations, RegressedLaw, Segment, Specimen, Task, parts,
+use crate::estimation::input::{
+    Edge, Knowledge, MeasuredForce, Observations, RegressedLaw, Specimen, Task, observe,
 };
 use crate::estimation::judge::{Model, Rows, soundness};
-use crate::estimation::noise::with_own_noise;
-use crate::estimation::regression::{MarkerRows, VarianceComponents};
+use crate::estimation::noise::with_observed_noise;
+use crate::estimation::regression::{MarkerRows, NormalEquations, VarianceComponents};
 use crate::estimation::search::{MOST_STEPS, NearestField, VARIANCE_STEPS};
 use crate::estimation::uncertainty::MeshDifference;
 use crate::statistics::{CorrelatedNoise, Sites};
 
-/// The part of a frame that does not change with the law.
-pub struct FrameSetup<'a> {
-    frame: &'a JointFrame<'a>,
-    outline: Vec<Segment>,
+/// A frame whose free edges and noise are those that its markers show.
+pub struct Frame<'a> {
+    source: &'a JointFrame<'a>,
+    edges: Vec<Edge>,
     observations: Observations,
-}
-
-/// A frame whose edges are settled.
-pub struct Judged<'a> {
-    ground: &'a FrameSetup<'a>,
-    edges: Vec<Edge<'a>>,
-    observations: Observations,
+    /// The known conditions without the measured forces.
+    knowledge: Knowledge,
 }
 
 /// The state of a frame's search.
 #[derive(Clone)]
 pub struct State {
-    place: Place,
+    place: SearchState,
     variances: VarianceComponents,
     /// Sₖ.
     pub information: DMatrix<f64>,
@@ -66,105 +61,64 @@ pub struct FrameInformation {
     pub effective: f64,
     /// Number of independent values of its markers.
     pub independent: f64,
-    /// The residuals of its markers by their numbers.
-    left: HashMap<usize, [f64; 2]>,
+    /// The residuals of its trusted markers by their numbers.
+    residuals: BTreeMap<usize, [f64; 2]>,
 }
 
-/// A frame with the law of others.
+/// A frame with the law of other frames.
 pub struct CrossPrediction {
     /// The force of the field for each measured force, in N.
     pub forces: Vec<f64>,
     /// Root mean square of the components of the trusted markers' residuals in mm.
-    pub left: f64,
+    pub residual_rms: f64,
 }
 
-/// Results of the equations linearised about a field, with the law's parameters after all others.
-struct AboutField {
-    normal: Ordered,
+/// The equations linearised about a field, with the law's parameters among the unknowns.
+struct LawEquations {
+    normal: NormalEquations,
     /// The derivatives of the markers.
     design: DMatrix<f64>,
     /// The effect of the mesh's own error on the right-hand side.
     mesh: Option<DVector<f64>>,
     /// The effects on it of the common errors of forces, and of pictures.
     common: [DVector<f64>; 2],
+    reduced: Reduced,
 }
 
-impl<'a> FrameSetup<'a> {
+impl<'a> Frame<'a> {
+    /// The frame with the free edges and the noise that its markers show with the law's first values.
+    ///
     /// # Errors
     /// As [`crate::estimation::estimate`].
-    pub fn new(frame: &'a JointFrame<'a>) -> Result<Self, Error> {
-        let input = |fault: Diagnostic| Error::Input(vec![fault]);
-        let knowledge = &frame.knowledge;
-        knowledge.check().map_err(input)?;
-        Ok(Self {
-            outline: parts(frame.mesh, &knowledge.edges).map_err(input)?,
-            observations: Observations::new(frame.mesh, frame.markers, knowledge.noise)
-                .map_err(input)?,
-            frame,
-        })
-    }
-
-    /// The frame with the edges that the data have chosen where that is open, and with noise that they do not contradict.
-    pub fn judged(&'a self, law: &RegressedLaw) -> Result<Judged<'a>, Error> {
-        let specimen = self.specimen(law, &law.start());
-        let knowledge = self.knowledge(None, false);
-        let mut observations = self.observations.clone();
-        let edges = self.outline.iter();
-        let first: Vec<_> = edges
-            .map(|segment| Edge::new(segment, &self.frame.knowledge))
-            .collect();
+    pub fn new(source: &'a JointFrame<'a>, law: &RegressedLaw) -> Result<Self, Error> {
+        let (first, mut observations) = observe(source.mesh, source.markers, &source.knowledge)?;
+        let knowledge = Knowledge {
+            law: None,
+            forces: Vec::new(),
+            ..source.knowledge.clone()
+        };
         let search = |observations: &Observations| {
             let task = Task {
-                specimen: &specimen,
+                specimen: specimen(source, law),
                 observations,
                 knowledge: &knowledge,
             };
-            let (found, edges) = free_edges::search(&task, first.clone())?;
-            let other = found.other_noise(&found.markers(), &edges);
-            let settled = edges
-                .iter()
-                .map(|edge| (edge.condition, edge.probability, edge.of_body));
-            Ok((settled.collect::<Vec<_>>(), other))
+            let (nearest, edges) = free_edges::search(&task, first.clone())?;
+            let other = nearest.other_noise(&nearest.markers(), &edges);
+            Ok((edges, other))
         };
-        let (settled, _) = with_own_noise(&mut observations, search)?;
-        let edges = first.into_iter().zip(settled);
-        Ok(Judged {
-            ground: self,
-            edges: edges
-                .map(|(edge, (condition, probability, of_body))| Edge {
-                    condition,
-                    probability,
-                    of_body,
-                    tested: false,
-                    ..edge
-                })
-                .collect(),
+        let (edges, _) = with_observed_noise(&mut observations, search)?;
+        Ok(Self {
+            source,
+            edges,
             observations,
+            knowledge,
         })
     }
 
-    fn specimen(&self, law: &RegressedLaw, values: &[f64]) -> Specimen<'a> {
-        Specimen {
-            mesh: self.frame.mesh,
-            law: law.at(values),
-            thickness: self.frame.thickness,
-        }
-    }
-
-    fn knowledge(&self, law: Option<RegressedLaw>, forces: bool) -> Knowledge {
-        let mut knowledge = self.frame.knowledge.clone();
-        knowledge.law = law;
-        if !forces {
-            knowledge.forces.clear();
-        }
-        knowledge
-    }
-}
-
-impl Judged<'_> {
     /// The measured forces.
     pub fn measured(&self) -> &[MeasuredForce] {
-        &self.ground.frame.knowledge.forces
+        &self.source.knowledge.forces
     }
 
     /// Whether the noise is stated and not contradicted.
@@ -172,229 +126,225 @@ impl Judged<'_> {
         self.observations.known_noise
     }
 
-    /// The frame's field at values of the law's parameters, from a state or from the start; the variances are fixed where `settled`.
+    /// The frame at the law's first values, from a state or from the start; the variances are fixed where `settled`.
     ///
     /// # Errors
     /// As the search.
     pub fn at(
         &self,
         law: &RegressedLaw,
-        values: &[f64],
         from: Option<&State>,
         settled: bool,
     ) -> Result<State, Error> {
-        self.with_field(law, values, from, settled, |found| {
-            let (place, variances) = (place(&found), found.variances.clone());
-            let equations = self.law_equations(found, law, values, None)?.normal;
-            let reduced = Reduced::new(&equations, values.len())?;
-            Ok(State {
-                information: reduced.information,
-                score: reduced.score,
-                misfit: reduced.misfit,
-                place,
-                variances,
-            })
+        let nearest = self.nearest(law, from, settled)?;
+        let (place, variances) = (nearest.place(), nearest.variances.clone());
+        let Reduced {
+            information,
+            score,
+            misfit,
+            ..
+        } = self.law_equations(nearest, law, None)?.reduced;
+        Ok(State {
+            information,
+            score,
+            misfit,
+            place,
+            variances,
         })
     }
 
-    /// The information of the frame at the end.
+    /// The information of the frame at the law's first values.
     ///
     /// # Errors
     /// As the search.
-    pub fn say(
-        &self,
-        law: &RegressedLaw,
-        values: &[f64],
-        from: &State,
-    ) -> Result<FrameInformation, Error> {
-        self.with_field(law, values, Some(from), true, |found| {
-            let left = self.left(&found);
-            let observations = found.observations();
-            let sound = soundness(&observations.weights, &found.fit, &found.variances);
-            let rows = Rows::new(&found, &sound, None);
-            let noise = rows
-                .as_ref()
-                .and_then(|rows| Model::of_search(rows, &found).noises(rows).first().copied());
-            let markers = observations.chosen.len() as f64;
-            let sites = Sites::new(observations.places.clone());
-            let independent = 2.0
-                * noise.map_or(markers, |noise: CorrelatedNoise| {
-                    noise.correlation.independent(sites.places())
-                });
-            let variance: f64 = found.variances.variance;
-            let markers_deviance = if observations.known_noise {
-                found.misfit(&found) * independent / (2.0 * markers)
-            } else {
-                independent * variance.ln()
-            };
-            let (effective, variances) = (found.fit.effective, found.variances.clone());
-            let difference = found.mesh_difference(&self.edges);
-            let about = self.law_equations(found, law, values, difference.as_ref())?;
-            let equations = about.normal;
-            let reduced = Reduced::new(&equations, values.len())?;
-            let forces = reduced.force_misfit;
-            let rows = MarkerRows {
-                design: &about.design,
-                weights: &self.observations.weights,
-                variances: &variances,
-            };
-            let white = rows.information();
-            let of_markers = noise.map_or(white.clone(), |noise| rows.spread(&noise, &sites));
-            let spread = &equations.matrix - white + &of_markers;
-            Ok(FrameInformation {
-                spread: reduced.project(&spread),
-                spread_of_markers: reduced.project(&of_markers),
-                mesh: about.mesh.map(|target| reduced.score_of(&target)),
-                common: about.common.map(|target| reduced.score_of(&target)),
-                force_misfit: forces,
-                information: reduced.information,
-                deviance: markers_deviance + forces,
-                effective,
-                independent,
-                left,
-            })
+    pub fn information(&self, law: &RegressedLaw, from: &State) -> Result<FrameInformation, Error> {
+        let nearest = self.nearest(law, Some(from), true)?;
+        let observations = &self.observations;
+        let sites = Sites::new(observations.places.clone());
+        let noise = correlated_noise(&nearest);
+        let markers = observations.chosen.len() as f64;
+        let independent = 2.0
+            * noise.map_or(markers, |noise| {
+                noise.correlation.independent(sites.places())
+            });
+        let markers_deviance = if observations.known_noise {
+            nearest.misfit(&nearest) * independent / (2.0 * markers)
+        } else {
+            independent * nearest.variances.variance.ln()
+        };
+        let (effective, residuals) = (nearest.fit.effective, self.residuals(&nearest));
+        let variances = nearest.variances.clone();
+        let difference = nearest.mesh_difference(&self.edges);
+        let about = self.law_equations(nearest, law, difference.as_ref())?;
+        let reduced = about.reduced;
+        let rows = MarkerRows {
+            design: &about.design,
+            weights: &observations.weights,
+            variances: &variances,
+        };
+        let white = rows.information();
+        let of_markers = noise.map_or(white.clone(), |noise| rows.spread(&noise, &sites));
+        let spread = &about.normal.matrix - white + &of_markers;
+        Ok(FrameInformation {
+            spread: reduced.project(&spread),
+            spread_of_markers: reduced.project(&of_markers),
+            mesh: about.mesh.map(|target| &reduced.projection * target),
+            common: about.common.map(|target| &reduced.projection * target),
+            force_misfit: reduced.force_misfit,
+            deviance: markers_deviance + reduced.force_misfit,
+            information: reduced.information,
+            effective,
+            independent,
+            residuals,
         })
     }
 
-    /// The frame with the law of others: its measured forces beside those of its field, which does not include them.
+    /// The forces and residuals of the field with a law, which does not include the measured forces.
     ///
     /// # Errors
     /// As the search.
-    pub fn foreign(
+    pub fn cross_predict(
         &self,
         law: &RegressedLaw,
-        values: &[f64],
         from: Option<&State>,
     ) -> Result<CrossPrediction, Error> {
-        self.with_field(law, values, from, false, |found| {
-            let forces = found.forces(1.0, None, &[])?;
-            let prediction = |measured: &MeasuredForce| {
-                let own = forces.iter().filter(|force| force.edge == measured.edge);
-                own.map(|force| force.force[measured.axis].value).sum()
-            };
-            let trusted = found.variances.trust.iter().sum::<f64>().max(1.0);
-            let rows = found.fit.residual.as_slice().chunks_exact(2);
-            let square: f64 = rows
-                .zip(&found.variances.trust)
-                .map(|(r, trust)| trust * (r[0] * r[0] + r[1] * r[1]))
-                .sum();
-            Ok(CrossPrediction {
-                forces: self.measured().iter().map(prediction).collect(),
-                left: (square / (2.0 * trusted)).sqrt(),
-            })
+        let nearest = self.nearest(law, from, false)?;
+        let forces = nearest.forces(1.0, None, &[])?;
+        let predicted = |measured: &MeasuredForce| {
+            let of_edge = forces.iter().filter(|force| force.edge == measured.edge);
+            of_edge.map(|force| force.force[measured.axis].value).sum()
+        };
+        let trust = &nearest.variances.trust;
+        let trusted = trust.iter().sum::<f64>().max(1.0);
+        let rows = nearest.fit.residual.as_slice().chunks_exact(2).zip(trust);
+        let square: f64 = rows
+            .map(|(r, trust)| trust * (r[0] * r[0] + r[1] * r[1]))
+            .sum();
+        Ok(CrossPrediction {
+            forces: self.measured().iter().map(predicted).collect(),
+            residual_rms: (square / (2.0 * trusted)).sqrt(),
         })
     }
 
-    /// Calls a function with the nearest field at given values, which does not include the forces: their information on the law
-    /// follows from the equations linearised about the field, so that a wrong force or thickness bends no edge.
-    fn with_field<T>(
+    /// The nearest field at the law's first values, which does not include the forces: their information on the law follows from the
+    /// equations linearised about the field, so that a wrong force or thickness bends no edge.
+    fn nearest(
         &self,
         law: &RegressedLaw,
-        values: &[f64],
         from: Option<&State>,
         settled: bool,
-        work: impl FnOnce(NearestField) -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        let specimen = self.ground.specimen(law, values);
+    ) -> Result<NearestField<'_>, Error> {
         let task = Task {
-            specimen: &specimen,
+            specimen: specimen(self.source, law),
             observations: &self.observations,
-            knowledge: &self.ground.knowledge(None, false),
+            knowledge: &self.knowledge,
         };
         let search = Equations::new(&task, &self.edges)?;
-        let found = match from {
-            None => search.run(MOST_STEPS)?,
-            Some(state) => {
-                let adjusting = if settled { 0 } else { VARIANCE_STEPS };
-                let variances = state.variances.clone();
-                search.run_from(state.place.clone(), variances, adjusting, MOST_STEPS)?
-            }
+        let Some(State {
+            place, variances, ..
+        }) = from
+        else {
+            return search.run(MOST_STEPS);
         };
-        work(found)
+        let adjusting = if settled { 0 } else { VARIANCE_STEPS };
+        search.run_from(place.clone(), variances.clone(), adjusting, MOST_STEPS)
     }
 
-    /// The equations about a field with the law's parameters among the unknowns.
+    /// The equations about a field, and what the law's parameters have of them.
     fn law_equations(
         &self,
-        found: NearestField,
+        nearest: NearestField,
         law: &RegressedLaw,
-        values: &[f64],
         difference: Option<&MeshDifference>,
-    ) -> Result<AboutField, Error> {
-        let knowledge = self.ground.knowledge(Some(law.beginning_at(values)), true);
-        let mut place = place(&found);
+    ) -> Result<LawEquations, Error> {
+        let knowledge = Knowledge {
+            law: Some(law.clone()),
+            ..self.source.knowledge.clone()
+        };
+        let mut place = nearest.place();
         let NearestField {
             mut equations,
             variances,
             ..
-        } = found;
+        } = nearest;
         equations.task.knowledge = &knowledge;
+        let values = law.start();
         let first = equations.motion.parameters();
-        let of_law = values.iter().copied();
-        place.parameters.splice(first..first, of_law);
+        let of_law = first..first + values.len();
+        place.parameters.splice(first..first, values);
         let linear = equations.linearise(&place)?;
-        let normal = equations.with_regression(&place, true, &linear, |regression| {
-            regression.equations(&variances)
-        });
-        let order = Order {
-            first,
-            law: values.len(),
-            all: linear.design.ncols(),
-        };
-        let target = difference.map(|own| equations.mesh_target(own, &linear, &variances));
-        let force_rows = knowledge.measured_forces().iter();
-        let off = force_rows.map(|own| own.common_deviation * own.force / own.standard_deviation);
-        let (of_forces, _) = &linear.force_rows;
-        let off = of_forces.tr_mul(&DVector::from_vec(off.collect()));
+        let regression = equations.regression(&place, true, &linear);
+        let normal = regression.equations(&variances);
+        let gain = knowledge.measured_forces().iter();
+        let gain = gain.map(|one| one.common_deviation * one.force / one.standard_deviation);
+        let gain = linear
+            .force_rows
+            .0
+            .tr_mul(&DVector::from_vec(gain.collect()));
         let magnified = equations.magnified(&place.field);
         let magnified = equations.target_of(&magnified, &linear, &variances);
-        let common = [off, magnified * -knowledge.scale_deviation];
-        Ok(AboutField {
-            design: order.columns(&linear.design),
-            normal: order.of(normal),
-            mesh: target.map(|target| order.rows(&target)),
-            common: common.map(|target| order.rows(&target)),
+        Ok(LawEquations {
+            reduced: Reduced::new(&normal, of_law)?,
+            normal,
+            mesh: difference.map(|one| equations.mesh_target(one, &linear, &variances)),
+            common: [gain, magnified * -knowledge.scale_deviation],
+            design: linear.design,
         })
     }
 
     /// The residuals of the trusted markers, by their numbers.
-    fn left(&self, found: &NearestField) -> HashMap<usize, [f64; 2]> {
+    fn residuals(&self, nearest: &NearestField) -> BTreeMap<usize, [f64; 2]> {
         const TRUSTED: f64 = 0.5;
-        let rows = found.fit.residual.as_slice().chunks_exact(2);
-        let all = self
-            .observations
-            .chosen
-            .iter()
-            .zip(rows)
-            .zip(&found.variances.trust);
-        let trusted = all.filter(|(_, trust)| **trust >= TRUSTED);
+        let rows = nearest.fit.residual.as_slice().chunks_exact(2);
+        let all = self.observations.chosen.iter().zip(rows);
+        let trusted = all
+            .zip(&nearest.variances.trust)
+            .filter(|(_, trust)| **trust >= TRUSTED);
         trusted
-            .map(|((index, r), _)| (self.ground.frame.markers[*index].number, [r[0], r[1]]))
+            .map(|((index, r), _)| (self.source.markers[*index].number, [r[0], r[1]]))
             .collect()
     }
 }
 
-fn place(found: &NearestField) -> Place {
-    Place {
-        parameters: found.parameters.clone(),
-        field: found.field.clone(),
+fn specimen<'a>(frame: &JointFrame<'a>, law: &RegressedLaw) -> Specimen<'a> {
+    Specimen {
+        mesh: frame.mesh,
+        law: law.at(&law.start()),
+        thickness: frame.thickness,
     }
 }
 
-/// The mean correlation of what is left of the same markers in one frame and the next one of the same specimen; zero where there is
+/// The likeliest correlation of the noise of a field's markers, where they show one.
+fn correlated_noise(nearest: &NearestField) -> Option<CorrelatedNoise> {
+    let weights = &nearest.observations().weights;
+    let sound = soundness(weights, &nearest.fit, &nearest.variances);
+    let rows = Rows::new(nearest, &sound, None)?;
+    let noises = Model::of_search(&rows, nearest).noises(&rows);
+    noises.first().copied()
+}
+
+/// The mean correlation of the residuals of the same markers in one frame and the next one of the same specimen; zero where there is
 /// none, or frames differ in their markers.
-pub fn common_noise(frames: &[&Judged], says: &[FrameInformation]) -> f64 {
-    let pairs = frames.windows(2).zip(says.windows(2));
-    let same = pairs.filter(|(frames, _)| {
-        std::ptr::eq(frames[0].ground.frame.mesh, frames[1].ground.frame.mesh)
-    });
-    let [product, size] = same.fold([0.0; 2], |[product, size], (_, says)| {
-        let left = says[0].left.iter();
-        let found = left.filter_map(|(number, a)| Some((*a, *says[1].left.get(number)?)));
-        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
-        found.fold([product, size], |[product, size], (a, b)| {
-            [product + dot(a, b), size + 0.5 * (dot(a, a) + dot(b, b))]
-        })
+pub fn common_noise(frames: &[&Frame], parts: &[FrameInformation]) -> f64 {
+    let pairs = frames.windows(2).zip(parts.windows(2));
+    let same = pairs.filter(|(pair, _)| std::ptr::eq(pair[0].source.mesh, pair[1].source.mesh));
+    let [product, size] = same.fold([0.0; 2], |[product, size], (_, parts)| {
+        let [ab, aa, bb] = residual_products(&parts[0].residuals, &parts[1].residuals);
+        [product + ab, size + 0.5 * (aa + bb)]
     });
     (product / size.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+}
+
+/// Σ a·b, Σ a·a and Σ b·b of the residuals of markers that two frames have in common.
+pub fn residual_products(
+    before: &BTreeMap<usize, [f64; 2]>,
+    after: &BTreeMap<usize, [f64; 2]>,
+) -> [f64; 3] {
+    let pairs = after
+        .iter()
+        .filter_map(|(number, b)| Some((before.get(number)?, b)));
+    pairs.fold([0.0; 3], |[ab, aa, bb], (a, b)| {
+        let dot = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1];
+        [ab + dot(a, b), aa + dot(a, a), bb + dot(b, b)]
+    })
 }

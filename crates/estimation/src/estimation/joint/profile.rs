@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::descent::{Course, Descent};
 use super::direction::Direction;
-use super::found::Step;
+use super::estimate::Step;
 use crate::statistics::Estimate;
 
 /// How near the likelihood at an end has to be: part of the reach.

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::error::Error;
 use crate::estimation::equations::nodal_areas;
-use crate::estimation::given::Edge;
+use crate::estimation::input::Edge;
 use crate::estimation::outcome::Alternative;
 use crate::estimation::search::NearestField;
 use crate::estimation::uncertainty::MeshError;

@@ -130,7 +130,7 @@ impl Model {
     }
 
     /// The residuals of the markers in mm, after an ordinary regression.
-    pub fn plain_left(&self, rows: &Rows, found: &NearestField) -> f64 {
+    pub fn residual_rms(&self, rows: &Rows, found: &NearestField) -> f64 {
         let white = WhiteRegression::new(&self.design, &self.residual, None);
         let left = white.left(&self.held, &self.slope, 1.0);
         let count = 2.0 * rows.chosen.len() as f64;
@@ -206,7 +206,7 @@ impl Trial {
     fn nothing(alternative: Alternative) -> Self {
         Self {
             alternative,
-            left: f64::NAN,
+            residual_rms: f64::NAN,
             probability: 1.0,
             gain: 0.0,
         }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::verdict::{Answer, Verdict};
-use crate::estimation::given::{EdgeCondition, MeasuredForce};
+use crate::estimation::input::{EdgeCondition, MeasuredForce};
 use crate::estimation::regression::Robust;
 use crate::estimation::uncertainty::ScaleChange;
 use crate::mesh::Mesh;
@@ -94,7 +94,7 @@ pub struct ForceCheck {
     /// The measured force.
     pub measured: MeasuredForce,
     /// The force of the field in N.
-    pub found: f64,
+    pub estimated: f64,
     /// The difference in units of its own standard deviation, √(σ² − s² + e²), or √(σ² + s² + e²) where the field does not
     /// include the measured force: σ for the measured force, s for that of the field due to noise, e due to the mesh.
     pub standardised: f64,

@@ -210,7 +210,7 @@ pub struct Trial {
     /// The alternative.
     pub alternative: Alternative,
     /// Root mean square of each component of the markers' residuals that would remain, in mm.
-    pub left: f64,
+    pub residual_rms: f64,
     /// The probability that noise alone makes the misfit fall so much.
     pub probability: f64,
     /// The reduction of the misfit in units of the noise's variance, less twice the number of its parameters.

@@ -43,7 +43,7 @@ pub struct Regression<'a> {
     /// A, two rows per marker.
     pub design: &'a DMatrix<f64>,
     /// r in mm.
-    pub residual: &'a DVector<f64>,
+    pub residual: DVector<f64>,
     /// Weights of the markers; 1/variance in 1/mm² where the noise is known.
     pub weights: &'a [f64],
     /// Whether the noise is known: v is 1.
@@ -51,7 +51,7 @@ pub struct Regression<'a> {
     /// G and g.
     pub force_rows: (&'a DMatrix<f64>, &'a DVector<f64>),
     /// The priors.
-    pub priors: &'a [Roughness],
+    pub priors: Vec<Roughness>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
     /// Whether the variances are fixed.
@@ -167,7 +167,7 @@ impl Regression<'_> {
             column.component_mul_assign(&weights);
         }
         let weighted = weighted.transpose();
-        (&weighted * self.design, weighted * self.residual)
+        (&weighted * self.design, weighted * &self.residual)
     }
 
     /// λ with which each prior has the weight of the data.
@@ -182,7 +182,7 @@ impl Regression<'_> {
     pub fn equations(&self, variances: &VarianceComponents) -> NormalEquations {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
         let (matrix, target, _) = self.system(&self.normal(variances), &forms, variances);
-        let data = weighted_square(self.residual, self.weights, &variances.trust);
+        let data = weighted_square(&self.residual, self.weights, &variances.trust);
         let rough = self.priors.iter().zip(&variances.smoothing);
         let rough = rough.map(|(prior, smoothing)| {
             let square: f64 = prior.values.iter().map(|value| value * value).sum();
@@ -228,7 +228,7 @@ impl Regression<'_> {
         };
         let priors = forms.iter().zip(&variances.smoothing);
         Ok(Fit {
-            residual: self.residual - self.design * &step,
+            residual: &self.residual - self.design * &step,
             effective: normal.dot(&covariance) / variances.variance,
             freedom: priors.map(left).collect(),
             length: step.dot(&target).max(0.0).sqrt(),

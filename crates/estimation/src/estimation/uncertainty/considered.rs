@@ -19,9 +19,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
 use crate::estimation::equations::solve;
-use crate::estimation::given::Edge;
+use crate::estimation::input::Edge;
 use crate::estimation::search::NearestField;
-use crate::problem::corner_forces::Share;
 use crate::solve::vector::dot;
 
 /// Parameters that are considered: those of the law, then the distances of edges.
@@ -80,13 +79,7 @@ impl NearestField<'_> {
         let mut target = equations.target_of(&at_markers, &self.linear, &self.variances);
         let measured = equations.task.knowledge.measured_forces().iter();
         for (row, measured) in measured.enumerate() {
-            let own = equations.bodies.iter();
-            let own = own.filter(|body| body.name == measured.edge);
-            let shares: Vec<Share> = own
-                .flat_map(|body| &body.shares[measured.axis])
-                .copied()
-                .collect();
-            let grip = equations.grip(&shares, measured.axis, &self.field)?;
+            let grip = equations.grip_of_edge(measured, &self.field)?;
             let off = dot(&grip.pull, change) + dot(&grip.marks, force);
             let slopes = self.linear.force_rows.0.row(row).transpose();
             target -= slopes * (off / measured.standard_deviation);
@@ -114,10 +107,7 @@ impl NearestField<'_> {
             let slopes = DVector::from_fn(own, slope);
             Ok(slopes.dot(&(squares * &slopes)).max(0.0).sqrt())
         };
-        let bodies = 0..self.equations.bodies.len();
-        bodies
-            .map(|body| Ok([along(body, 0)?, along(body, 1)?]))
-            .collect()
+        self.by_body(along)
     }
 
     /// Appends the parameters to those of the field.

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::estimation::edges::Body;
 use crate::estimation::equations::{BodyForce, Equations, Linear};
-use crate::estimation::given::{Edge, EdgeCondition};
+use crate::estimation::input::{Edge, EdgeCondition};
 use crate::estimation::regression::VarianceComponents;
 use crate::estimation::search::NearestField;
 use crate::mesh::Mesh;

@@ -66,10 +66,8 @@ impl NearestField<'_> {
             let (_, row) = self.grip_of(body, axis, &slopes)?;
             Ok(dot(&row, answer.as_slice()))
         };
-        let bodies = 0..self.equations.bodies.len();
-        let forces = bodies.map(|body| Ok([along(body, 0)?, along(body, 1)?]));
         Ok(ScaleChange {
-            forces: forces.collect::<Result<_, Error>>()?,
+            forces: self.by_body(along)?,
         })
     }
 

@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::estimation::given::Edge;
+use crate::estimation::input::Edge;
 use crate::estimation::search::NearestField;
 
 impl NearestField<'_> {

@@ -1,12 +1,12 @@
-//! Whether what is left of the markers is alike from frame to frame, as a misfit is and the noise of single pictures is not.
+//! Whether the residuals of the markers are alike from frame to frame, as a misfit is and the noise of single pictures is not.
 //!
 //! The noise of the picture at rest is common to all frames: where it is as large as that of the others, what is left of two
 //! frames correlates by ½. A correlation beyond 0.8 would take a picture at rest with twice their noise; beside a frame that is
 //! known to be not explained, ½ is enough to say that the misfit is the same.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
-use crate::estimation::{Answer, FieldEstimate, MarkerEstimate, Reason};
+use crate::estimation::{Answer, FieldEstimate, Reason, residual_products};
 use crate::markers::Frame;
 use crate::statistics::normal_tail;
 
@@ -71,11 +71,8 @@ fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
     }
     for estimate in estimates {
         let verdict = &mut estimate.verdict;
-        let told = verdict
-            .reasons
-            .iter()
-            .any(|reason| matches!(reason, Reason::Alike(_)));
-        if !told {
+        let mut reasons = verdict.reasons.iter();
+        if !reasons.any(|reason| matches!(reason, Reason::Alike(_))) {
             verdict.reasons.push(Reason::Alike(correlation));
         }
         verdict.answer = Answer::NotExplained;
@@ -92,27 +89,23 @@ fn probability(correlation: f64, common: f64, pairs: f64) -> f64 {
     0.5 * normal_tail(excess * (pairs - 3.0).sqrt())
 }
 
-/// The correlation of what is left of the markers that are sound in both frames; zero where there is nothing.
+/// The correlation of the residuals of the markers that are sound in both frames; zero where there is none.
 fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)) -> f64 {
-    let left: HashMap<usize, [f64; 2]> = sound(before).collect();
-    let pairs = sound(after).filter_map(|(number, b)| Some((*left.get(&number)?, b)));
-    let [product, of_a, of_b] = pairs.fold([0.0; 3], |[product, of_a, of_b], (a, b)| {
-        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
-        [product + dot(a, b), of_a + dot(a, a), of_b + dot(b, b)]
-    });
-    if of_a * of_b > 0.0 {
-        product / (of_a * of_b).sqrt()
+    let [ab, aa, bb] = residual_products(&sound(before), &sound(after));
+    if aa * bb > 0.0 {
+        ab / (aa * bb).sqrt()
     } else {
         0.0
     }
 }
 
-fn sound<'a>(
-    (frame, found): (&'a Frame, &'a FieldEstimate),
-) -> impl Iterator<Item = (usize, [f64; 2])> + 'a {
-    let known = |marker: &MarkerEstimate| (!marker.outlier).then_some(marker.residual);
-    let markers = frame.markers.iter().zip(&found.markers);
-    markers.filter_map(move |(marker, left)| Some((marker.number, left.as_ref().and_then(known)?)))
+fn sound((frame, estimate): (&Frame, &FieldEstimate)) -> BTreeMap<usize, [f64; 2]> {
+    let markers = frame.markers.iter().zip(&estimate.markers);
+    let sound = markers.filter_map(|(marker, own)| {
+        let own = own.filter(|own| !own.outlier)?;
+        Some((marker.number, own.residual))
+    });
+    sound.collect()
 }
 
 #[cfg(test)]
@@ -122,7 +115,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
-    use crate::estimation::{NoiseCorrelation, Verdict};
+    use crate::estimation::{MarkerEstimate, NoiseCorrelation, Verdict};
     use crate::markers::Marker;
 
     const MARKERS: usize = 40;

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use super::area::Area;
 use super::machine::{self, ForceColumn, FrameForces};
-use super::specimen_file::{self, SpecimenFile};
+use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::estimation::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
-use crate::markers::{Frame, MarkerSeries};
+use crate::markers::MarkerSeries;
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::studies::sections;
@@ -72,19 +72,12 @@ pub fn measured_force(
     }
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    Free,
-    Known,
-    Rigid,
-    Unknown,
-}
-
-const KINDS: [(&str, Kind); 4] = [
-    ("free", Kind::Free),
-    ("known", Kind::Known),
-    ("rigid", Kind::Rigid),
-    ("unknown", Kind::Unknown),
+/// The conditions of edges by their names; the displacements of a known one follow.
+const CONDITIONS: [(&str, EdgeCondition); 4] = [
+    ("free", EdgeCondition::Free),
+    ("known", EdgeCondition::Known([None; 2])),
+    ("rigid", EdgeCondition::Rigid),
+    ("unknown", EdgeCondition::Unknown),
 ];
 
 impl Conditions {
@@ -130,10 +123,11 @@ impl Conditions {
                 faults.push(fault.hint("name it once"));
             }
         }
-        if !faults.is_empty() {
-            return Err(Error::Input(faults));
+        if faults.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::Input(faults))
         }
-        Ok(())
     }
 
     /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.
@@ -153,33 +147,31 @@ impl Conditions {
     /// # Errors
     /// [`Error::Input`] with the first force that belongs to no frame.
     fn check_frames(&self, series: &MarkerSeries) -> Result<(), Error> {
-        let frames = &series.frames;
-        let numbers = || frames.iter().map(|frame| frame.number);
-        for (frame, force) in &self.forces {
-            let known = match frame {
-                None => frames.len() == 1,
-                Some(number) => numbers().any(|known| known == *number),
-            };
-            if !known {
-                let all: Vec<_> = numbers().map(|number| number.to_string()).collect();
-                let (edge, last) = (&force.edge, all.last().cloned().unwrap_or_default());
-                let fault = match frame {
-                    None => format!(
-                        "there are {} frames, but the force on `{edge}` does not state in which it was measured",
-                        all.len()
-                    ),
-                    Some(number) => format!(
-                        "there is no frame {number}, in which the force on `{edge}` is stated to be measured"
-                    ),
-                };
-                let hint = format!(
-                    "state it in the file of --study, with `frame = {last}` under [[force]], or correct one frame alone; frames: {}",
-                    all.join(", ")
-                );
-                return Err(Error::input(fault, hint));
-            }
-        }
-        Ok(())
+        let numbers: Vec<usize> = series.frames.iter().map(|frame| frame.number).collect();
+        let belongs = |frame: &Option<usize>| match frame {
+            None => numbers.len() == 1,
+            Some(number) => numbers.contains(number),
+        };
+        let Some((frame, force)) = self.forces.iter().find(|(frame, _)| !belongs(frame)) else {
+            return Ok(());
+        };
+        let edge = &force.edge;
+        let fault = match frame {
+            None => format!(
+                "there are {} frames, but the force on `{edge}` does not state in which it was measured",
+                numbers.len()
+            ),
+            Some(number) => format!(
+                "there is no frame {number}, in which the force on `{edge}` is stated to be measured"
+            ),
+        };
+        let all: Vec<String> = numbers.iter().map(usize::to_string).collect();
+        let hint = format!(
+            "state it in the file of --study, with `frame = {}` under [[force]], or correct one frame alone; frames: {}",
+            all.last().map_or("", String::as_str),
+            all.join(", ")
+        );
+        Err(Error::input(fault, hint))
     }
 
     /// Takes the forces of a testing machine's table; returns what deserves attention.
@@ -208,17 +200,25 @@ impl Conditions {
         }
     }
 
-    /// Every measured force with its frame.
-    pub fn forces_with_frames<'a>(
-        &'a self,
-        series: &'a MarkerSeries,
-    ) -> impl Iterator<Item = (&'a MeasuredForce, &'a Frame)> {
-        let forces = self.forces.iter();
-        forces.filter_map(|(number, force)| {
-            let mut frames = series.frames.iter();
-            let frame = frames.find(|frame| number.is_none_or(|number| number == frame.number))?;
-            Some((force, frame))
-        })
+    /// A warning about known conditions of measurements, where the field is a computed one.
+    pub(super) fn ignored_for_computed_fields(&self) -> Option<Diagnostic> {
+        let stated = [
+            ("noise", self.noise.is_some()),
+            ("robust", self.robust.is_some()),
+            ("scale_error", self.scale_deviation > 0.0),
+            ("edge_gap", self.edge_gap.is_some()),
+            ("physics", self.physics != Physics::default()),
+            ("force", !self.forces.is_empty()),
+            ("fit", !self.fit.is_empty()),
+        ];
+        let stated = stated.iter().filter(|(_, is_stated)| *is_stated);
+        let stated: Vec<&str> = stated.map(|(key, _)| *key).collect();
+        let message = format!(
+            "a field that is transferred from its own mesh to another one is treated as computed, without noise; ignored: {}",
+            stated.join(", ")
+        );
+        let hint = "give a measured field as a table of its markers: x, y, ux, uy";
+        (!stated.is_empty()).then(|| Diagnostic::warning("", message).hint(hint))
     }
 
     /// The law with parameters to be found, if there are any.
@@ -235,9 +235,9 @@ impl Conditions {
 
     /// What the estimate of a frame takes; a law is regressed in frames with a force.
     pub fn knowledge(&self, frame: usize, law: Option<&RegressedLaw>) -> Knowledge {
-        let own = self.forces.iter();
-        let own = own.filter(|(of, _)| of.is_none_or(|number| number == frame));
-        let forces: Vec<_> = own.map(|(_, force)| force.clone()).collect();
+        let forces = self.forces.iter();
+        let forces = forces.filter(|(of, _)| of.is_none_or(|number| number == frame));
+        let forces: Vec<_> = forces.map(|(_, force)| force.clone()).collect();
         Knowledge {
             edges: self.edges.clone(),
             scale_deviation: self.scale_deviation,
@@ -265,17 +265,17 @@ pub fn keys(text: &str) -> Vec<Key> {
 }
 
 fn read(root: &Section) -> Conditions {
-    let mut conditions = Conditions::default();
-    if root.has("title") {
-        conditions.title = root.heading("title");
-    }
-    if root.has("noise") {
-        conditions.noise = Some(root.quantity("noise", Dimension::Length, Bound::Positive));
-    }
-    if root.has("edge_gap") {
-        conditions.edge_gap =
-            Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
-    }
+    let length = |key, bound| {
+        let has = root.has(key);
+        has.then(|| root.quantity(key, Dimension::Length, bound))
+    };
+    let title = root.has("title").then(|| root.heading("title"));
+    let mut conditions = Conditions {
+        title: title.unwrap_or_default(),
+        noise: length("noise", Bound::Positive),
+        edge_gap: length("edge_gap", Bound::NonNegative),
+        ..Conditions::default()
+    };
     if root.has("scale_error") {
         let bound = Bound::Within(0.0, 0.5);
         conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, bound);
@@ -293,15 +293,15 @@ fn read(root: &Section) -> Conditions {
         conditions.fit = root.texts("fit");
     }
     if root.has("specimen") {
-        conditions.specimen = Some(specimen_file::read(&root.section("specimen")));
+        conditions.specimen = Some(SpecimenFile::read(&root.section("specimen")));
     }
     if root.has("force") {
         for section in &root.tables("force") {
             if section.has("column") && !section.has("force") {
                 conditions.force_columns.push(force_column(section));
-                continue;
+            } else {
+                conditions.forces.push(force(section));
             }
-            conditions.forces.push(force(section));
         }
     }
     if root.has("edges") {
@@ -309,12 +309,10 @@ fn read(root: &Section) -> Conditions {
             let names = section.texts("names");
             let condition = condition(&section);
             if section.has("area") {
-                let area = area(&section, &names);
-                conditions.areas.extend(area);
+                conditions.areas.extend(area(&section, &names));
             }
-            conditions
-                .edges
-                .extend(names.into_iter().map(|name| (name, condition)));
+            let edges = names.into_iter().map(|name| (name, condition));
+            conditions.edges.extend(edges);
             section.unknown_keys();
         }
     }
@@ -342,15 +340,14 @@ fn area(section: &Section, names: &[String]) -> Option<(String, Area)> {
 /// A force that stands in a column of a testing machine's table.
 fn force_column(section: &Section) -> ForceColumn {
     let (edge, axis) = edge_and_axis(section);
-    let has = section.has("standard_deviation");
-    let found = ForceColumn {
+    let column = ForceColumn {
         edge,
         axis,
         column: section.text("column"),
-        standard_deviation: has.then(|| deviation(section)),
+        standard_deviation: deviation(section),
     };
     section.unknown_keys();
-    found
+    column
 }
 
 fn edge_and_axis(section: &Section) -> (String, usize) {
@@ -359,8 +356,10 @@ fn edge_and_axis(section: &Section) -> (String, usize) {
     (edge, axis.unwrap_or(0))
 }
 
-fn deviation(section: &Section) -> f64 {
-    section.quantity("standard_deviation", Dimension::Force, Bound::Positive)
+fn deviation(section: &Section) -> Option<f64> {
+    let key = "standard_deviation";
+    let has = section.has(key);
+    has.then(|| section.quantity(key, Dimension::Force, Bound::Positive))
 }
 
 fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
@@ -371,9 +370,9 @@ fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
         section.fault("column", "must not be given together with a force", hint);
     }
     let force = section.quantity("force", Dimension::Force, Bound::Any);
-    let has = |key| section.has(key);
-    let deviation = has("standard_deviation").then(|| deviation(section));
-    let frame = has("frame").then(|| section.count("frame", 0, usize::MAX >> 1));
+    let deviation = deviation(section);
+    let has_frame = section.has("frame");
+    let frame = has_frame.then(|| section.count("frame", 0, usize::MAX >> 1));
     section.unknown_keys();
     (frame, measured_force(&edge, axis, force, deviation))
 }
@@ -383,8 +382,8 @@ fn condition(section: &Section) -> EdgeCondition {
         let has = section.has(key);
         has.then(|| section.quantity(key, Dimension::Length, Bound::Any))
     };
-    match section.choice("condition", &KINDS) {
-        Some(Kind::Known) => {
+    match section.choice("condition", &CONDITIONS) {
+        Some(EdgeCondition::Known(_)) => {
             let displacement = [along("ux"), along("uy")];
             if displacement == [None, None] {
                 let hint = "add ux = \"5 mm\", uy = \"0 mm\", or one of them";
@@ -392,8 +391,6 @@ fn condition(section: &Section) -> EdgeCondition {
             }
             EdgeCondition::Known(displacement)
         }
-        Some(Kind::Rigid) => EdgeCondition::Rigid,
-        Some(Kind::Unknown) => EdgeCondition::Unknown,
-        Some(Kind::Free) | None => EdgeCondition::Free,
+        condition => condition.unwrap_or(EdgeCondition::Free),
     }
 }

@@ -1,161 +1,129 @@
-//! Where a specimen's edge lies outside of its outermost markers.
+//! The position of a specimen's edge outside of its outermost markers.
 
 use super::request::Request;
 use crate::error::{Diagnostic, Error};
-use crate::markers::Understood;
+use crate::markers::{Subset, Understood};
 use crate::mesh::{Outline, OutlineFault, OutlineOfPoints};
 use crate::units::{decimals, extents};
 
 /// Outermost markers farther than this from their outline, in spacings, leave it open where the edge lies.
 const ROUGH: f64 = 0.01;
 
-/// What is known of the edge.
-pub(super) enum EdgePlace {
-    /// So far outside, as the user says, in mm; beside a grid, edges that are not along it may lie up to a step farther out, and where the
-    /// outermost markers do not lie on smooth lines, edges may be off by as much as these.
-    Given {
-        gap: f64,
-        step: Option<f64>,
-        roughness: Option<f64>,
-    },
-    /// At least half a subset outside, as subsets lie inside of the specimen, and less than a step farther.
-    Subset {
-        half: f64,
-        step: f64,
-        /// Both in pixels, and where they are said.
-        words: String,
-    },
-    /// Up to a spacing of the markers outside.
-    Unknown(f64),
+/// What to do where markers do not show the edge.
+pub(super) const GIVE_EDGE: &str =
+    "give the specimen's edge with --outline, or its mesh with --mesh";
+
+pub(super) fn no_mesh(reason: OutlineFault) -> Error {
+    Error::input(format!("a mesh cannot be made: {reason}"), GIVE_EDGE)
+}
+
+/// The position of the edge outside of the outermost markers.
+pub(super) struct EdgePlace {
+    /// The outline of the markers brought to the edge.
+    pub outline: Outline,
+    /// How far outside of the outline the edge may lie all the same, in mm.
+    pub unknown_gap: Option<f64>,
+    /// How far the outline is widened, for the origin of the mesh.
+    pub origin: String,
+    pub warning: Option<Diagnostic>,
 }
 
 impl EdgePlace {
-    /// What the user says, else what files say of subsets; the markers are beside edges that are not along their grid or not.
+    /// The edge as the user states it, else half a subset outside, as subsets lie inside of the specimen, where files state the subset and
+    /// it fits; else the markers' own outline.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the outline cannot be widened by a stated gap.
     pub fn of(
         request: &Request,
         understood: &Understood,
-        markers: &OutlineOfPoints,
+        markers: OutlineOfPoints,
         beside_grid: bool,
-    ) -> Self {
-        let spacing = markers.spacing;
-        match (request.conditions.edge_gap, &understood.subset) {
-            (Some(gap), _) => Self::Given {
-                gap,
-                step: beside_grid.then_some(spacing),
-                roughness: Some(markers.roughness).filter(|off| *off > ROUGH * spacing),
-            },
-            (None, Some(subset)) => {
-                let pixel = understood.pixel.unwrap_or(spacing / subset.step);
-                Self::Subset {
-                    half: 0.5 * subset.size * pixel,
-                    step: subset.step * pixel,
-                    words: format!(
-                        "subset {} and step {} pixels according to {}",
-                        subset.size, subset.step, subset.told_by
-                    ),
-                }
-            }
-            (None, None) => Self::Unknown(spacing),
+    ) -> Result<Self, Error> {
+        if let Some(gap) = request.conditions.edge_gap {
+            return Self::stated(gap, markers, beside_grid);
         }
+        let spacing = markers.spacing;
+        if let Some(subset) = &understood.subset {
+            let pixel = understood.pixel.unwrap_or(spacing / subset.step);
+            if let Ok(outline) = markers.outline.widened(0.5 * subset.size * pixel) {
+                return Ok(Self::of_subset(subset, pixel, outline));
+            }
+        }
+        let message = "the specimen's edge is not known: the outline is that of the markers, which usually end inside the edge";
+        let hint = "state the edge with --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh; forces grow with the width, so force \
+             intervals between free edges, and stress errors beside them, include an edge up to one marker spacing farther out; without free \
+             edges, forces are those through the outline";
+        Ok(Self {
+            outline: markers.outline,
+            unknown_gap: Some(spacing),
+            origin: String::new(),
+            warning: Some(Diagnostic::warning("", message).hint(hint)),
+        })
     }
 
-    /// Checks a gap that the user gives against the extents of the markers' outline in mm.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where it is longer.
-    pub fn check(&self, [length, width]: [f64; 2]) -> Result<(), Error> {
-        match self {
-            Self::Given { gap, .. } if *gap > length.max(width) => Err(Error::input(
+    /// A gap that the user states; beside a grid, edges that are not along it may lie up to a step farther out, and where the
+    /// outermost markers do not lie on smooth lines, edges may be off by as much as these.
+    fn stated(gap: f64, markers: OutlineOfPoints, beside_grid: bool) -> Result<Self, Error> {
+        let [length, width] = markers.outline.extents();
+        if gap > length.max(width) {
+            return Err(Error::input(
                 format!(
                     "an edge gap of {gap} mm is larger than the field of the markers, which measures {}",
                     extents([length, width])
                 ),
                 "check the unit of --edge-gap (edge_gap), the distance from the outermost markers to the specimen's edge, or give the true edges with \
                  --outline or --mesh",
-            )),
-            _ => Ok(()),
+            ));
         }
-    }
-
-    /// The outline of the markers brought to the edge, and what is known of it then: where half a subset does not fit, nothing.
-    ///
-    /// # Errors
-    /// An [`OutlineFault`] of a gap that the user gives.
-    pub fn outline(self, markers: Outline, spacing: f64) -> Result<(Outline, Self), OutlineFault> {
-        match self {
-            Self::Given { gap, .. } => Ok((markers.widened(gap)?, self)),
-            Self::Subset { half, .. } => Ok(match markers.widened(half) {
-                Ok(wider) => (wider, self),
-                Err(_) => (markers, Self::Unknown(spacing)),
-            }),
-            Self::Unknown(_) => Ok((markers, self)),
-        }
-    }
-
-    /// How far outside of the outline the edge may lie all the same, in mm.
-    pub fn unknown(&self) -> Option<f64> {
-        match self {
-            Self::Given {
-                step, roughness, ..
-            } => step.or(*roughness),
-            Self::Subset { step, .. } => Some(*step),
-            Self::Unknown(spacing) => Some(*spacing),
-        }
-    }
-
-    /// How a mesh's origin says it.
-    pub fn origin(&self) -> String {
-        match self {
-            Self::Given { gap, .. } if *gap > 0.0 => format!(", widened by {gap} mm"),
-            Self::Subset { half, words, .. } => {
-                format!(
-                    ", widened by {} mm, half a subset ({words})",
-                    decimals(*half, 4)
-                )
-            }
-            _ => String::new(),
-        }
-    }
-
-    /// What the user should know of it.
-    pub fn warning(&self) -> Option<Diagnostic> {
-        let (message, hint) = match self {
-            Self::Given { step: None, .. } => return None,
-            Self::Given {
-                gap,
-                step: Some(step),
-                ..
-            } => (
-                format!(
-                    "the edge is assumed to lie {gap} mm outside the outermost markers, but the markers form a grid and the specimen is not a \
-                     rectangle along it: beside curved or inclined edges rows end up to {} mm farther inside",
-                    decimals(*step, 4)
-                ),
-                "give the true edges with --outline or --mesh; force intervals between free edges, and stress errors beside them, include an edge up \
-                 to that much farther out; where no edge is free, forces are those through the outline"
-                    .to_owned(),
-            ),
-            Self::Subset { half, step, words } => (
-                format!(
-                    "the specimen's edge is assumed to lie {} mm outside the outermost markers, half a subset: {words}",
-                    decimals(*half, 4)
-                ),
-                format!(
-                    "state the edge with --edge-gap LENGTH, --outline or --mesh; subsets end inside the specimen, less than one step from its edge, so force \
-                     intervals between free edges, and stress errors beside them, include an edge up to {} mm farther out; without free edges, forces \
-                     are those through the outline",
-                    decimals(*step, 4)
-                ),
-            ),
-            Self::Unknown(_) => (
-                "the specimen's edge is not known: the outline is that of the markers, which usually end inside the edge".to_owned(),
-                "state the edge with --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh; forces grow with the width, so force \
-                 intervals between free edges, and stress errors beside them, include an edge up to one marker spacing farther out; without free \
-                 edges, forces are those through the outline"
-                    .to_owned(),
-            ),
+        let spacing = markers.spacing;
+        let roughness = Some(markers.roughness).filter(|off| *off > ROUGH * spacing);
+        let warning = || {
+            let message = format!(
+                "the edge is assumed to lie {gap} mm outside the outermost markers, but the markers form a grid and the specimen is not a \
+                 rectangle along it: beside curved or inclined edges rows end up to {} mm farther inside",
+                decimals(spacing, 4)
+            );
+            let hint = "give the true edges with --outline or --mesh; force intervals between free edges, and stress errors beside them, include an edge up \
+                 to that much farther out; where no edge is free, forces are those through the outline";
+            Diagnostic::warning("", message).hint(hint)
         };
-        Some(Diagnostic::warning("", message).hint(hint))
+        let origin = (gap > 0.0).then(|| format!(", widened by {gap} mm"));
+        Ok(Self {
+            outline: markers.outline.widened(gap).map_err(no_mesh)?,
+            unknown_gap: if beside_grid {
+                Some(spacing)
+            } else {
+                roughness
+            },
+            origin: origin.unwrap_or_default(),
+            warning: beside_grid.then(warning),
+        })
+    }
+
+    /// An outline that is half a subset wider than the markers': the edge is less than a step farther out.
+    fn of_subset(subset: &Subset, pixel: f64, outline: Outline) -> Self {
+        let [half, step] = [0.5 * subset.size, subset.step].map(|pixels| pixels * pixel);
+        let wider = decimals(half, 4);
+        let words = format!(
+            "subset {} and step {} pixels according to {}",
+            subset.size, subset.step, subset.told_by
+        );
+        let message = format!(
+            "the specimen's edge is assumed to lie {wider} mm outside the outermost markers, half a subset: {words}"
+        );
+        let hint = format!(
+            "state the edge with --edge-gap LENGTH, --outline or --mesh; subsets end inside the specimen, less than one step from its edge, so force \
+             intervals between free edges, and stress errors beside them, include an edge up to {} mm farther out; without free edges, forces \
+             are those through the outline",
+            decimals(step, 4)
+        );
+        Self {
+            outline,
+            unknown_gap: Some(step),
+            origin: format!(", widened by {wider} mm, half a subset ({words})"),
+            warning: Some(Diagnostic::warning("", message).hint(hint)),
+        }
     }
 }
 

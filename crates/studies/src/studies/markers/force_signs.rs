@@ -1,13 +1,14 @@
-//! Whether measured forces point the way in which the markers say that the specimen is strained.
+//! Whether measured forces have the sign that the strain of the markers shows.
 
+use super::machine::FrameForces;
 use crate::error::{Diagnostic, Error};
 use crate::estimation::MeasuredForce;
-use crate::markers::Frame;
+use crate::markers::{Frame, MarkerSeries};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
 
-/// Components of the mean stress that are smaller than this part of the largest say nothing.
+/// Components of the mean stress that are smaller than this part of the largest show nothing.
 const CLEAR: f64 = 0.5;
 
 /// Refuses forces with the sign of a push where the mean strain of their frame pulls, or the other way round: the mean stress of the
@@ -16,16 +17,19 @@ const CLEAR: f64 = 0.5;
 ///
 /// # Errors
 /// [`Error::Input`] with every such force.
-pub fn check<'a>(
-    forces: impl IntoIterator<Item = (&'a MeasuredForce, &'a Frame)>,
+pub fn check(
+    forces: &FrameForces,
+    series: &MarkerSeries,
     mesh: &Mesh,
     law: &dyn HyperelasticLaw,
 ) -> Result<(), Error> {
-    let contradicts = |(force, frame): (&MeasuredForce, &Frame)| {
+    let faults = forces.iter().filter_map(|(number, force)| {
+        let mut frames = series.frames.iter();
+        let frame = frames.find(|frame| number.is_none_or(|number| number == frame.number))?;
         let expected = expected_sign(force, frame, mesh, law)?;
-        (expected * force.force < 0.0).then(|| told(force, expected))
-    };
-    let faults: Vec<Diagnostic> = forces.into_iter().filter_map(contradicts).collect();
+        (expected * force.force < 0.0).then(|| wrong_sign(force, expected))
+    });
+    let faults: Vec<Diagnostic> = faults.collect();
     if faults.is_empty() {
         Ok(())
     } else {
@@ -33,13 +37,19 @@ pub fn check<'a>(
     }
 }
 
-fn told(force: &MeasuredForce, expected: f64) -> Diagnostic {
+fn wrong_sign(force: &MeasuredForce, expected: f64) -> Diagnostic {
     let (edge, axis) = (&force.edge, ["x", "y"][force.axis]);
-    let (size, sign) = (force.force.abs(), if expected < 0.0 { "-" } else { "" });
+    let (size, [sign, side]) = (
+        force.force.abs(),
+        if expected < 0.0 {
+            ["-", "-"]
+        } else {
+            ["", "+"]
+        },
+    );
     let message = format!(
-        "the force on `{edge}` is {} N along {axis}, but the markers show that the grip acts on the specimen towards {}{axis}",
+        "the force on `{edge}` is {} N along {axis}, but the markers show that the grip acts on the specimen towards {side}{axis}",
         force.force,
-        if expected < 0.0 { "-" } else { "+" },
     );
     let hint = format!(
         "a force is positive along the axis: write {sign}{size} N; if the sign is intended, the displacements have the reversed sign, or their axes or the name of the edge are wrong"
@@ -47,7 +57,7 @@ fn told(force: &MeasuredForce, expected: f64) -> Diagnostic {
     Diagnostic::error("", message).hint(hint)
 }
 
-/// The sign of the force of a grip on its edge; `None` where the markers do not say it clearly.
+/// The sign of the force of a grip on its edge; `None` where the markers do not show it clearly.
 fn expected_sign(
     force: &MeasuredForce,
     frame: &Frame,

@@ -10,7 +10,7 @@
 //! misfit is judged: with a noise that is large enough any law fits.
 
 use super::MarkerStudy;
-use super::report::{outliers, used};
+use super::quantities::{outliers, used};
 use crate::error::Error;
 use crate::estimation::{Answer, FieldEstimate, Knowledge, Reason, Robust};
 use crate::markers::Marker;
@@ -55,18 +55,6 @@ impl MarkerStudy {
             Some(without) if !has_many(&without) || are_scattered(markers, &without) => Ok(without),
             without => found.map(|found| judged_beside(found, without)),
         }
-    }
-
-    /// What is said of gross errors that were found without being asked for.
-    pub(super) fn of_gross_errors(&self, estimate: &FieldEstimate) -> Option<String> {
-        (self.conditions.robust.is_none() && estimate.robust == Robust::Tukey).then(|| {
-            format!(
-                "{} of {} markers are outliers, some farther off than noise can explain: Tukey's weights reduce the weight of a marker the farther it is off \
-                 (robust = \"no\" gives all markers full weight)",
-                outliers(estimate),
-                used(estimate)
-            )
-        })
     }
 }
 

@@ -9,8 +9,8 @@ use std::path::Path;
 use super::{Conditions, MarkerStudy};
 use crate::error::{Diagnostic, Error};
 use crate::estimation::{
-    FieldEstimate, JointEstimate, JointFrame, JointSettings, Knowledge, RegressedLaw, Robust, Told,
-    check_joint_frames, estimate_jointly,
+    FieldEstimate, JointEstimate, JointFrame, JointSettings, Knowledge, RegressedLaw, Robust,
+    Watch, check_joint_frames, estimate_jointly,
 };
 use crate::material::Card;
 
@@ -26,13 +26,13 @@ pub type NamedSpecimen = (String, MarkerStudy);
 /// Specimens and laws.
 #[derive(Debug)]
 pub struct JointStudy {
-    /// The specimens; the law of each is that of its card, whose parameters are to be found.
+    /// The specimens; the law of each is that of its card, whose parameters are to be estimated.
     pub specimens: Vec<NamedSpecimen>,
     /// The laws: the first one is that of the results, the others are compared with it.
     pub cards: Vec<Card>,
-    /// The parameters of the first law that are found; for all other laws all of them are.
+    /// The parameters of the first law that are estimated; for all other laws all of them are.
     pub fit: Vec<String>,
-    /// How they are found.
+    /// How they are estimated.
     pub settings: JointSettings,
 }
 
@@ -42,7 +42,7 @@ pub struct JudgedLaw {
     /// The card with its first values.
     pub card: usize,
     /// The estimate, or why there is none.
-    pub found: Result<JointEstimate, Error>,
+    pub estimate: Result<JointEstimate, Error>,
 }
 
 /// The results of all laws.
@@ -50,18 +50,18 @@ pub struct JudgedLaw {
 pub struct JointResults {
     /// The first law.
     pub estimate: JointEstimate,
-    /// Its card with the values found.
+    /// Its card with the estimated values.
     pub card: Card,
     /// The other laws.
     pub others: Vec<JudgedLaw>,
 }
 
-/// A specimen that was corrected with the law found.
+/// A specimen that was corrected with the estimated law.
 #[derive(Debug)]
 pub struct CorrectedSpecimen {
     /// Its name.
     pub name: String,
-    /// The specimen with the card that was found.
+    /// The specimen with the estimated card.
     pub study: MarkerStudy,
     /// Its frames.
     pub estimates: Vec<FieldEstimate>,
@@ -75,21 +75,24 @@ impl JointStudy {
     /// # Errors
     /// [`Error::Input`] with the faults.
     pub fn check(&self) -> Result<(), Error> {
-        let mut names: Vec<&str> = self.specimens.iter().map(|(name, _)| &**name).collect();
-        names.sort_unstable();
-        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(Error::input(
-                format!("two specimens have the name `{}`", pair[0]),
-                "give each a `name` of its own under [specimen]",
-            ));
-        }
-        if let Some((name, _)) = self.specimens.iter().find(|(_, own)| own.coarse.is_some()) {
-            return Err(Error::input(
-                format!(
-                    "the field of `{name}` is transferred to another mesh, and then has no noise that could weight it"
-                ),
-                "leave out its mesh",
-            ));
+        for (index, (name, specimen)) in self.specimens.iter().enumerate() {
+            if self.specimens[..index]
+                .iter()
+                .any(|(other, _)| other == name)
+            {
+                return Err(Error::input(
+                    format!("two specimens have the name `{name}`"),
+                    "give each a `name` of its own under [specimen]",
+                ));
+            }
+            if specimen.coarse.is_some() {
+                return Err(Error::input(
+                    format!(
+                        "the field of `{name}` is transferred to another mesh, and then has no noise that could weight it"
+                    ),
+                    "leave out its mesh",
+                ));
+            }
         }
         for index in 0..self.cards.len() {
             self.law(index)?;
@@ -97,11 +100,11 @@ impl JointStudy {
         check_joint_frames(&self.frames())
     }
 
-    /// Finds the parameters of all laws.
+    /// Estimates the parameters of all laws.
     ///
     /// # Errors
     /// As [`estimate_jointly`] for the first law.
-    pub fn estimate(&self, told: Told) -> Result<JointResults, Error> {
+    pub fn estimate(&self, watch: Watch) -> Result<JointResults, Error> {
         let frames = self.frames();
         let of = |index: usize| {
             let name = &self.cards[index].name;
@@ -110,31 +113,27 @@ impl JointStudy {
                 ..self.settings
             };
             let law = self.law(index)?;
-            estimate_jointly(&frames, &law, &settings, &|what| {
-                told(&format!("{name}: {what}"))
+            estimate_jointly(&frames, &law, &settings, &|action| {
+                watch(&format!("{name}: {action}"))
             })
         };
         let estimate = of(0)?;
-        let others = 1..self.cards.len();
+        let others = (1..self.cards.len()).map(|card| JudgedLaw {
+            card,
+            estimate: of(card),
+        });
         Ok(JointResults {
-            card: card::with_values(&self.cards[0], &estimate, &self.told_specimens())?,
-            others: others
-                .map(|card| JudgedLaw {
-                    card,
-                    found: of(card),
-                })
-                .collect(),
+            card: card::with_values(&self.cards[0], &estimate, &self.specimen_words())?,
+            others: others.collect(),
             estimate,
         })
     }
 
     fn law(&self, index: usize) -> Result<RegressedLaw, Error> {
-        let all = ["all".to_owned()];
-        let keys = match index {
-            0 => &self.fit[..],
-            _ => &all,
+        let keys: Vec<&str> = match index {
+            0 => self.fit.iter().map(String::as_str).collect(),
+            _ => vec!["all"],
         };
-        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
         let law = RegressedLaw::of_card(&self.cards[index], &keys);
         law.map_err(|fault| Error::Input(vec![fault]))
     }
@@ -145,12 +144,16 @@ impl JointStudy {
     }
 
     /// The specimens in words.
-    fn told_specimens(&self) -> String {
-        let of = |(name, study): &NamedSpecimen| match study.series.frames.len() {
+    fn specimen_words(&self) -> String {
+        let words = |(name, study): &NamedSpecimen| match study.series.frames.len() {
             1 => format!("{name} (1 frame)"),
             count => format!("{name} ({count} frames)"),
         };
-        self.specimens.iter().map(of).collect::<Vec<_>>().join(", ")
+        self.specimens
+            .iter()
+            .map(words)
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 }
 
@@ -185,7 +188,7 @@ impl MarkerStudy {
     }
 }
 
-/// The uncertainties included in the intervals of a field whose law was found with other fields.
+/// The uncertainties included in the intervals of a field whose law was estimated with other fields.
 pub fn given_the_law() -> Diagnostic {
     let message = "intervals of displacements, stresses and forces apply to the estimated parameter values: the uncertainty of the parameters is not included";
     Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to those of forces and stresses")

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::report::{largest_correction, largest_error, outliers, residual_rms, used};
+use super::quantities::{largest_correction, largest_error, outliers, residual_rms, used};
 use super::verdict;
 use crate::estimation::{EdgeCondition, EdgeForce, FieldEstimate, Robust};
 use crate::markers::{Frame, Understood};
@@ -12,7 +12,7 @@ use crate::studies::markers::MarkerStudy;
 
 /// What was corrected.
 pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, Value> {
-    let all = json!({
+    object(json!({
         "layout": field.understood.layout,
         "reading": reading(&field.understood),
         "thickness_mm": field.thickness,
@@ -24,8 +24,12 @@ pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, 
         "trade": estimates.first().map(|estimate| &*estimate.rule),
         "brought_onto_another_mesh": field.coarse.is_some(),
         "edge_may_lie_farther_out_by_mm": field.unknown_gap,
-    });
-    all.as_object().cloned().unwrap_or_default()
+    }))
+}
+
+/// The entries of an object.
+pub fn object(value: Value) -> Map<String, Value> {
+    value.as_object().cloned().unwrap_or_default()
 }
 
 /// How the files were understood.
@@ -47,10 +51,9 @@ fn reading(understood: &Understood) -> Value {
 
 /// The figures of one frame.
 pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Step {
-    let models = [("corrected".to_owned(), of_frame(field, frame, estimate))];
     Step {
         at: frame.number as f64,
-        models: models.into_iter().collect(),
+        models: object(json!({ "corrected": of_frame(field, frame, estimate) })),
     }
 }
 
@@ -64,14 +67,12 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
             "edge": check.measured.edge,
             "axis": (["x", "y"][check.measured.axis]),
             "measured_N": check.measured.force,
-            "found_N": check.found,
+            "found_N": check.estimated,
             "standardised_difference": check.standardised,
         })
     });
-    let free = estimate
-        .edges
-        .iter()
-        .filter(|edge| edge.condition == EdgeCondition::Free);
+    let free = estimate.edges.iter();
+    let free = free.filter(|edge| edge.condition == EdgeCondition::Free);
     json!({
         "time": frame.time,
         "markers": used(estimate),
@@ -111,8 +112,8 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
 fn forces(estimate: &FieldEstimate) -> Vec<Value> {
     let of = |found: &Estimate| of_estimate(found, estimate.has_intervals());
     let change = |index: usize| {
-        let own = estimate.scale_change.forces.get(index);
-        own.map(|change| change.map(|change| 0.01 * change))
+        let change = estimate.scale_change.forces.get(index)?;
+        Some(change.map(|change| 0.01 * change))
     };
     let force = |(index, force): (usize, &EdgeForce)| {
         json!({
@@ -127,7 +128,7 @@ fn forces(estimate: &FieldEstimate) -> Vec<Value> {
 }
 
 /// A value with its uncertainty, which only an explained field has.
-fn of_estimate(found: &Estimate, explained: bool) -> Value {
+pub fn of_estimate(found: &Estimate, explained: bool) -> Value {
     json!({
         "value": found.value,
         "standard_error": explained.then_some(found.standard_error),

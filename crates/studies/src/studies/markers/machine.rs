@@ -54,49 +54,32 @@ pub fn forces(
         return Err(table.refuse_columns(message, hint));
     }
     let rows = matching(&table)?;
-    let mut found = Vec::new();
+    let mut measured = Vec::new();
     let mut without = BTreeSet::new();
     for one in wanted {
-        let name = one.column.trim_start_matches('-').trim();
-        let column = column_named(&table, name).map_err(|fault| Error::Input(vec![fault]))?;
-        table.check_numbers([column], "every row needs a force")?;
-        let factor = newtons(&table, column)?
-            * if one.column.starts_with('-') {
-                -1.0
-            } else {
-                1.0
-            };
-        let forces: Vec<f64> = table
-            .rows
-            .iter()
-            .map(|(row, _)| factor * row[column])
-            .collect();
+        let forces = newtons(&table, one)?;
         let stated = one.standard_deviation;
-        let deviation = stated.unwrap_or_else(|| FORCE_CLASS * largest(&forces));
         for frame in &series.frames {
-            match rows.at(&table, frame, &forces)? {
-                Some(force) => {
-                    let force = MeasuredForce {
-                        edge: one.edge.clone(),
-                        axis: one.axis,
-                        force,
-                        standard_deviation: deviation,
-                        common_deviation: stated.map_or(FORCE_CLASS, |_| 0.0),
-                    };
-                    found.push((Some(frame.number), force));
-                }
-                None => {
-                    without.insert(frame.number);
-                }
-            }
+            let Some(force) = rows.at(&table, frame, &forces)? else {
+                without.insert(frame.number);
+                continue;
+            };
+            let force = MeasuredForce {
+                edge: one.edge.clone(),
+                axis: one.axis,
+                force,
+                standard_deviation: stated.unwrap_or_else(|| FORCE_CLASS * largest(&forces)),
+                common_deviation: stated.map_or(FORCE_CLASS, |_| 0.0),
+            };
+            measured.push((Some(frame.number), force));
         }
     }
-    if found.is_empty() {
+    if measured.is_empty() {
         let hint = "number the frames identically in both files, or give the time in both";
         return Err(table.refuse_columns("no row belongs to a frame of the field", hint));
     }
     let names: Vec<String> = without.iter().map(usize::to_string).collect();
-    let word = (!without.is_empty()).then(|| {
+    let warning = (!without.is_empty()).then(|| {
         let message = format!(
             "{} has no force for the frames {}",
             path.display(),
@@ -104,21 +87,30 @@ pub fn forces(
         );
         Diagnostic::warning("", message).hint("they are corrected without one")
     });
-    Ok((found, word.into_iter().collect()))
+    Ok((measured, warning.into_iter().collect()))
 }
 
-/// The factor from a column's unit to N.
-fn newtons(table: &Table, column: usize) -> Result<f64, Error> {
-    let unit = table.columns[column].unit.as_deref();
+/// The forces of a column in N.
+fn newtons(table: &Table, wanted: &ForceColumn) -> Result<Vec<f64>, Error> {
+    let name = wanted.column.trim_start_matches('-').trim();
+    let column = column_named(table, name).map_err(|fault| Error::Input(vec![fault]))?;
+    table.check_numbers([column], "every row needs a force")?;
     let name = &table.columns[column].written;
-    let Some(unit) = unit else {
+    let Some(unit) = table.columns[column].unit.as_deref() else {
         let hint = format!("write it in brackets, as in {name} [N], or in a second line");
         return Err(table.refuse_columns(format!("the column `{name}` has no unit"), &hint));
     };
-    units::factor(unit, Dimension::Force).map_err(|_| {
+    let factor = units::factor(unit, Dimension::Force).map_err(|_| {
         let message = format!("`{unit}` of the column `{name}` is not a unit of force");
         columns::unknown_unit(table, unit, Dimension::Force, message)
-    })
+    })?;
+    let sign = if wanted.column.starts_with('-') {
+        -1.0
+    } else {
+        1.0
+    };
+    let rows = table.rows.iter();
+    Ok(rows.map(|(row, _)| factor * sign * row[column]).collect())
 }
 
 /// What the rows are matched by: a column `frame`, else a column `time`.
@@ -143,10 +135,8 @@ fn matching(table: &Table) -> Result<Match, Error> {
         return Err(table.refuse_columns("there is neither a column `frame` nor `time`", hint));
     };
     let second = columns::seconds(table, column)?;
-    let times: Vec<f64> = values(column)?
-        .into_iter()
-        .map(|time| second * time)
-        .collect();
+    let times = values(column)?.into_iter();
+    let times: Vec<f64> = times.map(|time| second * time).collect();
     match times.windows(2).position(|pair| pair[1] <= pair[0]) {
         None => Ok(Match::Times(times)),
         Some(row) => {

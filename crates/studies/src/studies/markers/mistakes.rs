@@ -10,7 +10,7 @@
 use nalgebra::Matrix2;
 
 use super::MarkerStudy;
-use super::report::{residual_rms, used};
+use super::quantities::{residual_rms, used};
 use crate::error::Diagnostic;
 use crate::estimation::{EdgeCondition, FieldEstimate};
 use crate::markers::{Frame, Marker};
@@ -105,7 +105,7 @@ impl Mistake {
 impl MarkerStudy {
     /// The mistake that a file seems to hold, if there is one.
     pub(super) fn mistake(&self, estimates: &[FieldEstimate]) -> Option<Diagnostic> {
-        let frames = self.series.frames.iter().zip(estimates);
+        let frames = self.frames_with(estimates);
         let doubtful = frames.filter(|(_, estimate)| !is_natural(estimate));
         let (frame, estimate) =
             doubtful.max_by(|(a, _), (b, _)| a.motion().total_cmp(&b.motion()))?;

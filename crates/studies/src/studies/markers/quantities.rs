@@ -1,8 +1,42 @@
-//! What files and pictures of a corrected frame hold in common: nominal stress, and residuals of markers.
+//! Quantities of a corrected frame that several files and pictures show: nominal stress, and residuals of markers.
 
 use crate::estimation::{FieldEstimate, StressEstimate};
 use crate::markers::Frame;
 use crate::statistics::nearest;
+
+/// The number of markers on the mesh.
+pub fn used(estimate: &FieldEstimate) -> usize {
+    estimate.markers.iter().flatten().count()
+}
+
+/// The number of outliers.
+pub fn outliers(estimate: &FieldEstimate) -> usize {
+    let markers = estimate.markers.iter().flatten();
+    markers.filter(|marker| marker.outlier).count()
+}
+
+/// Root mean square of the components of the markers' residuals in mm.
+pub fn residual_rms(estimate: &FieldEstimate) -> f64 {
+    let markers = estimate.markers.iter().flatten();
+    let squares: f64 = markers
+        .flat_map(|marker| marker.residual)
+        .map(|r| r * r)
+        .sum();
+    (squares / (2 * used(estimate).max(1)) as f64).sqrt()
+}
+
+/// The largest distance of the given field from the corrected one at its nodes, in mm.
+pub fn largest_correction(estimate: &FieldEstimate) -> f64 {
+    let markers = estimate.markers.iter().flatten();
+    let lengths = markers.map(|marker| marker.residual[0].hypot(marker.residual[1]));
+    lengths.fold(0.0, f64::max)
+}
+
+/// The largest standard error of a displacement in mm.
+pub fn largest_error(estimate: &FieldEstimate) -> f64 {
+    let pairs = estimate.displacement_error.chunks_exact(2);
+    pairs.map(|pair| pair[0].hypot(pair[1])).fold(0.0, f64::max)
+}
 
 /// The components xx, xy, yx, yy of the nominal stress from those of the first Piola–Kirchhoff stress, its transpose.
 pub fn nominal([p11, p12, p21, p22]: [f64; 4]) -> [f64; 4] {
@@ -14,7 +48,7 @@ pub fn nominal_stress(cell: &StressEstimate) -> [f64; 4] {
     nominal(cell.first_piola_kirchhoff_stress)
 }
 
-/// What is left of a marker, and NaN where it has no place on the mesh.
+/// The residual of a marker, NaN where it does not lie on the mesh.
 pub struct Residual {
     /// Measured less corrected displacement in mm.
     pub residual: [f64; 2],
@@ -26,7 +60,7 @@ pub struct Residual {
     pub outlier: f64,
 }
 
-/// What is left of every marker of a frame.
+/// The residuals of all markers of a frame.
 pub fn residuals(estimate: &FieldEstimate) -> impl Iterator<Item = Residual> {
     estimate.markers.iter().map(|marker| match marker {
         Some(marker) => Residual {
@@ -44,25 +78,25 @@ pub fn residuals(estimate: &FieldEstimate) -> impl Iterator<Item = Residual> {
     })
 }
 
-/// The mean of what is left of every marker and its eight nearest neighbours in mm, which noise alone would make a third of its own
-/// size; NaN where a marker has no place on the mesh.
+/// The mean residual of every marker and its eight nearest neighbours in mm, which noise alone would make a third of its own
+/// size; NaN where a marker does not lie on the mesh.
 pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
     const NEIGHBOURS: usize = 8;
     let pairs = frame.markers.iter().zip(&estimate.markers).enumerate();
-    let known = pairs.filter_map(|(index, (marker, left))| {
-        left.filter(|left| !left.outlier)
-            .map(|left| (index, marker.place, left.residual))
-    });
-    let known: Vec<_> = known.collect();
-    let places: Vec<[f64; 2]> = known.iter().map(|(_, place, _)| *place).collect();
+    let sound: Vec<_> = pairs
+        .filter_map(|(index, (marker, own))| {
+            let own = own.filter(|own| !own.outlier)?;
+            Some((index, marker.place, own.residual))
+        })
+        .collect();
+    let places: Vec<[f64; 2]> = sound.iter().map(|(_, place, _)| *place).collect();
     let mut all = vec![[f64::NAN; 2]; frame.markers.len()];
-    for (own, others) in nearest(&places, NEIGHBOURS).into_iter().enumerate() {
-        let members = others.iter().chain([&own]);
+    for (marker, others) in nearest(&places, NEIGHBOURS).into_iter().enumerate() {
+        let members = others.iter().chain([&marker]);
         let sum = members.fold([0.0; 2], |sum, one| {
-            let residual = known[*one].2;
-            [sum[0] + residual[0], sum[1] + residual[1]]
+            [0, 1].map(|axis| sum[axis] + sound[*one].2[axis])
         });
-        all[known[own].0] = sum.map(|sum| sum / (others.len() + 1) as f64);
+        all[sound[marker].0] = sum.map(|sum| sum / (others.len() + 1) as f64);
     }
     all
 }

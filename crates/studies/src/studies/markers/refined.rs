@@ -20,7 +20,7 @@ impl MarkerStudy {
     pub fn prepare_refined(
         card: Card,
         mut request: Request,
-        told: &dyn Fn(&str),
+        watch: &dyn Fn(&str),
     ) -> Result<Self, Error> {
         let mut study = Self::prepare_with(card.clone(), request.clone())?;
         loop {
@@ -30,51 +30,49 @@ impl MarkerStudy {
                     "leave out --refine (refine), or the mesh",
                 ));
             };
-            told(&format!("cells of {} mm", decimals(size, 4)));
-            let found = study.estimate_frame(study.most_moved()?)?;
+            watch(&format!("cells of {} mm", decimals(size, 4)));
+            let found = study.estimate_frame(most_moved(&study)?)?;
             let share = found.coarse_share(&study.mesh);
             let asked = found.verdict.asks_for_finer_mesh();
             if share <= COARSE && !asked {
                 return Ok(study);
             }
-            let coarse = |reason: &str| {
-                let still = if asked {
-                    "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned()
-                } else {
-                    format!(
-                        "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error",
-                        100.0 * share
-                    )
-                };
-                Diagnostic::warning("", format!("{still}: {reason}"))
-            };
-            if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
-                let reason = format!("cells smaller than {} mm are too many", decimals(size, 4));
-                study.warnings.push(coarse(&reason));
-                return Ok(study);
-            }
             request.cell_size = Some(0.5 * size);
-            match Self::prepare_with(card.clone(), request.clone()) {
+            let finer = if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
+                let size = decimals(size, 4);
+                Err(format!("cells smaller than {size} mm are too many"))
+            } else {
+                let finer = Self::prepare_with(card.clone(), request.clone());
+                finer.map_err(|fault| fault.to_string())
+            };
+            match finer {
                 Ok(finer) => study = finer,
-                Err(fault) => {
-                    study.warnings.push(coarse(&fault.to_string()));
+                Err(reason) => {
+                    let coarse = if asked {
+                        "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned()
+                    } else {
+                        format!(
+                            "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error",
+                            100.0 * share
+                        )
+                    };
+                    let warning = Diagnostic::warning("", format!("{coarse}: {reason}"));
+                    study.warnings.push(warning);
                     return Ok(study);
                 }
             }
         }
     }
+}
 
-    /// The frame whose markers move most.
-    fn most_moved(&self) -> Result<&Frame, Error> {
-        let frames = self.series.frames.iter();
-        let most = frames.max_by(|a, b| a.motion().total_cmp(&b.motion()));
-        most.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
-    }
+fn most_moved(study: &MarkerStudy) -> Result<&Frame, Error> {
+    let frame = study.most_moved();
+    frame.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
 }
 
 /// Where the mesh rather than the noise makes the intervals of stress wide.
-pub(super) fn told(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
-    let shares = field.series.frames.iter().zip(estimates);
+pub(super) fn remark(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
+    let shares = field.frames_with(estimates);
     let shares = shares.map(|(frame, found)| (frame.number, found.coarse_share(&field.mesh)));
     let (number, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (share > COARSE).then(|| {

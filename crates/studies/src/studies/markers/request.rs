@@ -67,15 +67,4 @@ impl SpecimenFile {
             ..like.clone()
         }
     }
-
-    /// The files that it names, relative to `folder`.
-    pub fn inputs<'a>(&'a self, folder: &'a Path) -> impl Iterator<Item = PathBuf> + 'a {
-        let mesh = self.mesh.iter().map(|(mesh, _)| mesh);
-        let others = self.outline.iter().chain(&self.forces);
-        self.fields
-            .iter()
-            .chain(mesh)
-            .chain(others)
-            .map(|path| folder.join(path))
-    }
 }

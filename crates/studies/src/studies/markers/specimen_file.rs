@@ -1,6 +1,6 @@
-//! A file with a whole specimen: its fields, thickness and mesh in a section, and what is known besides.
+//! A file with a whole specimen: its fields, thickness and mesh in a section, and the other known conditions.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::document::{Bound, Section};
 use crate::units::Dimension;
@@ -26,36 +26,45 @@ pub struct SpecimenFile {
     pub cell_size: Option<f64>,
 }
 
-/// Reads the section.
-pub fn read(section: &Section) -> SpecimenFile {
-    let path = |key| section.has(key).then(|| PathBuf::from(section.text(key)));
-    let length = |key| {
-        let has = section.has(key);
-        has.then(|| section.quantity(key, Dimension::Length, Bound::Positive))
-    };
-    let mesh = path("mesh");
-    let mesh_unit = length("mesh_unit").unwrap_or(1.0);
-    let found = SpecimenFile {
-        name: section.has("name").then(|| section.text("name")),
-        fields: section
-            .texts("fields")
-            .into_iter()
-            .map(PathBuf::from)
-            .collect(),
-        thickness: section.quantity("thickness", Dimension::Length, Bound::Positive),
-        unit: length("unit"),
-        mesh: mesh.map(|mesh| (mesh, mesh_unit)),
-        outline: path("outline"),
-        forces: path("forces"),
-        cell_size: length("cell_size"),
-    };
-    if found.mesh.is_some() && found.outline.is_some() {
-        section.fault(
-            "outline",
-            "must not be given together with a mesh",
-            "leave out one of them",
-        );
+impl SpecimenFile {
+    /// Reads the section.
+    pub(super) fn read(section: &Section) -> Self {
+        let path = |key| section.has(key).then(|| PathBuf::from(section.text(key)));
+        let length = |key| {
+            let has = section.has(key);
+            has.then(|| section.quantity(key, Dimension::Length, Bound::Positive))
+        };
+        let mesh = path("mesh");
+        let mesh_unit = length("mesh_unit").unwrap_or(1.0);
+        let file = Self {
+            name: section.has("name").then(|| section.text("name")),
+            fields: section.texts("fields").iter().map(PathBuf::from).collect(),
+            thickness: section.quantity("thickness", Dimension::Length, Bound::Positive),
+            unit: length("unit"),
+            mesh: mesh.map(|mesh| (mesh, mesh_unit)),
+            outline: path("outline"),
+            forces: path("forces"),
+            cell_size: length("cell_size"),
+        };
+        if file.mesh.is_some() && file.outline.is_some() {
+            section.fault(
+                "outline",
+                "must not be given together with a mesh",
+                "leave out one of them",
+            );
+        }
+        section.unknown_keys();
+        file
     }
-    section.unknown_keys();
-    found
+
+    /// The files that it names, relative to `folder`.
+    pub fn inputs<'a>(&'a self, folder: &'a Path) -> impl Iterator<Item = PathBuf> + 'a {
+        let mesh = self.mesh.iter().map(|(mesh, _)| mesh);
+        let others = self.outline.iter().chain(&self.forces);
+        self.fields
+            .iter()
+            .chain(mesh)
+            .chain(others)
+            .map(|path| folder.join(path))
+    }
 }

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::edge_place::{EdgePlace, is_beside_grid};
+use super::edge_place::{EdgePlace, GIVE_EDGE, is_beside_grid, no_mesh};
 use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
-use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
+use crate::mesh::{CellShape, Exemptions, Mesh, Outline, import};
 use crate::units::decimals;
 
 /// A mesh that is made has at most about so many cells, if no size is given.
@@ -125,15 +125,9 @@ fn of_field(mesh: &Mesh) -> SpecimenMesh {
 
 /// A mesh inside the outline of the markers.
 fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
-    const HINT: &str = "give the specimen's edge with --outline, or its mesh with --mesh";
-    let refuse =
-        |reason: OutlineFault| Error::input(format!("a mesh cannot be made: {reason}"), HINT);
     let (places, in_gaps) = places(&field.series, request.holes);
-    let mut found = Outline::of_points(&places).map_err(refuse)?;
+    let mut found = Outline::of_points(&places).map_err(no_mesh)?;
     let mut warnings = Vec::new();
-    let mut warn = |message: String, hint: &str| {
-        warnings.push(Diagnostic::warning("", message).hint(hint));
-    };
     match (found.outline.holes.len(), request.holes) {
         (0, _) => {}
         (_, false) => found.outline.holes.clear(),
@@ -144,35 +138,33 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
                     format!(", with {lost} points in them that have no displacement in any frame")
                 }
             };
-            warn(
-                format!("gaps among the markers treated as holes: {count}{filled}"),
-                "use --holes closed if markers were only lost there, or give the true edges with --outline",
-            );
+            let message = format!("gaps among the markers treated as holes: {count}{filled}");
+            let hint = "use --holes closed if markers were only lost there, or give the true edges with --outline";
+            warnings.push(Diagnostic::warning("", message).hint(hint));
         }
     }
     let spacing = found.spacing;
     let beside_grid = is_beside_grid(&places, &found.outline, spacing);
-    let edge = EdgePlace::of(request, &field.understood, &found, beside_grid);
-    edge.check(found.outline.extents())?;
-    let (outline, edge) = edge.outline(found.outline, spacing).map_err(refuse)?;
-    let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
+    let reasons = std::mem::take(&mut found.doubts).into_iter();
+    let edge = EdgePlace::of(request, &field.understood, found, beside_grid)?;
+    let (mesh, size) = made(request, &edge.outline, spacing, field.series.frames.len())?;
     let origin = format!(
         "made inside the outline of the markers, which are about {} mm apart{}",
         decimals(spacing, 4),
-        edge.origin()
+        edge.origin
     );
-    warnings.extend(edge.warning());
+    warnings.extend(edge.warning);
     let doubt = |reason: String| {
         let message = format!("the outline of the markers is uncertain: {reason}");
-        Diagnostic::warning("", message).hint(HINT)
+        Diagnostic::warning("", message).hint(GIVE_EDGE)
     };
     Ok(SpecimenMesh {
         mesh,
         cell_size: Some(size),
         origin,
         warnings,
-        doubts: found.doubts.into_iter().map(doubt).collect(),
-        unknown_gap: edge.unknown(),
+        doubts: reasons.map(doubt).collect(),
+        unknown_gap: edge.unknown_gap,
     })
 }
 

@@ -12,15 +12,18 @@ use crate::studies::markers::MarkerStudy;
 /// A row of a table; a number that is none leaves its field empty.
 fn row(text: &mut String, first: &[usize], values: &[f64]) {
     let first = first.iter().map(ToString::to_string);
-    let values = values.iter().map(|value| {
-        if value.is_finite() {
-            format!("{value:.9e}")
-        } else {
-            String::new()
-        }
-    });
+    let values = values.iter().map(|value| finite(*value));
     let fields: Vec<String> = first.chain(values).collect();
     let _ = writeln!(text, "{}", fields.join(","));
+}
+
+/// A number with ten digits; nothing where it is none.
+fn finite(value: f64) -> String {
+    if value.is_finite() {
+        format!("{value:.9e}")
+    } else {
+        String::new()
+    }
 }
 
 /// The name of a standard error; where the data are not explained it is none, and the name says so.
@@ -90,18 +93,12 @@ pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
     );
     for (marker, left) in frame.markers.iter().zip(residuals(estimate)) {
         let ([x, y], [ux, uy], [rx, ry]) = (marker.place, marker.displacement, left.residual);
-        let values = [
-            x,
-            y,
-            ux,
-            uy,
-            rx,
-            ry,
-            left.standardised,
-            left.trust,
-            left.outlier,
-        ];
-        row(&mut text, &[marker.number], &values);
+        let judged = [left.standardised, left.trust, left.outlier];
+        row(
+            &mut text,
+            &[marker.number],
+            &[&[x, y, ux, uy, rx, ry][..], &judged].concat(),
+        );
     }
     text
 }
@@ -115,13 +112,10 @@ pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     head.extend(["x", "y"].iter().flat_map(|axis| of_axis(axis)));
     head.push("verdict".to_owned());
     let mut records = vec![head];
-    for (frame, estimate) in field.series.frames.iter().zip(estimates) {
+    for (frame, estimate) in field.frames_with(estimates) {
         let explained = |value: f64| {
-            if estimate.has_intervals() {
-                format!("{value:.9e}")
-            } else {
-                String::new()
-            }
+            let shown = estimate.has_intervals();
+            finite(if shown { value } else { f64::NAN })
         };
         for force in &estimate.forces {
             let mut record = vec![frame.number.to_string(), force.edge.clone()];

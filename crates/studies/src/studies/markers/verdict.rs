@@ -3,14 +3,14 @@
 use serde_json::{Value, json};
 
 use super::MarkerStudy;
-use crate::estimation::{Answer, FieldEstimate, Trial, Verdict};
+use crate::estimation::{Answer, FieldEstimate, NoiseCorrelation, Reason, Trial, Verdict};
 use crate::markers::Frame;
 use crate::results::Block;
 use crate::statistics::extremes;
 use crate::units::decimals;
 
-/// Freedoms that are told in the terminal.
-const TOLD: usize = 5;
+/// Alternatives that are shown in the terminal.
+const SHOWN: usize = 5;
 
 /// The answers that frames have, the worst first.
 const ANSWERS: [Answer; 4] = [
@@ -22,78 +22,96 @@ const ANSWERS: [Answer; 4] = [
 
 /// The worst answer of all frames.
 pub fn worst(estimates: &[FieldEstimate]) -> Answer {
-    let of = |answer: &Answer| {
-        estimates
-            .iter()
-            .any(|found| found.verdict.answer == *answer)
+    let is_given = |answer: &Answer| {
+        let mut answers = estimates.iter().map(|estimate| estimate.verdict.answer);
+        answers.any(|one| one == *answer)
     };
-    ANSWERS.into_iter().find(of).unwrap_or_default()
+    ANSWERS.into_iter().find(is_given).unwrap_or_default()
+}
+
+/// The last frame with an answer.
+fn last_with<'a>(
+    study: &'a MarkerStudy,
+    estimates: &'a [FieldEstimate],
+    answer: Answer,
+) -> Option<(&'a Frame, &'a FieldEstimate)> {
+    let mut frames = study.frames_with(estimates);
+    frames.rfind(|(_, estimate)| estimate.verdict.answer == answer)
 }
 
 /// The verdict on all frames, and what would explain the last one that is not.
-pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
-    if field.coarse.is_some() {
-        return String::new();
+pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
+    if study.coarse.is_some() {
+        return Vec::new();
     }
-    let frames = || field.series.frames.iter().zip(estimates);
-    let mut text = String::new();
-    let all: Vec<(usize, &FieldEstimate)> =
-        frames().map(|(frame, own)| (frame.number, own)).collect();
-    for answer in ANSWERS {
-        let runs = all.chunk_by(|(_, a), (_, b)| a.verdict.answer == b.verdict.answer);
-        let own: Vec<_> = runs
-            .filter(|run| run[0].1.verdict.answer == answer)
-            .collect();
-        if !own.is_empty() {
-            let count: usize = own.iter().map(|run| run.len()).sum();
-            let frames = if count == 1 { "frame" } else { "frames" };
-            let runs: Vec<String> = own.into_iter().map(|run| run_words(run, answer)).collect();
-            text += &format!(
-                "verdict, {frames} {}: {}\n",
-                runs.join(", "),
-                answer.words()
-            );
-        }
-    }
+    let mut lines = answers(study, estimates);
     for answer in [Answer::Undecided, Answer::NotExplained] {
-        let last = frames().rfind(|(_, found)| found.verdict.answer == answer);
-        text += &last.map_or(String::new(), |(frame, found)| {
-            format!("frame {}: {}\n", frame.number, reasons(&found.verdict))
-        });
+        let last = last_with(study, estimates, answer);
+        lines.extend(last.map(|(frame, estimate)| {
+            format!(
+                "frame {}: {}",
+                frame.number,
+                reasons(&estimate.verdict).join("; ")
+            )
+        }));
     }
-    if let Some((_, found)) = not_explained(field, estimates) {
-        text += &found.verdict.worst.map_or(String::new(), |worst| {
-            let [x, y] = worst.place.map(|place| decimals(place, 4));
-            let [ux, uy] = worst.misfit.map(|misfit| decimals(misfit, 5));
-            format!("largest misfit near ({x}, {y}) mm: mean residual ({ux}, {uy}) mm\n")
-        });
-        if found.verdict.trials.is_empty() {
-            text += if found.holds_mesh_error {
-                "no alternative tried (edges, forces, stiffness, law, finer mesh) improves the fit\n"
-            } else {
-                "no alternative tried (edges, forces, stiffness, law) improves the fit; a finer mesh could not be tried: use smaller cells\n"
-            };
-        }
-        text +=
-            &finer_mesh(field, &found.verdict).map_or(String::new(), |told| format!("{told}\n"));
-        for trial in found.verdict.trials.iter().take(TOLD) {
-            text += &format!("one linearised step with {}\n", words(trial));
-        }
+    let Some((_, estimate)) = last_with(study, estimates, Answer::NotExplained) else {
+        return lines;
+    };
+    lines.extend(estimate.verdict.worst.map(|worst| {
+        let [x, y] = worst.place.map(|place| decimals(place, 4));
+        let [ux, uy] = worst.misfit.map(|misfit| decimals(misfit, 5));
+        format!("largest misfit near ({x}, {y}) mm: mean residual ({ux}, {uy}) mm")
+    }));
+    let trials = &estimate.verdict.trials;
+    if trials.is_empty() {
+        let words = if estimate.holds_mesh_error {
+            "no alternative tried (edges, forces, stiffness, law, finer mesh) improves the fit"
+        } else {
+            "no alternative tried (edges, forces, stiffness, law) improves the fit; a finer mesh could not be tried: use smaller cells"
+        };
+        lines.push(words.to_owned());
     }
-    text
+    lines.extend(finer_mesh(study, &estimate.verdict));
+    lines.extend(trials.iter().take(SHOWN).map(|trial| {
+        let words = trial.alternative.words();
+        match residual(trial) {
+            Some(residual) => {
+                format!("one linearised step with {words}: the residual would be {residual} mm")
+            }
+            None => format!("one linearised step with {words}"),
+        }
+    }));
+    lines
+}
+
+/// A line for each answer that frames have, with their numbers.
+fn answers(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
+    let frames = study.frames_with(estimates);
+    let all: Vec<(usize, &Verdict)> = frames
+        .map(|(frame, estimate)| (frame.number, &estimate.verdict))
+        .collect();
+    let line = |answer: Answer| {
+        let runs = all.chunk_by(|(_, a), (_, b)| a.answer == b.answer);
+        let runs: Vec<_> = runs.filter(|run| run[0].1.answer == answer).collect();
+        let count: usize = runs.iter().map(|run| run.len()).sum();
+        let frames = if count == 1 { "frame" } else { "frames" };
+        let words: Vec<String> = runs.into_iter().map(|run| run_words(run, answer)).collect();
+        (count > 0).then(|| format!("verdict, {frames} {}: {}", words.join(", "), answer.words()))
+    };
+    ANSWERS.into_iter().filter_map(line).collect()
 }
 
 /// Frames with one answer, one after the other: `4`, `4, 9`, `4 to 34`, and over which lengths their noise correlates.
-fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
+fn run_words(run: &[(usize, &Verdict)], answer: Answer) -> String {
     let numbers = match run {
-        [(one, _)] => one.to_string(),
-        [(first, _), (second, _)] => format!("{first}, {second}"),
-        [(first, _), .., (last, _)] => format!("{first} to {last}"),
-        [] => String::new(),
+        [(first, _), .., (last, _)] if run.len() > 2 => format!("{first} to {last}"),
+        few => {
+            let few: Vec<String> = few.iter().map(|(number, _)| number.to_string()).collect();
+            few.join(", ")
+        }
     };
-    let lengths = run
-        .iter()
-        .filter_map(|(_, found)| found.verdict.correlation);
+    let lengths = run.iter().filter_map(|(_, verdict)| verdict.correlation);
     let [low, high] = extremes(lengths.map(|one| one.length));
     match (answer, low < high) {
         (Answer::Correlated, true) => format!("{numbers} (over {low:.3} to {high:.3} mm)"),
@@ -102,39 +120,28 @@ fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
     }
 }
 
-/// What is said where the cells are why data are not explained.
-fn finer_mesh(field: &MarkerStudy, verdict: &Verdict) -> Option<String> {
-    let remedy = match field.cell_size {
-        Some(size) => format!(
-            "use cells smaller than {} mm (--refine or --cell-size)",
-            decimals(size, 4)
-        ),
-        None => "use a finer one".to_owned(),
-    };
+/// The remedy where the cells are why data are not explained.
+fn finer_mesh(study: &MarkerStudy, verdict: &Verdict) -> Option<String> {
+    let size = study.cell_size.map(|size| decimals(size, 4));
+    let remedy = size.map_or("use a finer one".to_owned(), |size| {
+        format!("use cells smaller than {size} mm (--refine or --cell-size)")
+    });
     verdict.asks_for_finer_mesh().then(|| {
         format!("the mesh is too coarse for data of this precision, which is no evidence against the law and the conditions: {remedy}")
     })
 }
 
-fn reasons(verdict: &Verdict) -> String {
-    let words: Vec<String> = verdict
-        .reasons
-        .iter()
-        .map(|reason| reason.words())
-        .collect();
-    words.join("; ")
+/// The reasons of a verdict in words.
+pub(super) fn reasons(verdict: &Verdict) -> Vec<String> {
+    verdict.reasons.iter().copied().map(Reason::words).collect()
 }
 
-fn words(trial: &Trial) -> String {
-    if trial.left.is_finite() {
-        format!(
-            "{}: the residual would be {} mm",
-            trial.alternative.words(),
-            decimals(trial.left, 5)
-        )
-    } else {
-        trial.alternative.words()
-    }
+/// The residual that an alternative would leave, in mm.
+fn residual(trial: &Trial) -> Option<String> {
+    trial
+        .residual_rms
+        .is_finite()
+        .then(|| decimals(trial.residual_rms, 5))
 }
 
 const EXPLANATION: &str = "Explained: the residuals of the markers are white noise. Explained with correlated noise: they correlate \
@@ -145,30 +152,20 @@ const EXPLANATION: &str = "Explained: the residuals of the markers are white noi
     the residuals correlate between neighbours and are similar from frame to frame, or a measured force is contradicted. Standard \
     errors and intervals are then meaningless and are not given.";
 
-/// The last frame that is not explained.
-fn not_explained<'a>(
-    field: &'a MarkerStudy,
-    estimates: &'a [FieldEstimate],
-) -> Option<(&'a Frame, &'a FieldEstimate)> {
-    let mut frames = field.series.frames.iter().zip(estimates);
-    frames.rfind(|(_, found)| found.verdict.answer == Answer::NotExplained)
-}
-
 /// The verdict on every frame, and what would explain the last one that is not.
-pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
-    let frames = || field.series.frames.iter().zip(estimates);
-    let rows = frames().map(|(frame, found)| {
-        let correlation = found.verdict.correlation;
-        let of = |value: fn(&crate::estimation::NoiseCorrelation) -> String| {
-            correlation.as_ref().map_or(String::new(), value)
+pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
+    let rows = study.frames_with(estimates).map(|(frame, estimate)| {
+        let verdict = &estimate.verdict;
+        let of = |words: fn(NoiseCorrelation) -> String| {
+            verdict.correlation.map_or(String::new(), words)
         };
         vec![
             frame.number.to_string(),
-            found.verdict.answer.words().to_owned(),
+            verdict.answer.words().to_owned(),
             of(|one| decimals(one.length, 4)),
             of(|one| format!("{:.2}", one.share)),
             of(|one| format!("{:.1}", one.independent)),
-            reasons(&found.verdict),
+            reasons(verdict).join("; "),
         ]
     });
     let head = [
@@ -184,46 +181,32 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         Block::table(&head, rows),
         Block::paragraph(EXPLANATION),
     ];
-    if let Some((_, last)) = frames().next_back() {
-        blocks.extend(variogram(last));
-    }
-    if let Some((frame, found)) = not_explained(field, estimates) {
+    blocks.extend(estimates.last().and_then(variogram));
+    if let Some((frame, estimate)) = last_with(study, estimates, Answer::NotExplained) {
         blocks.push(Block::paragraph(format!(
             "What would improve the fit of frame {}, best first, each computed in one linearised step; the probability is that of \
              noise alone reducing the misfit by as much.",
             frame.number
         )));
-        let rows = found.verdict.trials.iter().map(|trial| {
-            let left = if trial.left.is_finite() {
-                decimals(trial.left, 5)
-            } else {
-                String::new()
-            };
+        let rows = estimate.verdict.trials.iter().map(|trial| {
             vec![
                 trial.alternative.words(),
-                left,
+                residual(trial).unwrap_or_default(),
                 format!("{:.1e}", trial.probability),
             ]
         });
-        blocks.push(Block::table(
-            &["alternative", "residual [mm]", "probability"],
-            rows,
-        ));
-        blocks.extend(finer_mesh(field, &found.verdict).map(Block::paragraph));
+        let head = ["alternative", "residual [mm]", "probability"];
+        blocks.push(Block::table(&head, rows));
+        blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));
     }
     blocks
 }
 
-/// Half the mean squared difference of what is left, by distance.
-fn variogram(found: &FieldEstimate) -> Option<Block> {
-    let whiteness = found.whiteness.as_ref()?;
-    let rows = whiteness.variogram.iter().map(|bin| {
-        vec![
-            decimals(bin.distance, 4),
-            bin.pairs.to_string(),
-            format!("{:.3}", bin.of_components[0]),
-            format!("{:.3}", bin.of_components[1]),
-        ]
+/// Half the mean squared difference of residuals, by distance.
+fn variogram(estimate: &FieldEstimate) -> Option<Block> {
+    let rows = estimate.whiteness.as_ref()?.variogram.iter().map(|bin| {
+        let [x, y] = bin.of_components.map(|value| format!("{value:.3}"));
+        vec![decimals(bin.distance, 4), bin.pairs.to_string(), x, y]
     });
     let head = [
         "distance [mm]",
@@ -235,32 +218,25 @@ fn variogram(found: &FieldEstimate) -> Option<Block> {
 }
 
 /// The verdict for machines.
-pub fn json(found: &FieldEstimate) -> Value {
-    let verdict = &found.verdict;
+pub fn json(estimate: &FieldEstimate) -> Value {
+    let verdict = &estimate.verdict;
     let trials = verdict.trials.iter().map(|trial| {
         json!({
             "freedom": trial.alternative.words(),
-            "left_mm": trial.left,
+            "left_mm": trial.residual_rms,
             "probability": trial.probability,
         })
     });
-    let worst = verdict
-        .worst
-        .map(|worst| json!({ "place_mm": worst.place, "misfit_mm": worst.misfit }));
-    let reasons: Vec<String> = verdict
-        .reasons
-        .iter()
-        .map(|reason| reason.words())
-        .collect();
+    let worst = verdict.worst;
     json!({
         "answer": verdict.answer.words(),
         "correlation_length_mm": verdict.correlation.map(|one| one.length),
         "correlated_share": verdict.correlation.map(|one| one.share),
         "independent_markers": verdict.correlation.map(|one| one.independent),
         "evidence_of_correlation": verdict.correlation.map(|one| one.evidence),
-        "reasons": reasons,
+        "reasons": reasons(verdict),
         "mends": trials.collect::<Vec<_>>(),
-        "worst": worst,
-        "stated_noise_is_off_by": found.noise_ratio,
+        "worst": worst.map(|worst| json!({ "place_mm": worst.place, "misfit_mm": worst.misfit })),
+        "stated_noise_is_off_by": estimate.noise_ratio,
     })
 }

@@ -1,4 +1,4 @@
-//! What the correction of measured displacements writes.
+//! The files of a correction of measured displacements.
 //!
 //! ```text
 //! report.html, report.md, report.json
@@ -25,7 +25,7 @@ use super::{figures, json, report, tables};
 /// The `kind` of these results.
 pub const KIND: &str = "markers";
 
-/// What is told of a correction but for the [`FrameFiles`]: of the study's `name` and `text`, empty where there is none, and after
+/// The results of a correction except the [`FrameFiles`], with the study's `name` and `text`, empty where there is none, and after
 /// `seconds`.
 pub fn results(
     field: &MarkerStudy,
@@ -47,16 +47,15 @@ pub fn results_with(
     seconds: f64,
 ) -> Results {
     let doubts = field.all_doubts(estimates);
-    let frames = || field.series.frames.iter().zip(estimates);
-    let figures = frames().next_back();
-    let figures =
-        figures.map(|(frame, last)| figures::figures(field, frame, last, &pictures.fields));
+    let last = field.frames_with(estimates).next_back();
+    let figures = last.map(|(frame, last)| figures::figures(field, frame, last, &pictures.fields));
     let outcome = Outcome {
         problem: json::problem(field, estimates),
         material: Some(Material::from(&field.card)),
         along: "frame",
-        steps: frames()
-            .map(|(frame, own)| json::step(field, frame, own))
+        steps: field
+            .frames_with(estimates)
+            .map(|(frame, estimate)| json::step(field, frame, estimate))
             .collect(),
         blocks: report::blocks(field, estimates),
         figures: figures.unwrap_or_default(),
@@ -67,7 +66,10 @@ pub fn results_with(
             Content::Text(tables::forces(field, estimates)),
         )],
         doubts: doubts.iter().map(ToString::to_string).collect(),
-        balance: estimates.iter().map(|found| found.imbalance).reduce(larger),
+        balance: estimates
+            .iter()
+            .map(|estimate| estimate.imbalance)
+            .reduce(larger),
         summary: report::summary(field, estimates, &doubts),
         ..Outcome::default()
     };
@@ -100,25 +102,17 @@ impl FrameFiles {
             time: Some(time(frame)),
             grid,
         };
+        let tables = [
+            ("nodes", tables::nodes(field, estimate)),
+            ("cells", tables::cells(field, estimate)),
+            ("markers", tables::markers(frame, estimate)),
+        ];
         Self {
             grids: [
                 named(SERIES[0], corrected(field, estimate)),
                 named(SERIES[1], markers(frame, estimate)),
             ],
-            tables: [
-                (
-                    format!("nodes_{number:03}.csv"),
-                    tables::nodes(field, estimate),
-                ),
-                (
-                    format!("cells_{number:03}.csv"),
-                    tables::cells(field, estimate),
-                ),
-                (
-                    format!("markers_{number:03}.csv"),
-                    tables::markers(frame, estimate),
-                ),
-            ],
+            tables: tables.map(|(name, table)| (format!("{name}_{number:03}.csv"), table)),
         }
     }
 }
@@ -153,7 +147,7 @@ pub(super) fn title(field: &MarkerStudy) -> String {
 /// The corrected fields of the last frames.
 fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
     const MOST: usize = 20;
-    let frames = field.series.frames.iter().zip(estimates);
+    let frames = field.frames_with(estimates);
     let last = frames.skip(estimates.len().saturating_sub(MOST));
     let grids = last.map(|(frame, estimate)| (frame.number as f64, corrected(field, estimate)));
     GridSeries::steps(SERIES[0], grids)

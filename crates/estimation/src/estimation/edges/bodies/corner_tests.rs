@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::bodies;
-use crate::estimation::given::{EdgeCondition, segments};
+use crate::estimation::input::{EdgeCondition, segments};
 use crate::material::Card;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Grid, Mesh};

@@ -1,7 +1,7 @@
 //! Edges under all conditions.
 
 use super::*;
-use crate::estimation::given::segments;
+use crate::estimation::input::segments;
 use crate::mesh::CellShape;
 
 fn motion(conditions: [EdgeCondition; 4]) -> (Mesh, EdgeMotion) {

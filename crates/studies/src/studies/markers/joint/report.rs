@@ -1,23 +1,22 @@
-//! The report on parameters that were found with all frames together.
+//! The report on parameters that were estimated with all frames together.
 
 use super::{CorrectedSpecimen, JointResults, JointStudy};
 use crate::error::Error;
 use crate::estimation::{Direction, FieldEstimate, ForcePrediction, JointEstimate, VAGUE};
-use crate::material::Card;
-use crate::results::Block;
-use crate::statistics::Estimate;
+use crate::results::{Block, or_dash};
+use crate::studies::markers::report::interval;
 use crate::units::decimals;
 
-/// A force that was measured: specimen, frame, and what was predicted.
+/// A force that was measured: specimen, frame, and its prediction.
 pub type ForceRow<'a> = (&'a str, usize, &'a ForcePrediction);
 
 /// All measured forces, specimen after specimen and frame after frame.
 pub fn forces<'a>(study: &'a JointStudy, estimate: &'a JointEstimate) -> Vec<ForceRow<'a>> {
-    let places = study.specimens.iter().flat_map(|(name, own)| {
-        let frames = own.series.frames.iter();
+    let numbers = study.specimens.iter().flat_map(|(name, specimen)| {
+        let frames = specimen.series.frames.iter();
         frames.map(move |frame| (name.as_str(), frame.number))
     });
-    let frames = places.zip(&estimate.frames);
+    let frames = numbers.zip(&estimate.frames);
     frames
         .flat_map(|((name, number), frame)| {
             frame.forces.iter().map(move |force| (name, number, force))
@@ -25,82 +24,78 @@ pub fn forces<'a>(study: &'a JointStudy, estimate: &'a JointEstimate) -> Vec<For
         .collect()
 }
 
-/// Whether the search has reached its goal, and every frame of every specimen is explained with the law found, so that intervals mean
-/// something.
-pub fn is_explained(found: &JointResults, specimens: &[CorrectedSpecimen]) -> bool {
+/// Whether the search has converged, and every frame of every specimen is explained with the estimated law, so that intervals are valid.
+pub fn is_explained(joint: &JointResults, specimens: &[CorrectedSpecimen]) -> bool {
     let mut all = specimens.iter().flat_map(|specimen| &specimen.estimates);
-    found.estimate.ended.is_none() && all.all(FieldEstimate::is_explained)
+    joint.estimate.ended.is_none() && all.all(FieldEstimate::is_explained)
 }
 
 /// For the terminal.
 pub fn summary(
     study: &JointStudy,
-    found: &JointResults,
+    joint: &JointResults,
     specimens: &[CorrectedSpecimen],
 ) -> String {
-    let explained = is_explained(found, specimens);
-    let estimate = &found.estimate;
-    let mut text = format!(
-        "{} of {} from {} frames of {}\n",
-        found.card.law_name,
-        found.card.name,
+    let explained = is_explained(joint, specimens);
+    let estimate = &joint.estimate;
+    let mut lines = vec![format!(
+        "{} of {} from {} frames of {}",
+        joint.card.law_name,
+        joint.card.name,
         estimate.frames.len(),
-        study.told_specimens()
-    );
-    for (parameter, estimate) in estimate.with_keys() {
-        text += &format!(
-            "{:<12} {}\n",
+        study.specimen_words()
+    )];
+    lines.extend(estimate.with_keys().map(|(parameter, value)| {
+        let unit = Some(parameter.unit()).filter(|unit| *unit != "–");
+        format!(
+            "{:<12} {} {}{}",
             parameter.key,
-            value(estimate, unit(parameter.unit()), explained)
-        );
-    }
-    for direction in estimate
-        .directions
-        .iter()
-        .filter(|one| !one.is_determined())
-    {
-        text += &format!(
-            "not determined: {}; kept as on the card, except for a common factor of all stresses\n",
+            decimals(value.value, 6),
+            unit.unwrap_or_default(),
+            interval(value, explained, " (not determined: initial value)")
+        )
+    }));
+    lines.extend(undetermined(estimate).map(|direction| {
+        format!(
+            "not determined: {}; kept as on the card, except for a common factor of all stresses",
             combination(estimate, direction)
+        )
+    }));
+    lines.extend(estimate.prediction_error().map(|error| {
+        let percent = 100.0 * error;
+        format!("forces of left-out frames: predicted to {percent:.3} % (root mean square)")
+    }));
+    if !joint.others.is_empty() {
+        lines.push(
+            "law           parameters  forces left out [%]  markers left out [mm]       ΔAICc"
+                .to_owned(),
+        );
+        lines.extend(
+            ranked(study, joint)
+                .into_iter()
+                .map(|row| match row.figures {
+                    Some([error, residual, criterion]) => format!(
+                        "{:<14}{:>9}  {:>19}  {residual:>21.5}  {criterion:>10.1}",
+                        row.name,
+                        row.parameters,
+                        error_words(error),
+                    ),
+                    None => format!("{:<14}{}", row.name, row.fault),
+                }),
         );
     }
-    if let Some(error) = estimate.prediction_error() {
-        text += &format!(
-            "forces of left-out frames: predicted to {:.3} % (root mean square)\n",
-            100.0 * error
-        );
-    }
-    text += &ranking_lines(study, found);
-    if let Some(ended) = &estimate.ended {
-        text += &format!("the search stopped before it converged: {ended}\n");
-    }
+    lines.extend(
+        estimate
+            .ended
+            .iter()
+            .map(|reason| format!("the search stopped before it converged: {reason}")),
+    );
     if !explained {
-        text += "no interval: not all frames are explained by this law, thickness and conditions\n";
+        let words =
+            "no interval: not all frames are explained by this law, thickness and conditions";
+        lines.push(words.to_owned());
     }
-    text
-}
-
-/// The laws for the terminal; nothing where there is only one.
-fn ranking_lines(study: &JointStudy, found: &JointResults) -> String {
-    let mut text = String::new();
-    if !found.others.is_empty() {
-        text +=
-            "law           parameters  forces left out [%]  markers left out [mm]       ΔAICc\n";
-        for row in ranked(study, found) {
-            text += &match row.figures {
-                Some([error, left, criterion]) => format!(
-                    "{:<14}{:>9}  {:>19}  {:>21.5}  {:>10.1}\n",
-                    row.name,
-                    row.parameters,
-                    error_words(error),
-                    left,
-                    criterion
-                ),
-                None => format!("{:<14}{}\n", row.name, row.fault),
-            };
-        }
-    }
-    text
+    lines.join("\n") + "\n"
 }
 
 fn error_words(error: f64) -> String {
@@ -111,18 +106,10 @@ fn error_words(error: f64) -> String {
     }
 }
 
-fn unit(unit: &str) -> &str {
-    if unit == "–" { "" } else { unit }
-}
-
-fn value(estimate: &Estimate, unit: &str, explained: bool) -> String {
-    let [low, high] = estimate.interval;
-    let interval = match (explained, low < high) {
-        (true, true) => format!(" ({} … {})", decimals(low, 6), decimals(high, 6)),
-        (false, true) => " (no interval: not explained)".to_owned(),
-        _ => " (not determined: initial value)".to_owned(),
-    };
-    format!("{} {unit}{interval}", decimals(estimate.value, 6))
+/// The combinations of parameters that the data do not determine.
+pub fn undetermined(estimate: &JointEstimate) -> impl Iterator<Item = &Direction> {
+    let directions = estimate.directions.iter();
+    directions.filter(|direction| !direction.is_determined())
 }
 
 /// A combination of parameters, in words.
@@ -140,42 +127,40 @@ pub fn combination(estimate: &JointEstimate, direction: &Direction) -> String {
 pub struct RankedLaw {
     /// The card.
     pub name: String,
-    /// How many parameters were found.
+    /// The number of estimated parameters.
     pub parameters: usize,
-    /// Error of the forces left out in percent, what is left of markers of frames left out in mm, AICc above the least.
+    /// Error of the forces left out in percent, residual of the markers of frames left out in mm, AICc above the least.
     pub figures: Option<[f64; 3]>,
     /// Why there is none.
     pub fault: String,
 }
 
 /// The laws, the one that predicts the forces left out best first.
-pub fn ranked(study: &JointStudy, found: &JointResults) -> Vec<RankedLaw> {
-    let others = found.others.iter();
-    let others = others.map(|other| (other.card, other.found.as_ref()));
-    let all: Vec<(usize, Result<&JointEstimate, &Error>)> = [(0, Ok(&found.estimate))]
+pub fn ranked(study: &JointStudy, joint: &JointResults) -> Vec<RankedLaw> {
+    let others = joint.others.iter();
+    let others = others.map(|other| (other.card, other.estimate.as_ref()));
+    let all: Vec<(usize, Result<&JointEstimate, &Error>)> = [(0, Ok(&joint.estimate))]
         .into_iter()
         .chain(others)
         .collect();
-    let criteria = all.iter().filter_map(|(_, found)| found.ok());
-    let least = criteria
-        .map(JointEstimate::information_criterion)
-        .fold(f64::INFINITY, f64::min);
-    let row = |(card, found): &(usize, Result<&JointEstimate, &Error>)| {
-        let of = |found: &&JointEstimate| {
-            let count = found.frames.len() as f64;
-            let square: f64 = found.frames.iter().map(|frame| frame.left.powi(2)).sum();
-            let error = found
-                .prediction_error()
-                .map_or(f64::NAN, |error| 100.0 * error);
-            let above = found.information_criterion() - least;
-            [error, (square / count).sqrt(), above]
-        };
-        RankedLaw {
-            name: study.cards[*card].name.clone(),
-            parameters: found.map_or(0, |found| found.parameters.len()),
-            figures: found.as_ref().ok().map(of),
-            fault: found.err().map_or(String::new(), ToString::to_string),
-        }
+    let estimates = all.iter().filter_map(|(_, estimate)| estimate.ok());
+    let criteria = estimates.map(JointEstimate::information_criterion);
+    let least = criteria.fold(f64::INFINITY, f64::min);
+    let figures = |estimate: &JointEstimate| {
+        let frames = estimate
+            .frames
+            .iter()
+            .map(|frame| frame.residual_rms.powi(2));
+        let square = frames.sum::<f64>() / estimate.frames.len() as f64;
+        let error = estimate.prediction_error().unwrap_or(f64::NAN);
+        let above = estimate.information_criterion() - least;
+        [100.0 * error, square.sqrt(), above]
+    };
+    let row = |(card, estimate): &(usize, Result<&JointEstimate, &Error>)| RankedLaw {
+        name: study.cards[*card].name.clone(),
+        parameters: estimate.map_or(0, |estimate| estimate.parameters.len()),
+        figures: estimate.ok().map(figures),
+        fault: estimate.err().map_or(String::new(), ToString::to_string),
     };
     let mut rows: Vec<RankedLaw> = all.iter().map(row).collect();
     let order = |row: &RankedLaw| {
@@ -189,81 +174,76 @@ pub fn ranked(study: &JointStudy, found: &JointResults) -> Vec<RankedLaw> {
 /// The report.
 pub fn blocks(
     study: &JointStudy,
-    found: &JointResults,
+    joint: &JointResults,
     specimens: &[CorrectedSpecimen],
 ) -> Vec<Block> {
-    let explained = is_explained(found, specimens);
-    let estimate = &found.estimate;
+    let explained = is_explained(joint, specimens);
+    let estimate = &joint.estimate;
     let mut blocks = vec![
         Block::heading("Parameters"),
         parameters(study, estimate, explained),
         Block::paragraph(intervals(estimate, explained)),
     ];
     blocks.extend(determined(estimate));
-    blocks.extend(predictions(study, found));
-    if !found.others.is_empty() {
-        blocks.extend(ranking(study, found));
+    blocks.extend(predictions(study, joint));
+    if !joint.others.is_empty() {
+        blocks.extend(ranking(study, joint));
     }
     blocks.extend(verdicts(specimens));
     blocks
 }
 
 fn parameters(study: &JointStudy, estimate: &JointEstimate, explained: bool) -> Block {
-    Block::table(
-        &[
-            "parameter",
-            "value",
-            "unit",
-            "standard error",
-            "95 % interval",
-            "initial value",
-        ],
-        estimate.with_keys().map(|(parameter, value)| {
-            let [low, high] = value.interval;
-            let of = |text: String| {
-                if explained && low < high {
-                    text
-                } else {
-                    "–".to_owned()
-                }
-            };
-            let first = first_value(&study.cards[0], parameter.key);
-            vec![
-                parameter.key.to_owned(),
-                decimals(value.value, 6),
-                parameter.unit().to_owned(),
-                of(decimals(value.standard_error, 6)),
-                of(format!("{} … {}", decimals(low, 6), decimals(high, 6))),
-                first,
-            ]
-        }),
-    )
+    let rows = estimate.with_keys().map(|(parameter, value)| {
+        let [low, high] = value.interval;
+        let uncertain = |words: String| {
+            let shown = explained && low < high;
+            if shown { words } else { "–".to_owned() }
+        };
+        let stated = study.cards[0].parameter(parameter.key);
+        vec![
+            parameter.key.to_owned(),
+            decimals(value.value, 6),
+            parameter.unit().to_owned(),
+            uncertain(decimals(value.standard_error, 6)),
+            uncertain(format!("{} … {}", decimals(low, 6), decimals(high, 6))),
+            stated.map_or(String::new(), |value| decimals(value, 6)),
+        ]
+    });
+    let head = [
+        "parameter",
+        "value",
+        "unit",
+        "standard error",
+        "95 % interval",
+        "initial value",
+    ];
+    Block::table(&head, rows)
 }
 
 fn determined(estimate: &JointEstimate) -> [Block; 3] {
+    let rows = estimate.directions.iter().map(|direction| {
+        let answer = if direction.is_determined() {
+            "yes"
+        } else {
+            "no"
+        };
+        vec![
+            combination(estimate, direction),
+            decimals(direction.relative_error.recip(), 4),
+            format!("{:.4}", 100.0 * direction.relative_error),
+            answer.to_owned(),
+        ]
+    });
+    let head = [
+        "combination (each parameter relative to its value)",
+        "singular value",
+        "relative standard error [%]",
+        "determined",
+    ];
     [
         Block::heading("What the data determine"),
-        Block::table(
-            &[
-                "combination (each parameter relative to its value)",
-                "singular value",
-                "relative standard error [%]",
-                "determined",
-            ],
-            estimate.directions.iter().map(|direction| {
-                vec![
-                    combination(estimate, direction),
-                    decimals(direction.relative_error.recip(), 4),
-                    format!("{:.4}", 100.0 * direction.relative_error),
-                    if direction.is_determined() {
-                        "yes"
-                    } else {
-                        "no"
-                    }
-                    .to_owned(),
-                ]
-            }),
-        ),
+        Block::table(&head, rows),
         Block::paragraph(format!(
             "Singular values of the pooled sensitivity to the parameters (roots of the eigenvalues of their information matrix), edge motions \
              eliminated. A combination with a relative standard error above {:.0} % is treated as undetermined and kept as on the card, \
@@ -273,42 +253,32 @@ fn determined(estimate: &JointEstimate) -> [Block; 3] {
     ]
 }
 
-/// The value of a parameter on the card.
-fn first_value(card: &Card, key: &str) -> String {
-    let stated = card.parameter(key);
-    stated.map_or(String::new(), |value| decimals(value, 6))
-}
-
 fn intervals(estimate: &JointEstimate, explained: bool) -> String {
-    if explained {
-        format!(
-            "Outlying markers get Tukey's weights, unless the conditions state otherwise. Intervals follow the profile \
+    if !explained {
+        return "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned();
+    }
+    let meshes = if estimate.holds_mesh_error {
+        "They include the discretisation error of the meshes, from the same equations on cells half as large."
+    } else {
+        "They do not include the discretisation error, because one mesh has too many cells to be refined: they are too \
+         narrow where that error is not small compared with the noise."
+    };
+    format!(
+        "Outlying markers get Tukey's weights, unless the conditions state otherwise. Intervals follow the profile \
          likelihood of all frames, with the noise estimated in each. Residuals of a marker in consecutive frames \
          correlate by {:.2}, and frames count for less accordingly. The intervals include a common error of 1 % of all forces without a stated \
-         deviation, a stated error of the picture scale, and a scatter of forces beyond the stated one. {}",
-            estimate.common,
-            if estimate.holds_mesh_error {
-                "They include the discretisation error of the meshes, from the same equations on cells half as large."
-            } else {
-                "They do not include the discretisation error, because one mesh has too many cells to be refined: they are too \
-        narrow where that error is not small compared with the noise."
-            }
-        )
-    } else {
-        "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned()
-    }
+         deviation, a stated error of the picture scale, and a scatter of forces beyond the stated one. {meshes}",
+        estimate.common
+    )
 }
 
-fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
-    let rows = forces(study, &found.estimate);
+fn predictions(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
+    let rows = forces(study, &joint.estimate);
     let rows = rows.into_iter().map(|(name, frame, force)| {
         let measured = &force.measured;
-        let off = force
+        let difference = force
             .predicted
-            .map(|there| 100.0 * (there / measured.force - 1.0));
-        let of = |value: Option<f64>, digits: usize| {
-            value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
-        };
+            .map(|predicted| 100.0 * (predicted / measured.force - 1.0));
         vec![
             name.to_owned(),
             frame.to_string(),
@@ -316,8 +286,8 @@ fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
             ["x", "y"][measured.axis].to_owned(),
             decimals(measured.force, 6),
             decimals(measured.standard_deviation, 6),
-            of(force.predicted, 6),
-            of(off, 3),
+            or_dash(force.predicted, |value| format!("{value:.6}")),
+            or_dash(difference, |value| format!("{value:.3}")),
         ]
     });
     let head = [
@@ -330,7 +300,7 @@ fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
         "predicted by the other frames [N]",
         "difference [%]",
     ];
-    vec![
+    [
         Block::heading("Forces of left-out frames"),
         Block::table(&head, rows),
         Block::paragraph(
@@ -340,24 +310,22 @@ fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
     ]
 }
 
-fn ranking(study: &JointStudy, found: &JointResults) -> [Block; 3] {
-    let rows = ranked(study, found)
+fn ranking(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
+    let rows = ranked(study, joint)
         .into_iter()
         .map(|law| match law.figures {
-            Some([error, left, criterion]) => vec![
+            Some([error, residual, criterion]) => vec![
                 law.name,
                 law.parameters.to_string(),
                 error_words(error),
-                decimals(left, 5),
+                decimals(residual, 5),
                 format!("{criterion:.1}"),
             ],
-            None => vec![
-                law.name,
-                law.fault,
-                String::new(),
-                String::new(),
-                String::new(),
-            ],
+            None => {
+                let mut row = vec![law.name, law.fault];
+                row.resize(5, String::new());
+                row
+            }
         });
     let head = [
         "card",
@@ -378,13 +346,13 @@ fn ranking(study: &JointStudy, found: &JointResults) -> [Block; 3] {
 
 fn verdicts(specimens: &[CorrectedSpecimen]) -> [Block; 2] {
     let rows = specimens.iter().flat_map(|specimen| {
-        let frames = specimen.study.series.frames.iter().zip(&specimen.estimates);
-        frames.map(|(frame, found)| {
+        let frames = specimen.study.frames_with(&specimen.estimates);
+        frames.map(|(frame, estimate)| {
             vec![
                 specimen.name.clone(),
                 frame.number.to_string(),
-                found.verdict.answer.words().to_owned(),
-                decimals(found.noise, 5),
+                estimate.verdict.answer.words().to_owned(),
+                decimals(estimate.noise, 5),
             ]
         })
     });

@@ -1,4 +1,4 @@
-//! What is written of parameters that were found with all frames together: report, card, forces, and a picture of them.
+//! The files of parameters that were estimated with all frames together: report, card, forces, and a picture of them.
 
 use serde_json::{Map, Value, json};
 
@@ -7,57 +7,55 @@ use super::{CorrectedSpecimen, JointResults, JointStudy, card};
 use crate::document::write_records;
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
-    Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Scale, Stroke,
+    Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
 };
 use crate::statistics::{extremes, larger};
+use crate::studies::markers::json::{object, of_estimate};
 
 /// The `kind` of these results.
 pub const KIND: &str = "parameters";
 
-/// The results of a joint search after so many `seconds`.
+/// The results of a joint estimation after so many `seconds`.
 pub fn results(
     study: &JointStudy,
-    found: &JointResults,
+    joint: &JointResults,
     specimens: &[CorrectedSpecimen],
     seconds: f64,
 ) -> Results {
-    let rows = report::forces(study, &found.estimate);
+    let rows = report::forces(study, &joint.estimate);
     let warnings = specimens.iter().flat_map(|specimen| {
-        let told = specimen.study.warnings.iter();
-        told.map(|warning| format!("{}: {warning}", specimen.name))
+        let warnings = specimen.study.warnings.iter();
+        warnings.map(|warning| format!("{}: {warning}", specimen.name))
     });
-    let warnings = warnings.chain(undetermined(&found.estimate));
-    let ended = found.estimate.ended.iter().map(|ended| {
-        format!("the search for the parameters stopped before it converged: {ended}; frames, forces and thickness contradict each other")
+    let warnings = warnings.chain(undetermined(&joint.estimate));
+    let ended = joint.estimate.ended.iter().map(|reason| {
+        format!("the search for the parameters stopped before it converged: {reason}; frames, forces and thickness contradict each other")
     });
-    let scattered = forces_scatter(&found.estimate);
     let doubts = ended
-        .chain(scattered)
+        .chain(force_scatter(&joint.estimate))
         .chain(specimens.iter().filter_map(doubt));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
+    let card = Content::Text(joint.card.text.clone());
     let outcome = Outcome {
-        problem: problem(study, found, specimens),
-        material: Some(Material::from(&found.card)),
+        problem: problem(study, joint, specimens),
+        material: Some(Material::from(&joint.card)),
         along: "frame",
-        blocks: report::blocks(study, found, specimens),
+        blocks: report::blocks(study, joint, specimens),
         figures: figure(&rows).into_iter().collect(),
         files: vec![
-            (
-                card::FILE.to_owned(),
-                Content::Text(found.card.text.clone()),
-            ),
+            (card::FILE.to_owned(), card),
             ("forces.csv".to_owned(), Content::Text(table(&rows))),
         ],
         doubts: doubts.collect(),
-        balance: estimates.map(|found| found.imbalance).reduce(larger),
-        summary: report::summary(study, found, specimens),
+        balance: estimates.map(|estimate| estimate.imbalance).reduce(larger),
+        summary: report::summary(study, joint, specimens),
         ..Outcome::default()
     };
     Results {
         name: "parameters".to_owned(),
         title: format!(
             "Parameters of {} from displacement fields",
-            found.card.law_name
+            joint.card.law_name
         ),
         kind: KIND,
         text: String::new(),
@@ -68,8 +66,8 @@ pub fn results(
     }
 }
 
-/// Forces that scatter more than they are said to.
-fn forces_scatter(estimate: &JointEstimate) -> Option<String> {
+/// Forces that scatter more than their stated deviations.
+fn force_scatter(estimate: &JointEstimate) -> Option<String> {
     let ForceScatter { misfit, freedom } = estimate.force_scatter;
     estimate.force_scatter.is_too_large().then(|| {
         format!(
@@ -80,13 +78,10 @@ fn forces_scatter(estimate: &JointEstimate) -> Option<String> {
     })
 }
 
-/// What the data do not tell of the parameters, and the intervals of the others do not hold.
+/// The combinations of parameters that the data do not determine, and on which the intervals of the others are conditional.
 pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
-    let open = estimate
-        .directions
-        .iter()
-        .filter(|own| !own.is_determined());
-    let open: Vec<String> = open.map(|own| report::combination(estimate, own)).collect();
+    let open = report::undetermined(estimate);
+    let open: Vec<String> = open.map(|one| report::combination(estimate, one)).collect();
     (!open.is_empty()).then(|| {
         format!(
             "not determined by these frames, and kept as on the card: {}; the other parameters and their intervals assume that this is known: start \
@@ -98,19 +93,17 @@ pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
 
 /// What makes the figures of a specimen doubtful, in one sentence.
 fn doubt(specimen: &CorrectedSpecimen) -> Option<String> {
-    let off = specimen
-        .estimates
-        .iter()
-        .filter(|found| !found.is_explained());
-    let (off, all) = (off.count(), specimen.estimates.len());
+    let estimates = &specimen.estimates;
+    let refuted = estimates.iter().filter(|estimate| !estimate.is_explained());
     let name = &specimen.name;
-    match (off, specimen.doubts) {
+    match (refuted.count(), specimen.doubts) {
         (0, 0) => None,
         (0, count) => Some(format!(
             "{name}: {count} doubts, see specimens/{name}/report.html"
         )),
-        (off, _) => Some(format!(
-            "{name}: {off} of {all} frames are not explained by this law, thickness and conditions, see specimens/{name}/report.html"
+        (count, _) => Some(format!(
+            "{name}: {count} of {} frames are not explained by this law, thickness and conditions, see specimens/{name}/report.html",
+            estimates.len()
         )),
     }
 }
@@ -118,20 +111,16 @@ fn doubt(specimen: &CorrectedSpecimen) -> Option<String> {
 /// For machines.
 fn problem(
     study: &JointStudy,
-    found: &JointResults,
+    joint: &JointResults,
     specimens: &[CorrectedSpecimen],
 ) -> Map<String, Value> {
-    let explained = report::is_explained(found, specimens);
-    let estimate = &found.estimate;
+    let explained = report::is_explained(joint, specimens);
+    let estimate = &joint.estimate;
     let parameters = estimate.with_keys().map(|(parameter, value)| {
-        let determined = explained && value.standard_error > 0.0;
-        json!({
-            "key": parameter.key,
-            "unit": parameter.unit(),
-            "value": value.value,
-            "standard_error": determined.then_some(value.standard_error),
-            "interval": determined.then_some(value.interval),
-        })
+        let mut own = of_estimate(value, explained && value.standard_error > 0.0);
+        own["key"] = parameter.key.into();
+        own["unit"] = parameter.unit().into();
+        own
     });
     let directions = estimate.directions.iter().map(|direction| {
         json!({
@@ -140,13 +129,14 @@ fn problem(
             "is_determined": direction.is_determined(),
         })
     });
-    let laws = report::ranked(study, found).into_iter().map(|law| {
-        let [error, left, criterion] = law.figures.map_or([None; 3], |figures| figures.map(Some));
+    let laws = report::ranked(study, joint).into_iter().map(|law| {
+        let [error, residual, criterion] =
+            law.figures.map_or([None; 3], |figures| figures.map(Some));
         json!({
             "card": law.name,
             "parameters": law.parameters,
             "force_error_percent": error,
-            "left_mm": left,
+            "left_mm": residual,
             "aicc_above_least": criterion,
             "fault": (!law.fault.is_empty()).then_some(law.fault),
         })
@@ -162,26 +152,23 @@ fn problem(
             "predicted_N": force.predicted,
         })
     });
-    let answers = specimens.iter().map(|specimen| {
-        let answers = specimen
-            .estimates
-            .iter()
-            .map(|found| found.verdict.answer.words());
+    let verdicts = specimens.iter().map(|specimen| {
+        let estimates = specimen.estimates.iter();
+        let answers = estimates.map(|estimate| estimate.verdict.answer.words());
         json!({ "name": specimen.name, "verdicts": answers.collect::<Vec<_>>() })
     });
-    let all = json!({
+    object(json!({
         "is_explained": explained,
         "parameters": parameters.collect::<Vec<_>>(),
         "errors_hold_the_mesh": estimate.holds_mesh_error,
         "combinations": directions.collect::<Vec<_>>(),
         "laws": laws.collect::<Vec<_>>(),
         "forces": forces.collect::<Vec<_>>(),
-        "specimens": answers.collect::<Vec<_>>(),
+        "specimens": verdicts.collect::<Vec<_>>(),
         "correlation_between_frames": estimate.common,
         "aicc": estimate.information_criterion(),
         "steps": estimate.steps,
-    });
-    all.as_object().cloned().unwrap_or_default()
+    }))
 }
 
 fn table(rows: &[ForceRow]) -> String {
@@ -194,7 +181,7 @@ fn table(rows: &[ForceRow]) -> String {
         "standard_deviation [N]",
         "predicted_by_others [N]",
     ];
-    let line = |(name, frame, force): &ForceRow| {
+    let record = |(name, frame, force): &ForceRow| {
         let measured = &force.measured;
         vec![
             (*name).to_owned(),
@@ -205,16 +192,16 @@ fn table(rows: &[ForceRow]) -> String {
             measured.standard_deviation.to_string(),
             force
                 .predicted
-                .map_or(String::new(), |there| there.to_string()),
+                .map_or(String::new(), |force| force.to_string()),
         ]
     };
     let head = head.map(str::to_owned).to_vec();
-    write_records(std::iter::once(head).chain(rows.iter().map(line)))
+    write_records(std::iter::once(head).chain(rows.iter().map(record)))
 }
 
 /// Predicted over measured forces; `None` where none was predicted.
 fn figure(rows: &[ForceRow]) -> Option<Figure> {
-    let mut lines: Vec<Line> = Vec::new();
+    const GREY: [u8; 3] = [150, 150, 150];
     let pairs: Vec<(&str, [f64; 2])> = rows
         .iter()
         .filter_map(|(name, _, force)| Some((*name, [force.measured.force, force.predicted?])))
@@ -223,23 +210,17 @@ fn figure(rows: &[ForceRow]) -> Option<Figure> {
     if low >= high {
         return None;
     }
-    let grey = [150, 150, 150];
-    lines.push(Line::new(
-        "equal",
-        [[low, low], [high, high]],
-        grey,
-        Stroke::Dashed,
-    ));
+    let diagonal = [[low, low], [high, high]];
+    let mut lines = vec![Line::new("equal", diagonal, GREY, Stroke::Dashed)];
     for (index, group) in pairs.chunk_by(|a, b| a.0 == b.0).enumerate() {
         let colour = PALETTE[index % PALETTE.len()];
         let points = group.iter().map(|(_, pair)| *pair);
         lines.push(Line::new(group[0].0, points, colour, Stroke::Points));
     }
-    let axis = |label: &str| Axis::new(label, Scale::Linear);
     let chart = LineChart::new(
         "Forces of left-out frames",
-        axis("measured force [N]"),
-        axis("predicted force [N]"),
+        Axis::linear("measured force [N]"),
+        Axis::linear("predicted force [N]"),
         lines,
     );
     Some(Figure::new(

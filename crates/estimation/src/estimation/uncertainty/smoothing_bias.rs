@@ -22,7 +22,7 @@ const EASED: f64 = 0.03;
 
 impl NearestField<'_> {
     /// Σ dⱼ dⱼᵀ at the nearest field, whose covariance is M⁻¹.
-    pub(in crate::estimation) fn smoothed_away(&self) -> DMatrix<f64> {
+    pub(in crate::estimation) fn smoothing_bias(&self) -> DMatrix<f64> {
         let size = self.parameters.len();
         let priors = self.equations.priors(&self.parameters);
         let eased = priors.iter().map(Form::new).zip(&self.variances.smoothing);

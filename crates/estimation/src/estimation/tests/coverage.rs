@@ -5,8 +5,8 @@
 
 use rayon::prelude::*;
 
-use super::tests::{SIZE, STRETCH, Truth, law, specimen, with_grips};
-use super::*;
+use super::{SIZE, STRETCH, Truth, law, specimen, with_grips};
+use crate::estimation::*;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Mesh};
 

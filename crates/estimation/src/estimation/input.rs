@@ -12,10 +12,10 @@ pub use knowledge::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
 };
 pub use observations::Observations;
-pub use outline::{Segment, name_parts, parts};
+pub use outline::{Segment, name_parts};
 pub use regressed_law::{Neighbours, RegressedLaw};
 pub use start::{DEGREE, Polynomial};
-pub use task::{Edge, Task, singular_corners};
+pub use task::{Edge, Task, observe, singular_corners};
 pub use uncertain_law::UncertainLaw;
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! The input and the result of a joint search.
+//! The input and the result of a joint estimation.
 
 use nalgebra::DVector;
 
 use super::direction::Direction;
-use crate::estimation::given::{Knowledge, MeasuredForce, RegressedLaw};
+use crate::estimation::input::{Knowledge, MeasuredForce, RegressedLaw};
 use crate::markers::Marker;
 use crate::material::parameters::Parameter;
 use crate::mesh::Mesh;
@@ -83,10 +83,6 @@ pub struct ForceScatter {
 }
 
 impl ForceScatter {
-    pub(super) fn new(misfit: f64, freedom: f64) -> Self {
-        Self { misfit, freedom }
-    }
-
     /// The factor by which variances exceed those expected from the noises, at least 1: χ² over its degrees of freedom (Birge's ratio squared).
     ///
     /// # References
@@ -114,7 +110,7 @@ pub struct FrameOutcome {
     /// Each measured force.
     pub forces: Vec<ForcePrediction>,
     /// Root mean square of each component of the sound markers' residuals in mm, with the law of the other frames.
-    pub left: f64,
+    pub residual_rms: f64,
 }
 
 /// A measured force, and that of the field with the law of the other groups of frames.
@@ -144,13 +140,13 @@ impl JointEstimate {
     pub fn prediction_error(&self) -> Option<f64> {
         let all = self.frames.iter().flat_map(|frame| &frame.forces);
         let pairs = all.filter_map(|force| Some((force.measured.force, force.predicted?)));
-        let [off, whole] = pairs.fold([0.0; 2], |[off, whole], (measured, predicted)| {
+        let [error, size] = pairs.fold([0.0; 2], |[error, size], (measured, predicted)| {
             [
-                off + (predicted - measured).powi(2),
-                whole + measured * measured,
+                error + (predicted - measured).powi(2),
+                size + measured * measured,
             ]
         });
-        (whole > 0.0).then(|| (off / whole).sqrt())
+        (size > 0.0).then(|| (error / size).sqrt())
     }
 
     /// The parameters of the law with their values.
@@ -160,7 +156,7 @@ impl JointEstimate {
 }
 
 /// Called with the next action, for a waiting user.
-pub type Told<'a> = &'a (dyn Fn(&str) + Sync);
+pub type Watch<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// A step in θ, or the score behind it.
 pub type Step = DVector<f64>;

@@ -4,12 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::knowledge::{EdgeCondition, Knowledge, Specimen, Unnamed};
 use super::observations::Observations;
-use super::outline::Segment;
+use super::outline::{Segment, parts};
+use crate::error::{Diagnostic, Error};
+use crate::markers::Marker;
+use crate::mesh::Mesh;
 
 /// A part of the boundary with its condition.
 #[derive(Clone, Debug)]
-pub struct Edge<'a> {
-    pub segment: &'a Segment,
+pub struct Edge {
+    pub segment: Segment,
     pub condition: EdgeCondition,
     /// Whether the data choose between loaded and free.
     pub tested: bool,
@@ -20,9 +23,9 @@ pub struct Edge<'a> {
     pub of_body: bool,
 }
 
-impl<'a> Edge<'a> {
-    /// A part of the boundary with what is known of it.
-    pub fn new(segment: &'a Segment, knowledge: &Knowledge) -> Self {
+impl Edge {
+    /// A part of the boundary with its known condition.
+    fn new(segment: Segment, knowledge: &Knowledge) -> Self {
         let open = segment.outer && segment.condition.is_none();
         let condition = match segment.condition {
             Some(number) => knowledge.edges[number].1,
@@ -54,15 +57,41 @@ pub fn singular_corners(edges: &[Edge]) -> BTreeSet<usize> {
     singular.map(|(node, _)| node).collect()
 }
 
-/// The task of a search.
-#[derive(Clone, Copy)]
+/// The boundary with its known conditions, and the markers on the mesh.
+///
+/// # Errors
+/// [`Error::Input`] when the data, the mesh and the conditions do not match.
+pub fn observe(
+    mesh: &Mesh,
+    markers: &[Marker],
+    knowledge: &Knowledge,
+) -> Result<(Vec<Edge>, Observations), Error> {
+    let input = |fault: Diagnostic| Error::Input(vec![fault]);
+    let edges = Edge::of_boundary(mesh, knowledge)?;
+    knowledge.check().map_err(input)?;
+    let observations = Observations::new(mesh, markers, knowledge.noise).map_err(input)?;
+    Ok((edges, observations))
+}
+
+/// What a field is estimated from.
+#[derive(Clone)]
 pub struct Task<'a> {
-    pub specimen: &'a Specimen<'a>,
+    pub specimen: Specimen<'a>,
     pub observations: &'a Observations,
     pub knowledge: &'a Knowledge,
 }
 
-impl Edge<'_> {
+impl Edge {
+    /// All parts of the boundary of a mesh, and the pads on it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the mesh does not have them.
+    pub fn of_boundary(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<Self>, Error> {
+        let segments = parts(mesh, &knowledge.edges).map_err(|fault| Error::Input(vec![fault]))?;
+        let edges = segments.into_iter();
+        Ok(edges.map(|segment| Self::new(segment, knowledge)).collect())
+    }
+
     /// Whether the edge is not free.
     pub fn is_loaded(&self) -> bool {
         self.condition != EdgeCondition::Free

@@ -1,0 +1,106 @@
+//! A finding on frames, reported once with the numbers of the frames that it is about.
+
+use crate::error::Diagnostic;
+
+/// A finding on one frame.
+pub struct Finding {
+    /// The frame's number.
+    pub frame: usize,
+    /// The finding with its figures.
+    pub message: String,
+    /// What to do: the same for all findings of one kind; empty where there is nothing.
+    pub remedy: String,
+}
+
+/// One warning for each kind of findings, in the order of their first ones; of messages that differ in their figures the last stands for all.
+/// `all` are the numbers of the frames in their order.
+pub fn once(all: &[usize], findings: Vec<Finding>) -> Vec<Diagnostic> {
+    let mut kinds: Vec<Vec<Finding>> = Vec::new();
+    for finding in findings {
+        match kinds
+            .iter_mut()
+            .find(|kind| kind[0].remedy == finding.remedy)
+        {
+            Some(kind) => kind.push(finding),
+            None => kinds.push(vec![finding]),
+        }
+    }
+    kinds.iter().filter_map(|kind| warning(all, kind)).collect()
+}
+
+fn warning(all: &[usize], kind: &[Finding]) -> Option<Diagnostic> {
+    let last = kind.last()?;
+    let numbers: Vec<usize> = kind.iter().map(|one| one.frame).collect();
+    let differs = kind.iter().any(|one| one.message != last.message);
+    let example = differs.then(|| format!(", as frame {}", last.frame));
+    let message = format!(
+        "{} {}{}: {}",
+        if numbers.len() == 1 {
+            "frame"
+        } else {
+            "frames"
+        },
+        runs(all, &numbers),
+        example.unwrap_or_default(),
+        last.message
+    );
+    let warning = Diagnostic::warning("", message);
+    Some(match last.remedy.as_str() {
+        "" => warning,
+        remedy => warning.hint(remedy),
+    })
+}
+
+/// Some of all numbers, those that follow each other in one: `4`, `4, 9`, `4 to 34`.
+fn runs(all: &[usize], numbers: &[usize]) -> String {
+    let index = |number: &usize| all.iter().position(|known| known == number);
+    let runs = numbers.chunk_by(|a, b| index(a).map(|index| index + 1) == index(b));
+    let words = runs.map(|run| match run {
+        [first, _, .., last] => format!("{first} to {last}"),
+        few => few
+            .iter()
+            .map(usize::to_string)
+            .collect::<Vec<_>>()
+            .join(", "),
+    });
+    words.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(frame: usize, message: &str, remedy: &str) -> Finding {
+        Finding {
+            frame,
+            message: message.to_owned(),
+            remedy: remedy.to_owned(),
+        }
+    }
+
+    #[test]
+    fn fifty_equal_frames_are_one_line() {
+        let all: Vec<usize> = (1..=60).collect();
+        let equal = (1..=50).map(|frame| finding(frame, "the noise is large", "check it"));
+        let warnings = once(&all, equal.collect());
+        assert_eq!(warnings.len(), 1);
+        assert_eq!(warnings[0].message, "frames 1 to 50: the noise is large");
+        assert_eq!(warnings[0].hint.as_deref(), Some("check it"));
+    }
+
+    #[test]
+    fn kinds_keep_their_order_and_of_figures_that_differ_the_last_ones_stand_for_all() {
+        let messages = vec![
+            finding(10, "p = 1e-9", "a"),
+            finding(30, "p = 1e-7", "a"),
+            finding(20, "lost", ""),
+        ];
+        let warnings = once(&[10, 20, 30, 40], messages);
+        let messages: Vec<&str> = warnings.iter().map(|one| one.message.as_str()).collect();
+        assert_eq!(
+            messages,
+            ["frames 10, 30, as frame 30: p = 1e-7", "frame 20: lost"]
+        );
+        assert_eq!(warnings[1].hint, None);
+    }
+}

@@ -1,0 +1,270 @@
+//! Findings on the frames of a correction: what makes figures doubtful, and remarks on noise and outliers.
+//!
+//! A doubt stands next to the figures and makes the command end with exit code 1.
+
+use super::MarkerStudy;
+use super::finding::{Finding, once};
+use super::gross_errors::has_many;
+use super::quantities::{outliers, used};
+use super::verdict::reasons;
+use crate::error::Diagnostic;
+use crate::estimation::{Answer, FieldEstimate, ForceCheck, RegressedLaw, Robust};
+use crate::results::{BESIDE_CORNERS, Stretches, small_strain};
+use crate::statistics::small_probability;
+use crate::units::{decimals, number};
+
+/// A message with its figures, and what to do, which is the same for all frames.
+type Doubt = (String, &'static str);
+
+/// The rules that each frame is checked by, the likeliest cause of others first.
+const RULES: [fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>; 10] = [
+    unknown_edge,
+    |_, estimate| idle_edges(estimate),
+    |_, estimate| contradicted_edges(estimate),
+    |_, estimate| contradicted_force(estimate),
+    |_, estimate| not_explained(estimate),
+    no_measurement,
+    |_, estimate| many_outliers(estimate),
+    |_, estimate| stated_noise(estimate),
+    large_strains,
+    beyond_card,
+];
+
+impl MarkerStudy {
+    /// What makes the figures doubtful, the likeliest cause first: a mistake in the file, or else what concerns all frames, and each doubt
+    /// of single ones once.
+    pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
+        if let Some(mistake) = self.mistake(estimates) {
+            // All else follows from a field that nobody measured.
+            return [&[mistake][..], &self.doubts].concat();
+        }
+        let findings = RULES.iter().flat_map(|rule| {
+            let frames = self.frames_with(estimates);
+            frames.filter_map(move |(frame, estimate)| {
+                let (message, remedy) = rule(self, estimate)?;
+                Some(Finding {
+                    frame: frame.number,
+                    message,
+                    remedy: remedy.to_owned(),
+                })
+            })
+        });
+        let findings = once(&self.frame_numbers(), findings.collect());
+        [&self.doubts[..], &findings].concat()
+    }
+
+    /// The numbers of the frames in their order.
+    pub(super) fn frame_numbers(&self) -> Vec<usize> {
+        let frames = self.series.frames.iter();
+        frames.map(|frame| frame.number).collect()
+    }
+}
+
+/// Remarks on gross errors and on the noise, once for all frames.
+pub fn remarks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
+    let numbers = study.frame_numbers();
+    let rules = [gross_errors, uneven_noise];
+    let findings = rules.iter().flat_map(|rule| {
+        let found = study
+            .frames_with(estimates)
+            .filter_map(|(frame, estimate)| {
+                Some(Finding {
+                    frame: frame.number,
+                    message: rule(study, estimate)?,
+                    remedy: String::new(),
+                })
+            });
+        once(&numbers, found.collect())
+    });
+    findings.map(|finding| finding.message).collect()
+}
+
+/// Gross errors that were detected without being asked for.
+fn gross_errors(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
+    (study.conditions.robust.is_none() && estimate.robust == Robust::Tukey).then(|| {
+        format!(
+            "{} of {} markers are outliers, some farther off than noise can explain: Tukey's weights reduce the weight of a marker the farther it is off \
+             (robust = \"no\" gives all markers full weight)",
+            outliers(estimate),
+            used(estimate)
+        )
+    })
+}
+
+fn uneven_noise(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
+    let range = |[low, high]: [f64; 2]| {
+        if high - low > 1e-6 * high {
+            format!("{low:.2e} to {high:.2e} mm")
+        } else {
+            format!("{low:.2e} mm")
+        }
+    };
+    let [x, y] = estimate.noise_range?.map(range);
+    Some(format!(
+        "the noise differs between markers, ux {x} and uy {y}: noisier markers get less weight"
+    ))
+}
+
+/// An edge that only the markers define may be the reason why the data are not explained.
+fn unknown_edge(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
+    let gap = decimals(study.unknown_gap?, 4);
+    (estimate.verdict.answer == Answer::NotExplained).then(|| {
+        let message = format!(
+            "the free edges are known only to within {gap} mm, because only the markers define them; with precise data even a smaller \
+             offset leads to rejection"
+        );
+        (
+            message,
+            "give the edges and holes with --outline or --mesh, or set --edge-gap if the report estimates how far the free edges lie from those of the mesh",
+        )
+    })
+}
+
+/// Edges that are free, but not at the mesh's position.
+fn idle_edges(estimate: &FieldEstimate) -> Option<Doubt> {
+    let idle = estimate.edges.iter().filter(|edge| edge.idle);
+    let names: Vec<&str> = idle.map(|edge| edge.edge.as_str()).collect();
+    let words = match names.len() {
+        0 => return None,
+        1 => "carries no force, but the data reject a free edge there",
+        _ => "carry no force, but the data reject free edges there",
+    };
+    let message = format!(
+        "{} {words}: the specimen probably ends elsewhere, and forces correspond to the mesh's width",
+        names.join(", ")
+    );
+    Some((
+        message,
+        "state how far the edges lie outside the markers with --edge-gap, or give them with --outline or --mesh",
+    ))
+}
+
+fn contradicted_edges(estimate: &FieldEstimate) -> Option<Doubt> {
+    let contradiction = estimate.contradiction.as_ref()?;
+    let names = contradiction.edges.iter().map(|(name, _)| name.as_str());
+    let mut names = names.collect::<Vec<_>>().join(", ");
+    if names.is_empty() {
+        names = "all edges together".to_owned();
+    }
+    let message = format!(
+        "the data contradict the stated condition on {names}: releasing it reduces the misfit by an amount that noise alone would reach with probability {}",
+        small_probability(contradiction.probability)
+    );
+    Some((
+        message,
+        "give an edge that lies inside the specimen the condition \"unknown\", not rigid or free; otherwise the law or the thickness is wrong",
+    ))
+}
+
+/// The measured force that is farthest from that of the field.
+fn contradicted_force(estimate: &FieldEstimate) -> Option<Doubt> {
+    let size = |check: &&ForceCheck| check.standardised.abs();
+    let wrong = estimate.force_checks.iter();
+    let wrong = wrong.filter(|check| check.contradicts());
+    let worst = wrong.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+    let measured = &worst.measured;
+    let message = format!(
+        "the force measured on {} along {}, {} ± {} N, contradicts the field's {} N by {:.1} standard errors",
+        measured.edge,
+        ["x", "y"][measured.axis],
+        number(measured.force),
+        number(measured.standard_deviation),
+        decimals(worst.estimated, 4),
+        size(&worst)
+    );
+    Some((
+        message,
+        "check thickness, material, units, the position of the edges, and the sign of the force, which is that of the grip on the specimen",
+    ))
+}
+
+fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
+    let verdict = &estimate.verdict;
+    (verdict.answer == Answer::NotExplained).then(|| {
+        let message = format!("{}: {}", verdict.answer.words(), reasons(verdict).join("; "));
+        (
+            message,
+            "intervals are not valid here; see the report for what would improve the fit, and residuals.png and misfit.png for where it is worst",
+        )
+    })
+}
+
+/// Noise that is no measurement's: a share of the specimen.
+fn no_measurement(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
+    /// Noise over the specimen's smaller extent.
+    const NO_MEASUREMENT: f64 = 0.03;
+    let (noise, [low, high]) = (estimate.noise, study.mesh.bounding_box());
+    let share = noise / (high[0] - low[0]).min(high[1] - low[1]);
+    (estimate.verdict.answer != Answer::NotExplained && share > NO_MEASUREMENT).then(|| {
+        let message = format!(
+            "the markers scatter by {} mm, {:.1} % of the specimen's smaller extent: markers were lost or matched wrongly",
+            decimals(noise, 4),
+            100.0 * share
+        );
+        (
+            message,
+            "leave the frame out, or check its picture; its results rest on almost no valid data",
+        )
+    })
+}
+
+fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
+    has_many(estimate).then(|| {
+        let (count, all) = (outliers(estimate), used(estimate));
+        let remedy = match estimate.robust {
+            Robust::No => {
+                "check the conditions, the law, and the noise if it is stated; try --physics weighted, or see in vtk/markers.pvd \
+                 where they lie"
+            }
+            _ => {
+                "see in vtk/markers.pvd where they lie: markers that were lost or matched wrongly lie anywhere, those that the law or the conditions \
+                 do not fit lie together; all have reduced or zero weight"
+            }
+        };
+        (
+            format!("{count} of {all} markers are outliers, more than noise explains"),
+            remedy,
+        )
+    })
+}
+
+/// A stated noise that the data contradict.
+fn stated_noise(estimate: &FieldEstimate) -> Option<Doubt> {
+    let ratio = estimate.noise_ratio?;
+    let message = if estimate.noise_range.is_some() {
+        "the markers' noise does not follow the stated noise and varies over the field or between ux and uy; the observed noise is used instead".to_owned()
+    } else {
+        let relation = if ratio > 1.0 { "more" } else { "less" };
+        format!(
+            "the markers scatter {ratio:.2} times as much as their stated noise, {relation} than chance allows: the stated noise is \
+             rescaled to the observed scatter"
+        )
+    };
+    Some((
+        message,
+        "correct the stated noise, or leave it out to have it estimated",
+    ))
+}
+
+/// Strains that are too large for the law.
+fn large_strains(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
+    let law = study.law(estimate);
+    let reason = small_strain::reason(&*law, &study.mesh, &estimate.displacement)?;
+    Some((reason, small_strain::LARGE_STRAINS))
+}
+
+/// Stretches beyond the range of the card, on more than a hundredth of the area: its law is an extrapolation there. A law whose
+/// parameters are all estimated with the field is calibrated by it.
+fn beyond_card(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
+    let acting = study.regressed.as_ref().map(RegressedLaw::acting);
+    if acting.is_some_and(|keys| estimate.parameters.len() == keys.len()) {
+        return None;
+    }
+    let stretches = Stretches::new(&study.card, &study.mesh, &estimate.displacement);
+    let reason = stretches.reason(&study.card, "");
+    let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
+    Some((
+        reason,
+        "stresses and forces there are extrapolated, which no interval includes: use a card fitted to tests up to these stretches",
+    ))
+}

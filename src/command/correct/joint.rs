@@ -1,0 +1,143 @@
+//! `gelbench correct --together`: parameters of laws from all frames of all specimens, and every specimen corrected with them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::frames::{correct, finish};
+use super::job::{Job, exit_code};
+use super::options::Options;
+use super::request::request;
+use crate::command::interrupt;
+use crate::command::progress::Progress;
+use crate::command::terminal::{Outcome, print_report, warn};
+use crate::error::{Diagnostic, Error};
+use crate::estimation::{FieldEstimate, JointSettings};
+use crate::material::Card;
+use crate::material::softened_law::check_memory;
+use crate::output::ResultFolder;
+use crate::studies::markers::joint::{
+    CorrectedSpecimen, JointStudy, NamedSpecimen, given_the_law, results, undetermined,
+};
+use crate::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
+use crate::studies::name;
+
+/// Estimates the parameters, corrects, prints, and writes.
+pub fn run(options: Options, mut job: Job) -> Outcome {
+    let study = read(options, &mut job.inputs)?;
+    study.check()?;
+    for (_, specimen) in &study.specimens {
+        warn(&specimen.warnings);
+    }
+    let inputs: Vec<&Path> = job.inputs.iter().map(PathBuf::as_path).collect();
+    let folder = ResultFolder::open(&job.folder, "correct", &inputs)?;
+    interrupt::guard(&folder);
+    let start = Instant::now();
+    let progress = Progress::of(0);
+    let estimate = study.estimate(&|action| progress.tell(action))?;
+    drop(progress);
+    let mut corrected = Vec::new();
+    for (name, specimen) in &study.specimens {
+        corrected.push(corrected_specimen(
+            name,
+            specimen.with_card(&estimate.card),
+            &job,
+        )?);
+    }
+    warn(&[given_the_law()]);
+    let undetermined = undetermined(&estimate.estimate);
+    warn(
+        undetermined
+            .map(|words| Diagnostic::warning("", words))
+            .as_slice(),
+    );
+    interrupt::guard(&folder);
+    let results = results(&study, &estimate, &corrected, start.elapsed().as_secs_f64());
+    finish(folder, &results)?;
+    print_report(|| results.json())?;
+    let estimates = corrected
+        .into_iter()
+        .flat_map(|specimen| specimen.estimates);
+    let estimates: Vec<FieldEstimate> = estimates.collect();
+    Ok(exit_code(worst_answer(&estimates), results.passed()))
+}
+
+/// Corrects a specimen with the card of the estimated parameters.
+fn corrected_specimen(
+    name: &str,
+    mut study: MarkerStudy,
+    job: &Job,
+) -> Result<CorrectedSpecimen, Error> {
+    let job = Job {
+        name: name.to_owned(),
+        text: String::new(),
+        folder: job.folder.join("specimens").join(name),
+        arguments: format!("{}_{name}", job.arguments),
+        ..job.clone()
+    };
+    let (estimates, results) = correct(&mut study, job)?;
+    Ok(CorrectedSpecimen {
+        name: name.to_owned(),
+        study,
+        estimates,
+        doubts: results.outcome.doubts.len(),
+    })
+}
+
+/// The study; the files that specimens name are added to the `inputs`.
+fn read(options: Options, inputs: &mut Vec<PathBuf>) -> Result<JointStudy, Error> {
+    let materials = [&options.material].into_iter().chain(&options.laws);
+    let load = |card: &String| {
+        let card = Card::load(card, Path::new("."))?;
+        check_memory(&*card.law, "a correction of measured fields")?;
+        Ok(card)
+    };
+    let cards: Result<Vec<Card>, Error> = materials.map(load).collect();
+    let files = options.specimen.clone();
+    let settings = JointSettings {
+        groups: options.leave_out,
+        ..JointSettings::default()
+    };
+    let field_name = options.fields.first().map(|first| name(first));
+    let like = request(options)?;
+    let fit = if like.conditions.fit.is_empty() {
+        vec!["all".to_owned()]
+    } else {
+        like.conditions.fit.clone()
+    };
+    let mut specimens = Vec::new();
+    if let Some(name) = field_name {
+        specimens.push((name, prepared(like.clone())?));
+    }
+    for file in files {
+        specimens.push(of_file(&file, &like, inputs)?);
+    }
+    Ok(JointStudy {
+        specimens,
+        cards: cards?,
+        fit,
+        settings,
+    })
+}
+
+/// The specimen of a file; both are added to the `inputs`.
+fn of_file(file: &Path, like: &Request, inputs: &mut Vec<PathBuf>) -> Result<NamedSpecimen, Error> {
+    let mut conditions = Conditions::of_file(file)?;
+    let Some(specimen) = conditions.specimen.take() else {
+        return Err(Error::input(
+            format!("{} has no [specimen]", file.display()),
+            "add the section with fields and thickness, as `gelbench new --kind markers` shows it",
+        ));
+    };
+    let folder = file.parent().unwrap_or(Path::new("."));
+    inputs.push(file.to_owned());
+    inputs.extend(specimen.inputs(folder));
+    let request = specimen.request(folder, conditions, like);
+    let name = specimen.name.unwrap_or_else(|| name(file));
+    Ok((name, prepared(request)?))
+}
+
+/// A specimen whose parameters are those of all specimens.
+fn prepared(mut request: Request) -> Result<MarkerStudy, Error> {
+    request.conditions.fit.clear();
+    MarkerStudy::prepare(request)
+}
