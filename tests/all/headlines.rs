@@ -70,7 +70,9 @@ fn forces(results: &Results, model: &str) -> Vec<[f64; 2]> {
 fn curves_of_force_begin_at_rest_and_have_no_point_that_was_not_computed() {
     let plate = plate("[\"10 %\", \"100 %\"]", [12, 4]);
     let strip = strip(6, CLAMPED);
-    let drawn = lines(&plate, "force.png").iter().map(|line| (&plate, line));
+    let drawn = lines(&plate, "plate_forces.png")
+        .iter()
+        .map(|line| (&plate, line));
     let drawn = drawn.chain(
         lines(&strip, "strip_forces.png")
             .iter()

@@ -377,7 +377,7 @@ fn a_mesh_that_cannot_be_halved_twice_is_halved_less_and_that_is_told() {
         "{warnings:?}"
     );
     let (report, warnings) = within(8.0);
-    assert!(report.contains("on 8 cells") && !report.contains("meshes,"));
+    assert!(report.contains("on 8 cells") && !report.contains("meshes;"));
     assert!(
         warnings[0].contains("computed on this mesh alone"),
         "{warnings:?}"

@@ -284,7 +284,7 @@ fn misspelt_groups_are_told_at_their_place() {
     let strip = example("strip_with_hole.toml").replacen("\"right\"", "\"rihgt\"", 1);
     checked(
         &strip,
-        &["support[2].group", "a.toml:36:9", "did you mean `right`?"],
+        &["support[2].group", "a.toml:37:9", "did you mean `right`?"],
     );
 }
 

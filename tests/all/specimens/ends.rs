@@ -120,7 +120,7 @@ fn the_end_of_the_springs_is_told_and_the_other_models_complete() {
     assert!(!out.join("vtk/mass_spring_002.vtu").exists());
     let report = fs::read_to_string(out.join("report.md")).unwrap();
     assert!(
-        report.contains("The springs have no equilibrium at the load factors 1."),
+        report.contains("The springs have no field at load factor 1."),
         "{report}"
     );
     let json = machine_report(&folder.path().join("out"));

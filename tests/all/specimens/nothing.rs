@@ -165,8 +165,5 @@ fn a_moment_that_no_requirement_judges_is_told() {
     let folder = folder_with(&specimen(shape, &rest));
     let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
     let told = words(&done.get_output().stderr);
-    assert!(
-        told.contains("but their moment at the load factor 1"),
-        "{told}"
-    );
+    assert!(told.contains("but their moment at load factor 1"), "{told}");
 }

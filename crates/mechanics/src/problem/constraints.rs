@@ -3,13 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::boundary_conditions::{Drive, Support};
-use super::contradictions::FACTORS;
 use super::corner_forces::{Hold, Part, reaction_parts};
 use super::groups::{named, refused};
 use super::rigid_motion::RigidMotion;
 use crate::error::Diagnostic;
 use crate::mesh::{Group, Mesh};
 use crate::statistics::extremes;
+
+/// Load factors at which motions are compared; two different motions, a turn and a line, agree at two of them at most.
+pub const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
 
 /// How a held unknown moves.
 #[derive(Clone, Copy)]

@@ -3,13 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::boundary_conditions::Support;
-use super::constraints::{Constraints, Motion};
+use super::constraints::{Constraints, FACTORS, Motion};
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 use crate::units::Linear;
-
-/// Load factors at which motions are compared; two different motions, a turn and a line, agree at two of them at most.
-pub const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
 
 /// What a support prescribes for an unknown.
 #[derive(Clone, Copy)]

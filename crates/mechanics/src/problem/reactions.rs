@@ -60,7 +60,8 @@ impl Model<'_> {
         if Assembly::residual(&*potential, &state.displacement, &mut internal).is_err() {
             internal.fill(f64::NAN);
         }
-        let masters = forces.iter().map(|(master, _)| master);
+        let of_ties = ties.values().map(|tie| &tie.master);
+        let masters = forces.iter().map(|(master, _)| master).chain(of_ties);
         let mut supports = vec![0.0; internal.len()];
         for unknown in held.keys().chain(ties.keys()).chain(masters) {
             supports[*unknown] = internal[*unknown];

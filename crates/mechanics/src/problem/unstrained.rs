@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::boundary::BoundaryProblem;
 use super::boundary_conditions::Load;
 use super::constraints::Constraints;
-use super::contradictions::FACTORS;
+use super::constraints::FACTORS;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 

@@ -1,10 +1,8 @@
 //! One model of a study alone.
 
-use super::specimen::Specimen;
 use crate::corrector::Multipliers;
 use crate::error::Error;
 use crate::problem::Solution;
-use crate::results::locking;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 
 /// A model of a plate or a specimen.
@@ -54,20 +52,5 @@ impl ModelKind {
             Self::Corrected => CORRECTED,
             Self::FiniteElement => FINITE_ELEMENTS,
         }
-    }
-
-    /// What deserves attention in the states of this model alone: cells that lock, and what is said of the states of any sheet.
-    pub(super) fn warnings(self, specimen: &Specimen, solution: &Solution) -> Vec<String> {
-        let remedy = match self {
-            Self::MassSpring => None,
-            Self::Corrected => Some("Take the finite elements"),
-            Self::FiniteElement => Some(locking::SECOND_DEGREE),
-        };
-        let remedy = remedy.filter(|_| locking::locks(&solution.mesh));
-        let locking = remedy.and_then(|remedy| {
-            locking::warning(&*specimen.problem.law, &[(self.style().name, remedy)])
-        });
-        let of_states = specimen.warnings_of_states(self.style().name, solution);
-        locking.into_iter().chain(of_states).collect()
     }
 }

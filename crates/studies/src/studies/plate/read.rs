@@ -228,18 +228,12 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
         return stretches;
     }
     let remembers = card.is_some_and(|card| card.law.softening().is_some());
-    let is_rest = |(step, stretch): (usize, &f64)| {
-        // A material with a memory may be unloaded.
-        stretch.abs() < SMALLEST && !(remembers && step > 0 && *stretch == 0.0)
-    };
-    if stretches.iter().enumerate().any(is_rest) {
+    if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
         let hint = "at rest there is nothing to solve; leave it out";
         section.fault(KEY, "must not contain zero, or less than 1e-9", hint);
         return stretches;
     }
-    let one_sign = stretches
-        .iter()
-        .all(|stretch| stretch * stretches[0] >= 0.0);
+    let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
     let repeated = |pair: &[f64]| pair[1] == pair[0];
     if !one_sign {
         let hint = "every path begins at rest: write one study for the tension and one for the compression";

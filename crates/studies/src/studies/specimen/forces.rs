@@ -1,5 +1,7 @@
 //! Forces, moments and displacements of all groups, for reports and for machines.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Map, Value, json};
 
 use super::problem::Specimen;
@@ -8,7 +10,7 @@ use super::results::models::Models;
 use crate::compare::judgement::percent;
 use crate::document::write_records;
 use crate::problem::{GroupState, Solution};
-use crate::results::Block;
+use crate::results::{Block, or_dash};
 use crate::statistics::larger;
 use crate::studies::ModelKind;
 use crate::units::number;
@@ -53,7 +55,7 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
         Block::table(&head, rows),
-        Block::Paragraph(balance(models)),
+        Block::Paragraph(balance(specimen, models)),
     ]
 }
 
@@ -114,25 +116,53 @@ pub fn worst_balance(models: &Models) -> Option<f64> {
         .reduce(larger)
 }
 
+/// The largest force left at a node that no support holds over the largest force on a group, the worst of all states; `None` where there is
+/// none.
+fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
+    let (mesh, problem) = (&solution.mesh, &specimen.problem);
+    let (held, ties) = (problem.held_by(mesh).ok()?, problem.ties(mesh).ok()?);
+    let masters: BTreeSet<usize> = ties.values().map(|tie| tie.master).collect();
+    let is_free = |unknown: &usize| {
+        !held.contains_key(unknown) && !ties.contains_key(unknown) && !masters.contains(unknown)
+    };
+    let free: Vec<usize> = (0..2 * mesh.nodes.len()).filter(is_free).collect();
+    let of_step = |step: usize| {
+        let groups = solution.groups(step)?.iter();
+        let most = groups.fold(0.0, |most: f64, own| {
+            most.max(own.force[0].hypot(own.force[1]))
+        });
+        let residual = &solution.states[step].residual;
+        let left = free
+            .iter()
+            .fold(0.0, |left: f64, unknown| left.max(residual[*unknown].abs()));
+        (most > 0.0).then(|| left / most)
+    };
+    (0..solution.reached()).filter_map(of_step).reduce(larger)
+}
+
 /// The balance of each model in a sentence.
-fn balance(models: &Models) -> String {
+fn balance(specimen: &Specimen, models: &Models) -> String {
     let balances = models.all().into_iter();
     let balances = balances.filter_map(|model| {
         let balance = model.solution.worst_balance()?;
-        Some(format!("{} {balance:.1e}", model.style.name))
+        let free = or_dash(free_nodes(specimen, model.solution), |left| {
+            format!("{left:.1e}")
+        });
+        Some(format!("{} {balance:.1e} and {free}", model.style.name))
     });
     format!(
-        "Balance: the unbalanced part of supports and loads, at the worst load and relative to the largest force or moment: {}.",
-        balances.collect::<Vec<_>>().join(", ")
+        "Balance of forces and moments: the unbalanced part of supports and loads relative to the largest force or moment, and the largest force left \
+         at a node without a support relative to that on a group, at the worst load: {}.",
+        balances.collect::<Vec<_>>().join("; ")
     )
 }
 
 /// The warning about forces or moments that do not balance.
-pub fn unbalanced(models: &Models) -> Option<String> {
+pub fn unbalanced(specimen: &Specimen, models: &Models) -> Option<String> {
     worst_balance(models).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
     Some(format!(
         "forces or moments do not balance. {}",
-        balance(models)
+        balance(specimen, models)
     ))
 }
 
@@ -218,13 +248,13 @@ pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<V
 }
 
 /// The worst balance of every model, for machines.
-pub fn balances(models: &Models) -> Map<String, Value> {
+pub fn balances(specimen: &Specimen, models: &Models) -> Map<String, Value> {
     let all = models.all().into_iter();
     let balances = all.map(|model| {
         let unbalanced = model.solution.worst_balance();
         (
             model.style.key.to_owned(),
-            json!({ "unbalanced": unbalanced }),
+            json!({ "unbalanced": unbalanced, "free_nodes": free_nodes(specimen, model.solution) }),
         )
     });
     balances.collect()

@@ -4,6 +4,7 @@ use super::problem::{Outline, Specimen};
 use super::results::models::Models;
 use crate::mesh::{Mesh, Shape};
 use crate::results::{Block, Deformed, Gauge, Headline, LoadedSheet};
+use crate::studies::ModelKind;
 
 /// The groups' forces and displacements at every load factor and the largest values at the largest one, by the finite elements, or else by the
 /// corrected field or the springs.
@@ -25,7 +26,11 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let mut fields = solution.past(largest);
     fields.extend(solution.displacement(largest));
     let headline = Headline {
-        model: model.style.name,
+        model: match model.kind {
+            ModelKind::MassSpring => "springs",
+            ModelKind::Corrected => "corrected field",
+            ModelKind::FiniteElement => "finite elements",
+        },
         along: along.head(),
         groups: specimen.groups(),
         steps: states.collect(),

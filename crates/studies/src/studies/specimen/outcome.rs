@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::files::{figures, grids};
 use super::headline::headline;
 use super::problem::Specimen;
-use super::results::lattice::Start;
+use super::results::corrected_fields::Start;
 use super::results::models::{ModelSeries, Models};
 use super::results::verdict::{Deviation, Distance, checks, deviations};
 use super::warnings::warnings;
@@ -19,7 +19,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let deviations = deviations(specimen, models);
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     let mut warnings = warnings(specimen, models);
-    warnings.extend(forces::unbalanced(models));
+    warnings.extend(forces::unbalanced(specimen, models));
     warnings.extend(forces::unjudged_moment(specimen, models));
     let quantities = |(step, deviation): (usize, &Option<Deviation>)| Step {
         at: specimen.factors[step],
@@ -42,7 +42,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         )],
         warnings,
         balance: forces::worst_balance(models),
-        balances: forces::balances(models),
+        balances: forces::balances(specimen, models),
         times: models.times.clone(),
         ..Outcome::default()
     };

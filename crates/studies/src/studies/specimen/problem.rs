@@ -1,12 +1,14 @@
 //! What a specimen's study asks for: the problem, its outline and meshes, what is measured.
 
+use std::sync::Arc;
+
 use super::along::Along;
 use crate::error::Error;
 use crate::mass_spring::MassSpring;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{BoundaryProblem, Model};
+use crate::problem::{BoundaryProblem, ClampedPlate, Model};
 use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings, Remembering};
 use crate::studies::ModelKind;
@@ -17,8 +19,8 @@ mod grids;
 mod outline;
 mod shape_words;
 
-pub use grids::{GridCorrection, GridElements, PlateGrids};
-pub use outline::{HALVINGS, Outline};
+pub use grids::{GridCorrection, GridElements, HALVINGS, PlateGrids};
+pub use outline::Outline;
 
 /// The shape that is read from a file.
 pub const MESH: &str = "mesh";
@@ -104,7 +106,7 @@ impl Specimen {
     /// The specimen of another material, such as one made by [`Card::of_law`].
     #[must_use]
     pub fn with_card(mut self, card: Card) -> Self {
-        self.problem.law = std::sync::Arc::clone(&card.law);
+        self.problem.law = Arc::clone(&card.law);
         self.card = card;
         self
     }
@@ -189,6 +191,25 @@ impl Specimen {
             past: &[],
             viscous: None,
         }
+    }
+
+    /// The plate's grids, where the specimen is one.
+    pub fn grids(&self) -> Option<&PlateGrids> {
+        match &self.outline {
+            Outline::Grid(grids) => Some(grids),
+            Outline::Shape { .. } | Outline::File { .. } => None,
+        }
+    }
+
+    /// The plate between its grips, where the specimen is one.
+    pub fn clamped_plate(&self) -> Option<ClampedPlate> {
+        let grids = self.grids()?;
+        Some(ClampedPlate {
+            size: grids.size,
+            thickness: self.problem.thickness,
+            law: Arc::clone(&self.problem.law),
+            stretches: self.factors.clone(),
+        })
     }
 
     /// Whether a model is computed.

@@ -60,23 +60,13 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     section.unknown_keys();
     let given = SupportsAndLoads::read(root);
 
-    let path = root
-        .section("path")
-        .requiring(&["factors", "measured_group"]);
     let remembers = card
         .as_ref()
         .is_some_and(|card| card.law.softening().is_some());
-    let factors = read_factors(&path, remembers);
-    let group = path.text("measured_group");
-    path.unknown_keys();
-    path.affords(
-        "factors",
-        Need {
-            instants: factors.len() as f64,
-            ..Need::default()
-        },
-        "take fewer",
-    );
+    let path = root
+        .section("path")
+        .requiring(&["factors", "measured_group"]);
+    let (factors, group) = read_path(&path, remembers);
     let models = read_models(root);
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
     let pictures = Pictures::read(
@@ -123,6 +113,19 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     check_refinement(root, &specimen, &mesh);
     check_nested(root, &specimen);
     Some(specimen)
+}
+
+/// The load factors and the measured group.
+fn read_path(path: &Section, remembers: bool) -> (Vec<f64>, String) {
+    let factors = read_factors(path, remembers);
+    let group = path.text("measured_group");
+    path.unknown_keys();
+    let need = Need {
+        instants: factors.len() as f64,
+        ..Need::default()
+    };
+    path.affords("factors", need, "take fewer");
+    (factors, group)
 }
 
 fn read_correction(section: &Section) -> Option<Method> {
@@ -190,17 +193,7 @@ const LARGE_FACTOR: f64 = 5.0;
 
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
-    let bound = if remembers {
-        Bound::NonNegative
-    } else {
-        Bound::Positive
-    };
-    let factors = path.multiples("factors", bound, f64::INFINITY);
-    if factors.first() == Some(&0.0) {
-        let hint = "every path begins at rest: leave it out";
-        path.fault("factors", "must not begin with zero", hint);
-        return factors;
-    }
+    let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
     let falls = factors.windows(2).any(|pair| {
         if remembers {
             pair[1] == pair[0]

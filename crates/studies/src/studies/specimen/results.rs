@@ -6,6 +6,7 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::studies::{ModelKind, OneModel, Progress};
 
+pub mod corrected_fields;
 pub mod end;
 pub mod lattice;
 pub mod measured;
@@ -13,6 +14,7 @@ pub mod models;
 mod on_grids;
 pub mod reference;
 mod refine;
+mod rounds;
 pub mod verdict;
 
 use reference::Reference;
@@ -57,7 +59,7 @@ pub fn one_model(
         forces: measured_forces(specimen, &solution),
         multipliers,
         ends: ends.iter().map(end::End::error).collect(),
-        warnings: kind.warnings(specimen, &solution),
+        warnings: specimen.warnings_of_model(kind, &solution),
         solution,
     })
 }

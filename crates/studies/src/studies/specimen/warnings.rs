@@ -68,12 +68,23 @@ fn locking_cells(specimen: &Specimen, models: &Models) -> Option<String> {
 }
 
 impl Specimen {
+    /// What deserves attention in the states of a model alone: cells that lock, and what is said of the states of any sheet.
+    pub(super) fn warnings_of_model(&self, kind: ModelKind, solution: &Solution) -> Vec<String> {
+        let remedy = match kind {
+            ModelKind::MassSpring => None,
+            ModelKind::Corrected => Some("Take the finite elements"),
+            ModelKind::FiniteElement => Some(locking::SECOND_DEGREE),
+        };
+        let name = kind.style().name;
+        let remedy = remedy.filter(|_| locking::locks(&solution.mesh));
+        let locking =
+            remedy.and_then(|remedy| locking::warning(&*self.problem.law, &[(name, remedy)]));
+        let of_states = self.warnings_of_states(name, solution);
+        locking.into_iter().chain(of_states).collect()
+    }
+
     /// What is said of the states of one model: compression, loss of stability, the range of the card.
-    pub(in crate::studies) fn warnings_of_states(
-        &self,
-        model: &str,
-        solution: &Solution,
-    ) -> Vec<String> {
+    fn warnings_of_states(&self, model: &str, solution: &Solution) -> Vec<String> {
         let states = solution.states.iter().map(|state| StrainedSheet {
             load: self.along.describe(state.factor),
             sheet: self.sheet(),

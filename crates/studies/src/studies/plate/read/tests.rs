@@ -208,9 +208,6 @@ fn only_a_material_that_softens_is_unloaded() {
     let direct = "[corrector]\nmethod = \"direct\"\n";
     let study = softening(&format!("{history}{direct}")).unwrap();
     assert_eq!(study.made.factors, [0.3, 0.6, 0.2, 0.6]);
-    let unloaded = "[load]\nstretches = [\"30 %\", \"0 %\", \"60 %\"]\n";
-    let study = softening(&format!("{unloaded}{direct}")).unwrap();
-    assert_eq!(study.made.factors, [0.3, 0.0, 0.6]);
     let refused = |text: &str, words: &[&str]| {
         let fault = softening(text).map(|_| ()).unwrap_err().to_string();
         assert!(words.iter().all(|word| fault.contains(word)), "{fault}");

@@ -1,16 +1,13 @@
 //! The meshes of a plate: grids of lines, whose cells may become smaller towards the clamped corners.
 
-use std::sync::Arc;
-
-use super::Specimen;
 use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
 use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
 use crate::mesh::{CellShape, Grid, Mesh};
-use crate::problem::ClampedPlate;
 
-use super::Outline;
+/// How often the cells of the finite elements are halved: three meshes tell their own error.
+pub const HALVINGS: usize = 2;
 
 /// A rectangle between two grips, with the grids of its models.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +58,7 @@ pub struct GridElements {
 impl GridElements {
     /// The mesh of a level: 2 is the finest of a study, each has cells of half the size of those of the one before.
     pub fn mesh(&self, size: [f64; 2], level: usize) -> Mesh {
-        let cells = self.cells.map(|cells| (cells << level) >> super::HALVINGS);
+        let cells = self.cells.map(|cells| (cells << level) >> HALVINGS);
         Mesh::of_grid(Grid::new(size, cells, self.grading), self.element.shape())
     }
 }
@@ -97,26 +94,5 @@ impl PlateGrids {
         self.elements.element == element
             && self.elements.grading == self.correction.grading
             && cells == self.cells
-    }
-}
-
-impl Specimen {
-    /// The plate's grids, where the specimen is one.
-    pub fn grids(&self) -> Option<&PlateGrids> {
-        match &self.outline {
-            Outline::Grid(grids) => Some(grids),
-            Outline::Shape { .. } | Outline::File { .. } => None,
-        }
-    }
-
-    /// The plate between its grips, where the specimen is one.
-    pub fn clamped_plate(&self) -> Option<ClampedPlate> {
-        let grids = self.grids()?;
-        Some(ClampedPlate {
-            size: grids.size,
-            thickness: self.problem.thickness,
-            law: Arc::clone(&self.problem.law),
-            stretches: self.factors.clone(),
-        })
     }
 }

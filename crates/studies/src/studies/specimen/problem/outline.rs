@@ -4,11 +4,8 @@ use crate::budget::Need;
 use crate::mesh::{CellShape, Mesh, Misfit, Shape};
 
 use super::Refinement;
-use super::grids::PlateGrids;
+use super::grids::{HALVINGS, PlateGrids};
 use super::shape_words::describe;
-
-/// How often the cells of the finite elements are halved: three meshes tell their own error.
-pub const HALVINGS: usize = 2;
 
 /// What is meshed, and how.
 pub enum Outline {

@@ -1,5 +1,6 @@
 //! Springs on the lattice of a specimen and their correction, each as far as its path goes.
 
+use super::corrected_fields::{Fields, Start};
 use super::end::End;
 use super::on_grids;
 use crate::corrector::climb::Way;
@@ -22,24 +23,6 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     max_steps: 60,
     solver: Solver::Automatic,
 };
-
-/// Where the corrector began at a load factor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
-    /// At springs on a coarser mesh.
-    Nested,
-    /// On grids of a plate, as its study says.
-    Grids,
-    /// The same where the springs have no field: ū is the affine stretch.
-    GridsAlone,
-    /// At the springs' field, with what the correction had changed at the load factor before.
-    Springs,
-    /// At the equilibrium of the elements, which Newton's method reached from rest in load steps; ū is the
-    /// springs' field.
-    LoadSteps,
-    /// The same, where the springs have no field: ū is that equilibrium itself, and nothing is left to correct.
-    Alone,
-}
 
 /// Springs on the lattice, and the corrected field on the mesh of the coarsest finite elements.
 pub struct OnLattice {
@@ -183,18 +166,6 @@ impl OnLattice {
             climbs: fields.climbs,
         })
     }
-}
-
-/// The corrected fields of a path, and how each was reached.
-pub struct Fields {
-    /// The states.
-    pub states: Vec<State>,
-    /// Where the corrector began.
-    pub starts: Vec<Start>,
-    /// The multipliers, condition after condition.
-    pub multipliers: Vec<Vec<Multipliers>>,
-    /// How a climb came to them.
-    pub climbs: Vec<Way>,
 }
 
 /// The corrections on nested meshes at the load factors, as far as they lead; none where the study has no such meshes.

@@ -1,7 +1,7 @@
 //! The corrected fields of a plate on its grids: by the climb, or by the direct method from the springs' field.
 
+use super::corrected_fields::{Fields, Start};
 use super::end::End;
-use super::lattice::{Fields, Start};
 use crate::corrector::PlateCorrector;
 use crate::corrector::climb::Climb;
 use crate::corrector::plate::KnownConditions;

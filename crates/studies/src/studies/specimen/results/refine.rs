@@ -15,7 +15,7 @@ use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
 use crate::statistics::larger;
 use crate::studies::Progress;
-use crate::studies::specimen::problem::{GridElements, Outline, Refinement, Specimen};
+use crate::studies::specimen::problem::{GridElements, Refinement, Specimen};
 
 /// The part of the squared error that is refined in a round.
 const SHARE: f64 = 0.5;
@@ -77,7 +77,7 @@ impl Reference {
 
     /// Whether one more halving of the cells is possible and not too much work.
     pub fn may_be_finer(&self, specimen: &Specimen) -> bool {
-        !matches!(specimen.outline, Outline::File { .. })
+        specimen.outline.is_shape()
             && self.rounds.is_empty()
             && self.reached() == specimen.factors.len()
             && 4 * self.finest.mesh.cell_count() <= MOST_CELLS
