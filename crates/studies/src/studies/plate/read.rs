@@ -74,13 +74,7 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
         correction,
         elements,
     };
-    if grids.is_own_reference() {
-        root.section("finite_element").warning(
-            "cells",
-            "with these settings the finite elements solve the corrected field's own equations on the same nodes and cannot judge it",
-            "leave out `cells` and `grading`, which then suit the lattice, or take finer ones",
-        );
-    }
+    warn_of_own_reference(root, &grids);
     Some(Specimen {
         name: "plate".into(),
         problem: problem.boundary_problem(),
@@ -98,6 +92,17 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
         outline: Outline::Grid(grids),
         pictures,
     })
+}
+
+/// Warns of finite elements that are the corrected field once more.
+fn warn_of_own_reference(root: &Section, grids: &PlateGrids) {
+    if grids.is_own_reference() {
+        root.section("finite_element").warning(
+            "cells",
+            "with these settings the finite elements solve the corrected field's own equations on the same nodes and cannot judge it",
+            "leave out `cells` and `grading`, which then suit the lattice, or take finer ones",
+        );
+    }
 }
 
 /// What cannot follow a material that softens.
