@@ -17,7 +17,7 @@ fn computed(text: &str) -> Results {
 
 const PLATE: &str = "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\nthickness = \"2 mm\"\ncells = [24, 8]\n\
     [material]\ncard = \"pva-10\"\n[load]\nstretches = [\"15 %\", \"30 %\"]\n\
-    [corrector]\ngrading = 1\nmethod = \"direct\"\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
+    [corrector]\ngrading = 1\nmethod = \"direct\"\n[finite_element]\ncells = [48, 16]\ngrading = 1\n";
 
 const STRIP: &str = "kind = \"specimen\"\n[specimen]\nshape = \"strip\"\nlength = \"30 mm\"\nwidth = \"10 mm\"\nthickness = \"2 mm\"\n\
     cells = 8\n[material]\ncard = \"pva-10\"\n\
