@@ -20,7 +20,7 @@ pub enum LinearSolver {
 }
 
 /// Number of unknowns from which multigrid is taken: it saves a third of a factor's time and memory there on a strip with a hole, and half
-/// of both at four times as many unknowns, see [`aggregation`](super::aggregation); on plates of equal quadratic cells it takes longer.
+/// of both at four times as many unknowns, see `solve::aggregation`; on plates of equal quadratic cells it takes longer.
 pub const WORTH_MULTIGRID: usize = 500_000;
 
 /// Most iterations of a system.

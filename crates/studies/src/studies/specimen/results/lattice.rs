@@ -81,7 +81,6 @@ pub fn solve_springs(
         let none = Solution::empty(springs.mesh.clone());
         return Ok((springs, none));
     }
-    progress.tell(MASS_SPRING.name);
     let model = specimen.on(&springs.mesh, springs.potential())?;
     let model = model.named(MASS_SPRING.name);
     let model = model.describing(|element| springs.describe_element(element));
@@ -111,7 +110,6 @@ impl OnLattice {
                 climbs: Vec::new(),
             });
         }
-        progress.tell("corrector");
         let nested = correct_nested(specimen, &mesh, progress)?;
         let springs = (springs, uncorrected);
         Self::correct(specimen, &mesh, springs, nested, ends, progress)
@@ -198,7 +196,6 @@ pub fn solve_corrected(
     ends: &mut Vec<End>,
     progress: Progress,
 ) -> Result<(Solution, Vec<Vec<Multipliers>>), Error> {
-    progress.tell("corrector");
     let mesh = specimen.outline.corrected_mesh();
     let nested = correct_nested(specimen, &mesh, progress)?;
     if nested.len() == specimen.factors.len() {
@@ -253,6 +250,8 @@ impl<'a> Corrections<'a> {
             let stage = Stage { factor, history };
             match self.at(step, stage, springs, &change) {
                 Ok(((state, multipliers), start)) => {
+                    let at = self.specimen.along.describe(factor);
+                    self.progress.tell(&format!("corrector, {at}"));
                     if let Some(data) = springs {
                         change = difference(&state.displacement, data);
                     }
