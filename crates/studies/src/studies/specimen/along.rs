@@ -4,10 +4,9 @@ use crate::problem::ClampedPlate;
 use crate::solve::PathEnd;
 
 /// What the states of a path are numbered by; the models take both for the load factor.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The factor of all motions and loads.
-    #[default]
     LoadFactor,
     /// The stretch λ − 1 between two grips.
     Stretch,

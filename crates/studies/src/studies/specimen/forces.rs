@@ -10,13 +10,14 @@ use super::results::models::Models;
 use crate::compare::judgement::percent;
 use crate::document::write_records;
 use crate::problem::{GroupState, Solution};
+use crate::results::models::ModelStyle;
 use crate::results::{Block, or_dash};
 use crate::statistics::larger;
 use crate::studies::ModelKind;
 use crate::units::number;
 
 /// A table of all groups in all models at all load factors.
-pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
+pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<Block> {
     let head = [
         specimen.along.head(),
         "group",
@@ -55,7 +56,7 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
         Block::table(&head, rows),
-        Block::Paragraph(balance(specimen, models)),
+        Block::Paragraph(balance(balances)),
     ]
 }
 
@@ -108,16 +109,31 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
 /// Balances above this are worth a warning.
 const UNBALANCED: f64 = 1e-5;
 
-/// The worst balance of all models.
-pub fn worst_balance(models: &Models) -> Option<f64> {
-    let balances = models.all().into_iter();
-    balances
-        .filter_map(|model| model.solution.worst_balance())
-        .reduce(larger)
+/// How well the forces and moments of a model balance in its worst state.
+pub struct Balance {
+    model: ModelStyle,
+    /// The resultant of all forces and moments relative to the largest of them; `None` where the model has no states.
+    unbalanced: Option<f64>,
+    /// The largest force left at a node that no support holds over the largest force on a group; `None` where there is none.
+    free_nodes: Option<f64>,
 }
 
-/// The largest force left at a node that no support holds over the largest force on a group, the worst of all states; `None` where there is
-/// none.
+/// The balance of every model.
+pub fn balances(specimen: &Specimen, models: &Models) -> [Balance; 3] {
+    models.all().map(|model| Balance {
+        model: model.style,
+        unbalanced: model.solution.worst_balance(),
+        free_nodes: free_nodes(specimen, model.solution),
+    })
+}
+
+/// The worst balance of all models.
+pub fn worst_balance(balances: &[Balance]) -> Option<f64> {
+    let known = balances.iter().filter_map(|own| own.unbalanced);
+    known.reduce(larger)
+}
+
+/// See [`Balance::free_nodes`].
 fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
     let (mesh, problem) = (&solution.mesh, &specimen.problem);
     let (held, ties) = (problem.held_by(mesh).ok()?, problem.ties(mesh).ok()?);
@@ -141,14 +157,11 @@ fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
 }
 
 /// The balance of each model in a sentence.
-fn balance(specimen: &Specimen, models: &Models) -> String {
-    let balances = models.all().into_iter();
-    let balances = balances.filter_map(|model| {
-        let balance = model.solution.worst_balance()?;
-        let free = or_dash(free_nodes(specimen, model.solution), |left| {
-            format!("{left:.1e}")
-        });
-        Some(format!("{} {balance:.1e} and {free}", model.style.name))
+fn balance(balances: &[Balance]) -> String {
+    let balances = balances.iter().filter_map(|own| {
+        let unbalanced = own.unbalanced?;
+        let free = or_dash(own.free_nodes, |left| format!("{left:.1e}"));
+        Some(format!("{} {unbalanced:.1e} and {free}", own.model.name))
     });
     format!(
         "Balance of forces and moments: the unbalanced part of supports and loads relative to the largest force or moment, and the largest force left \
@@ -158,11 +171,11 @@ fn balance(specimen: &Specimen, models: &Models) -> String {
 }
 
 /// The warning about forces or moments that do not balance.
-pub fn unbalanced(specimen: &Specimen, models: &Models) -> Option<String> {
-    worst_balance(models).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
+pub fn unbalanced(balances: &[Balance]) -> Option<String> {
+    worst_balance(balances).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
     Some(format!(
         "forces or moments do not balance. {}",
-        balance(specimen, models)
+        balance(balances)
     ))
 }
 
@@ -248,14 +261,10 @@ pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<V
 }
 
 /// The worst balance of every model, for machines.
-pub fn balances(specimen: &Specimen, models: &Models) -> Map<String, Value> {
-    let all = models.all().into_iter();
-    let balances = all.map(|model| {
-        let unbalanced = model.solution.worst_balance();
-        (
-            model.style.key.to_owned(),
-            json!({ "unbalanced": unbalanced, "free_nodes": free_nodes(specimen, model.solution) }),
-        )
-    });
-    balances.collect()
+pub fn balances_json(balances: &[Balance]) -> Map<String, Value> {
+    let of_model = |own: &Balance| {
+        let value = json!({ "unbalanced": own.unbalanced, "free_nodes": own.free_nodes });
+        (own.model.key.to_owned(), value)
+    };
+    balances.iter().map(of_model).collect()
 }

@@ -154,7 +154,12 @@ fn corrections_in_words(specimen: &Specimen) -> &'static str {
 
 /// How the climb came to the corrected field at every stretch; nothing where nothing climbed.
 fn climbs(specimen: &Specimen, models: &Models) -> Option<Block> {
-    let climbs = models.on_lattice.climbs.iter().zip(&specimen.factors);
+    let climbs = models
+        .on_lattice
+        .correction
+        .climbs
+        .iter()
+        .zip(&specimen.factors);
     let rows: Vec<_> = climbs
         .map(|(climb, stretch)| {
             let away = or_dash(Some(climb.away), |away| format!("{away:.3}"));
@@ -172,7 +177,7 @@ fn climbs(specimen: &Specimen, models: &Models) -> Option<Block> {
 /// The multipliers of every condition of the corrected field at the nodes; zero where the condition does not hold.
 pub fn multipliers(models: &Models, step: usize) -> Vec<Array> {
     let size = 2 * models.on_lattice.corrected.mesh.nodes.len();
-    let groups = models.on_lattice.multipliers.get(step);
+    let groups = models.on_lattice.correction.multipliers.get(step);
     let groups = groups.into_iter().flatten();
     groups
         .filter_map(|group| multiplier_array(group, size))

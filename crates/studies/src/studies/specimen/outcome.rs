@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::files::{figures, grids};
+use super::forces::Balance;
 use super::headline::headline;
 use super::problem::Specimen;
 use super::results::corrected_fields::Start;
@@ -19,7 +20,8 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let deviations = deviations(specimen, models);
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     let mut warnings = warnings(specimen, models);
-    warnings.extend(forces::unbalanced(specimen, models));
+    let balances = forces::balances(specimen, models);
+    warnings.extend(forces::unbalanced(&balances));
     warnings.extend(forces::unjudged_moment(specimen, models));
     let quantities = |(step, deviation): (usize, &Option<Deviation>)| Step {
         at: specimen.factors[step],
@@ -41,12 +43,12 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
             Content::Text(forces::csv(specimen, models)),
         )],
         warnings,
-        balance: forces::worst_balance(models),
-        balances: forces::balances(specimen, models),
+        balance: forces::worst_balance(&balances),
+        balances: forces::balances_json(&balances),
         times: models.times.clone(),
         ..Outcome::default()
     };
-    outcome.blocks = blocks(specimen, models, &deviations, &outcome);
+    outcome.blocks = blocks(specimen, models, &deviations, &balances, &outcome);
     outcome
 }
 
@@ -55,6 +57,7 @@ fn blocks(
     specimen: &Specimen,
     models: &Models,
     deviations: &[Option<Deviation>],
+    balances: &[Balance],
     outcome: &Outcome,
 ) -> Vec<Block> {
     let mut blocks = Vec::new();
@@ -65,7 +68,7 @@ fn blocks(
     }
     blocks.extend(starts(specimen, models).map(Block::Paragraph));
     blocks.extend(pictures("Pictures", outcome));
-    blocks.extend(forces::table(specimen, models));
+    blocks.extend(forces::table(specimen, models, balances));
     blocks.extend(work::blocks(specimen, models));
     if models.reference.reached() > 0 {
         blocks.push(Block::heading("The finite elements' own error"));
@@ -150,7 +153,7 @@ fn quantities(
                 let mut own = deviation_json(deviation.map(|own| own.corrected));
                 let correction = deviation.and_then(Deviation::correction_percent);
                 own.insert("displacement_correction_percent".into(), json!(correction));
-                let error = models.on_lattice.discretisation_errors.get(step);
+                let error = models.on_lattice.correction.discretisation_errors.get(step);
                 own.insert("discretisation_mm".into(), json!(error));
                 own
             }
@@ -341,7 +344,7 @@ fn introduction(specimen: &Specimen, models: &Models) -> String {
 
 /// Nested meshes, and the error of the corrected field that they show.
 fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
-    let errors = models.on_lattice.discretisation_errors.iter();
+    let errors = models.on_lattice.correction.discretisation_errors.iter();
     let (most, factor) = errors
         .zip(&specimen.factors)
         .max_by(|a, b| a.0.total_cmp(b.0))?;
@@ -364,7 +367,12 @@ fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
 /// Where the corrector began elsewhere than at the springs' field.
 fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
     let at = |wanted: Start| {
-        let starts = models.on_lattice.starts.iter().zip(&specimen.factors);
+        let starts = models
+            .on_lattice
+            .correction
+            .starts
+            .iter()
+            .zip(&specimen.factors);
         let starts = starts.filter(|(start, _)| **start == wanted);
         let factors: Vec<f64> = starts.map(|(_, factor)| *factor).collect();
         (!factors.is_empty()).then(|| specimen.along.list(factors))

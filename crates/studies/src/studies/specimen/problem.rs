@@ -11,9 +11,9 @@ use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{BoundaryProblem, ClampedPlate, Model};
 use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings, Remembering};
-use crate::studies::ModelKind;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
+use crate::studies::{ModelKind, Progress};
 
 mod grids;
 mod outline;
@@ -183,6 +183,11 @@ impl Specimen {
         self.factors.len() * self.models.iter().map(of).sum::<usize>()
     }
 
+    /// Reports that a model is solved at a load factor.
+    pub(super) fn report_solved(&self, progress: Progress, model: &str, factor: f64) {
+        progress.tell(&format!("{model}, {}", self.along.describe(factor)));
+    }
+
     /// What stresses follow from.
     pub fn sheet(&self) -> Sheet<'_> {
         Sheet {
@@ -201,15 +206,16 @@ impl Specimen {
         }
     }
 
-    /// The plate between its grips, where the specimen is one.
-    pub fn clamped_plate(&self) -> Option<ClampedPlate> {
+    /// The plate between its grips with its grids, where the specimen is one.
+    pub fn plate(&self) -> Option<(ClampedPlate, &PlateGrids)> {
         let grids = self.grids()?;
-        Some(ClampedPlate {
+        let plate = ClampedPlate {
             size: grids.size,
             thickness: self.problem.thickness,
             law: Arc::clone(&self.problem.law),
             stretches: self.factors.clone(),
-        })
+        };
+        Some((plate, grids))
     }
 
     /// Whether a model is computed.
@@ -219,9 +225,9 @@ impl Specimen {
 
     /// The springs on the lattice.
     pub fn springs(&self) -> MassSpring {
-        match (self.grids(), self.clamped_plate()) {
-            (Some(grids), Some(plate)) => MassSpring::new(&plate, grids.cells, grids.lattice),
-            _ => {
+        match self.plate() {
+            Some((plate, grids)) => MassSpring::new(&plate, grids.cells, grids.lattice),
+            None => {
                 let BoundaryProblem { law, thickness, .. } = &self.problem;
                 MassSpring::on_mesh(law, *thickness, self.outline.lattice())
             }
@@ -230,15 +236,15 @@ impl Specimen {
 
     /// The energy of the corrected fields on their mesh.
     pub fn corrected_energy(&self, mesh: &Mesh) -> SheetEnergy {
-        match (self.grids(), self.clamped_plate()) {
-            (Some(grids), Some(plate)) => grids.correction.scheme.energy(&plate, mesh),
-            _ => self.problem.finite_elements(mesh),
+        match self.plate() {
+            Some((plate, grids)) => grids.correction.scheme.energy(&plate, mesh),
+            None => self.problem.finite_elements(mesh),
         }
     }
 
     /// The problem on a mesh; groups were checked when the study was read. First guesses of a plate are affine.
     pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Remembering) -> Result<Model<'a>, Error> {
-        if let Some(plate) = self.clamped_plate() {
+        if let Some((plate, _)) = self.plate() {
             return Ok(plate.on(mesh, energy));
         }
         let model = self.problem.on(mesh, energy);

@@ -45,7 +45,7 @@ pub fn one_model(
     progress: Progress,
 ) -> Result<OneModel, Error> {
     let mut ends = Vec::new();
-    let (solution, multipliers) = match kind {
+    let (solution, mut multipliers) = match kind {
         ModelKind::MassSpring => (
             lattice::solve_springs(specimen, &mut ends, progress)?.1,
             Vec::new(),
@@ -53,7 +53,6 @@ pub fn one_model(
         ModelKind::FiniteElement => (refine::finest(specimen, &mut ends, progress)?, Vec::new()),
         ModelKind::Corrected => lattice::solve_corrected(specimen, &mut ends, progress)?,
     };
-    let mut multipliers = multipliers;
     multipliers.resize_with(solution.reached(), Vec::new);
     Ok(OneModel {
         forces: measured_forces(specimen, &solution),

@@ -22,14 +22,33 @@ pub enum Start {
     Alone,
 }
 
+/// How the corrected fields of a path were reached, at each load factor.
+#[derive(Default)]
+pub struct Correction {
+    /// Where the corrector began.
+    pub starts: Vec<Start>,
+    /// The multipliers, condition after condition; none where they were not computed.
+    pub multipliers: Vec<Vec<Multipliers>>,
+    /// How a climb came to each field; empty where none climbed.
+    pub climbs: Vec<Way>,
+    /// The discretisation errors in mm of those that began at springs on a coarser mesh.
+    pub discretisation_errors: Vec<f64>,
+}
+
 /// The corrected fields of a path, and how each was reached.
+#[derive(Default)]
 pub struct Fields {
     /// The states.
     pub states: Vec<State>,
-    /// Where the corrector began.
-    pub starts: Vec<Start>,
-    /// The multipliers, condition after condition.
-    pub multipliers: Vec<Vec<Multipliers>>,
-    /// How a climb came to them.
-    pub climbs: Vec<Way>,
+    /// How they were reached.
+    pub correction: Correction,
+}
+
+impl Fields {
+    /// Adds the field at the next load factor.
+    pub fn push(&mut self, state: State, start: Start, multipliers: Vec<Multipliers>) {
+        self.states.push(state);
+        self.correction.starts.push(start);
+        self.correction.multipliers.push(multipliers);
+    }
 }

@@ -1,9 +1,8 @@
 //! Springs on the lattice of a specimen and their correction, each as far as its path goes.
 
-use super::corrected_fields::{Fields, Start};
+use super::corrected_fields::{Correction, Fields, Start};
 use super::end::End;
 use super::on_grids;
-use crate::corrector::climb::Way;
 use crate::corrector::nested::{NestedCorrection, NestedMeshes};
 use crate::corrector::specimen::{correct, correct_without_multipliers};
 use crate::corrector::{CorrectorSettings, Multipliers, Solver};
@@ -32,14 +31,8 @@ pub struct OnLattice {
     pub uncorrected: Solution,
     /// After it.
     pub corrected: Solution,
-    /// Where the corrector began at each load factor that it reached.
-    pub starts: Vec<Start>,
-    /// The discretisation errors in mm of those that began at springs on a coarser mesh.
-    pub discretisation_errors: Vec<f64>,
-    /// The multipliers at each load factor, condition after condition; none where they were not computed.
-    pub multipliers: Vec<Vec<Multipliers>>,
-    /// How a climb came to each field; empty where none climbed.
-    pub climbs: Vec<Way>,
+    /// How the corrected fields were reached.
+    pub correction: Correction,
 }
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
@@ -52,15 +45,14 @@ pub fn solve(
     settings: NewtonSettings,
     progress: Progress,
 ) -> Solution {
-    let along = specimen.along;
-    let told = |factor: f64| progress.tell(&format!("{}, {}", model.name, along.describe(factor)));
+    let report = |factor: f64| specimen.report_solved(progress, &model.name, factor);
     let on_the_way = |factor: f64| {
-        let at = along.describe((1e4 * factor).round() / 1e4);
+        let at = specimen.along.describe((1e4 * factor).round() / 1e4);
         progress.tell(&format!("{}, {at}, one of many short steps", model.name));
     };
     let attendance = Attendance {
         on_the_way: &on_the_way,
-        ..progress.along(&told)
+        ..progress.along(&report)
     };
     let states = model.attended(&specimen.factors, settings, attendance);
     let states = states.unwrap_or_else(|end| {
@@ -104,10 +96,7 @@ impl OnLattice {
                 springs,
                 uncorrected,
                 corrected: Solution::empty(mesh),
-                starts: Vec::new(),
-                discretisation_errors: Vec::new(),
-                multipliers: Vec::new(),
-                climbs: Vec::new(),
+                correction: Correction::default(),
             });
         }
         let nested = correct_nested(specimen, &mesh, progress)?;
@@ -126,42 +115,29 @@ impl OnLattice {
     ) -> Result<Self, Error> {
         let energy = specimen.corrected_energy(mesh);
         let model = specimen.on(mesh, &energy)?.named("corrector");
-        let (states, discretisation_errors): (Vec<State>, _) = nested
-            .into_iter()
-            .map(|field| (field.state, field.discretisation_error))
-            .unzip();
-        let mut fields = Fields {
-            starts: vec![Start::Nested; states.len()],
-            multipliers: vec![Vec::new(); states.len()],
-            states,
-            climbs: Vec::new(),
-        };
-        match specimen.grids() {
-            Some(grids) => {
-                on_grids::correct(
-                    specimen,
-                    grids,
-                    mesh,
-                    &uncorrected,
-                    &mut fields,
-                    ends,
-                    progress,
-                );
+        let fields = match specimen.plate() {
+            Some((plate, grids)) => {
+                let plate = (&plate, grids);
+                on_grids::correct(specimen, plate, mesh, &uncorrected, ends, progress)?
             }
             None => {
-                Corrections::new(specimen, &model, progress).all(&uncorrected, &mut fields, ends)
+                let mut fields = Fields::default();
+                for field in nested {
+                    fields.push(field.state, Start::Nested, Vec::new());
+                    let error = field.discretisation_error;
+                    fields.correction.discretisation_errors.push(error);
+                }
+                Corrections::new(specimen, &model, progress).all(&uncorrected, &mut fields, ends);
+                fields
             }
-        }
+        };
         let corrected = Solution::new(&model, &specimen.groups(), fields.states);
         drop(model);
         Ok(Self {
             springs,
             uncorrected,
             corrected,
-            starts: fields.starts,
-            discretisation_errors,
-            multipliers: fields.multipliers,
-            climbs: fields.climbs,
+            correction: fields.correction,
         })
     }
 }
@@ -185,7 +161,7 @@ fn correct_nested(
             Err(Error::Solve { .. }) => break,
             Err(other) => return Err(other),
         }
-        progress.tell(&format!("corrector, {}", specimen.along.describe(*factor)));
+        specimen.report_solved(progress, "corrector", *factor);
     }
     Ok(fields)
 }
@@ -212,7 +188,7 @@ pub fn solve_corrected(
     let found = OnLattice::correct(specimen, &mesh, springs, nested, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of(MASS_SPRING.name));
-    Ok((found.corrected, found.multipliers))
+    Ok((found.corrected, found.correction.multipliers))
 }
 
 /// The corrections at all load factors.
@@ -250,14 +226,12 @@ impl<'a> Corrections<'a> {
             let stage = Stage { factor, history };
             match self.at(step, stage, springs, &change) {
                 Ok(((state, multipliers), start)) => {
-                    let at = self.specimen.along.describe(factor);
-                    self.progress.tell(&format!("corrector, {at}"));
+                    let specimen = self.specimen;
+                    specimen.report_solved(self.progress, "corrector", factor);
                     if let Some(data) = springs {
                         change = difference(&state.displacement, data);
                     }
-                    fields.states.push(state);
-                    fields.multipliers.push(multipliers);
-                    fields.starts.push(start);
+                    fields.push(state, start, multipliers);
                 }
                 Err(end) => {
                     ends.push(*end);

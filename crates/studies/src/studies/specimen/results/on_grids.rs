@@ -7,35 +7,29 @@ use crate::corrector::climb::Climb;
 use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::problem::Solution;
+use crate::problem::{ClampedPlate, Solution};
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{PlateGrids, Specimen};
 
 /// Corrects as many stretches as can be, on a mesh to whose nodes the springs' field is interpolated. Where the springs have no field
 /// the affine stretch takes its place: it has a say in the multipliers, and in where the direct method begins.
+///
+/// # Errors
+/// Any but [`Error::Solve`], which is an end.
 pub fn correct(
     specimen: &Specimen,
-    grids: &PlateGrids,
+    (plate, grids): (&ClampedPlate, &PlateGrids),
     mesh: &Mesh,
     springs: &Solution,
-    fields: &mut Fields,
     ends: &mut Vec<End>,
     progress: Progress,
-) {
-    let Some(plate) = specimen.clamped_plate() else {
-        return;
-    };
+) -> Result<Fields, Error> {
+    let mut fields = Fields::default();
     let settings = &grids.correction;
-    let mut corrector = PlateCorrector::new(&plate, mesh, settings.scheme, settings.direct);
-    let mut climb = settings.climb.map(|climb| {
-        Climb::graded(
-            &plate,
-            grids.cells,
-            settings.scheme,
-            settings.grading,
-            climb,
-        )
-    });
+    let mut corrector = PlateCorrector::new(plate, mesh, settings.scheme, settings.direct);
+    let mut climb = settings
+        .climb
+        .map(|climb| Climb::graded(plate, grids.cells, settings.scheme, settings.grading, climb));
     let onto_mesh = settings
         .is_graded()
         .then(|| springs.mesh.interpolation_on(mesh));
@@ -49,22 +43,22 @@ pub fn correct(
             Some(climb) => corrector.climb(climb, &data, *stretch),
             None => corrector.correct(&data, *stretch, KnownConditions::ALL),
         };
-        let found = match corrected {
-            Ok(found) => found,
+        let field = match corrected {
+            Ok(field) => field,
             Err(Error::Solve { fault, .. }) => {
                 ends.push(End::at(specimen, *stretch, fault));
-                return;
+                break;
             }
-            Err(_) => return,
+            Err(other) => return Err(other),
         };
-        progress.tell(&format!("corrector, {}", specimen.along.describe(*stretch)));
-        corrector = corrector.after(&found.state);
-        fields.states.push(found.state);
-        fields.starts.push(match springs.displacement(step) {
+        specimen.report_solved(progress, "corrector", *stretch);
+        corrector = corrector.after(&field.state);
+        let start = match springs.displacement(step) {
             Some(_) => Start::Grids,
             None => Start::GridsAlone,
-        });
-        fields.multipliers.push(found.multipliers);
-        fields.climbs.extend(found.way);
+        };
+        fields.push(field.state, start, field.multipliers);
+        fields.correction.climbs.extend(field.way);
     }
+    Ok(fields)
 }

@@ -226,10 +226,7 @@ fn on_mesh(
     }
     let settings = specimen.elements_newton;
     let by_quarter = quarter(specimen, mesh).and_then(|quarter| {
-        let report = |factor: f64| {
-            let at = specimen.along.describe(factor);
-            progress.tell(&format!("{}, {at}", model.name));
-        };
+        let report = |factor: f64| specimen.report_solved(progress, &model.name, factor);
         let coarser = coarser.map(|own| (&own.mesh, &own.states[..]));
         let attendance = progress.along(&report);
         quarter.states(&model, &specimen.factors, coarser, settings, attendance)
@@ -242,7 +239,7 @@ fn on_mesh(
 
 /// The quarter of a plate's finite elements, by which they are solved sooner; `None` where the specimen is none that stays symmetric.
 fn quarter(specimen: &Specimen, mesh: &Mesh) -> Option<Quarter> {
-    let (plate, grids) = (specimen.clamped_plate()?, specimen.grids()?);
+    let (plate, grids) = specimen.plate()?;
     let GridElements {
         element, grading, ..
     } = grids.elements;

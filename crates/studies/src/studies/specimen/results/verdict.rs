@@ -8,7 +8,7 @@ use crate::problem::Solution;
 use crate::results::{Check, Wanted};
 use crate::statistics::larger;
 use crate::studies::ModelKind;
-use crate::studies::specimen::problem::{Outline, Specimen};
+use crate::studies::specimen::problem::{PlateGrids, Specimen};
 
 /// How far a field is from the finite elements at a load factor, in %.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +102,7 @@ pub fn distance(
 
 /// The departure of a plate's field from the affine stretch relative to the field, ‖v − a‖/‖v‖.
 fn departure_share(specimen: &Specimen, mesh: &Mesh, factor: f64, field: &[f64]) -> Option<f64> {
-    let affine = specimen.clamped_plate()?.affine(mesh, factor);
+    let affine = specimen.plate()?.0.affine(mesh, factor);
     Some(area_weighted_percent(mesh, &affine, field) / 100.0)
 }
 
@@ -218,7 +218,7 @@ fn deviation_checks(
 }
 
 fn is_own_reference(specimen: &Specimen) -> bool {
-    matches!(&specimen.outline, Outline::Grid(grids) if grids.is_own_reference())
+    specimen.grids().is_some_and(PlateGrids::is_own_reference)
 }
 
 /// How much of the springs' deviation the correction takes away, where the springs have a field.
