@@ -124,7 +124,8 @@ impl FiniteElements {
         states: &[State],
         recovery: &Recovery,
     ) -> Vec<Result<ErrorEstimate, SolveFault>> {
-        let by_quarter = Quarter::of(plate, self).and_then(|own| own.influences(states));
+        let quarter = Quarter::of(plate, &self.mesh, self.linear_solver);
+        let by_quarter = quarter.and_then(|quarter| quarter.influences(states));
         let of_whole = || self.model(plate).influences(states, Side::Right.name(), 0);
         let influences = by_quarter.unwrap_or_else(of_whole);
         let solved = states.iter().map(|state| SheetSolution {

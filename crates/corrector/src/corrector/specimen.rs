@@ -109,14 +109,7 @@ pub(super) fn state_at(
     convergence.energy = energy.map_err(|fault| SolveFault::Inverted {
         element: model.describe(fault.element),
     })?;
-    Ok(State {
-        factor: stage.factor,
-        displacement,
-        residual,
-        history: stage.history.to_vec(),
-        load_steps: 1,
-        convergence,
-    })
+    Ok(stage.reached(displacement, residual, convergence))
 }
 
 /// The corrected field without multipliers, by Newton's method from `start`. There are as many conditions as

@@ -14,7 +14,6 @@
 
 use std::sync::Arc;
 
-use super::FiniteElements;
 use crate::error::SolveFault;
 use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
@@ -40,9 +39,10 @@ pub struct Quarter {
 }
 
 impl Quarter {
-    /// The quarter of a plate's elements; `None` where the plate need not stay symmetric, remembers its loads, or has cells that are not symmetric.
-    pub fn of(plate: &ClampedPlate, elements: &FiniteElements) -> Option<Self> {
-        let (law, whole) = (&plate.law, &elements.mesh);
+    /// The quarter of a plate's elements on a mesh; `None` where the plate need not stay symmetric, remembers its loads, or has cells that are
+    /// not symmetric.
+    pub fn of(plate: &ClampedPlate, whole: &Mesh, linear_solver: LinearSolver) -> Option<Self> {
+        let law = &plate.law;
         let cells = whole.grid().cells;
         let is_symmetric = law.is_isotropic()
             && law.softening().is_none()
@@ -74,7 +74,7 @@ impl Quarter {
             },
             energy: SheetEnergy::of_mesh(Arc::clone(law), &mesh, plate.thickness),
             mesh,
-            linear_solver: elements.linear_solver,
+            linear_solver,
             images,
             length: plate.size[0],
         })
@@ -188,7 +188,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::finite_element::Element;
+    use crate::finite_element::{Element, FiniteElements};
     use crate::material::Card;
     use crate::material::registry::CARDS;
 
@@ -216,7 +216,7 @@ mod tests {
         {
             let plate = plate(card, &[0.1, 0.3]);
             let elements = FiniteElements::graded(&plate, [6, 4], element, 1.5);
-            let Some(quarter) = Quarter::of(&plate, &elements) else {
+            let Some(quarter) = Quarter::of(&plate, &elements.mesh, elements.linear_solver) else {
                 assert!(
                     !plate.law.is_isotropic() || plate.law.softening().is_some(),
                     "{card}"
@@ -262,7 +262,7 @@ mod tests {
         let has_one = |card: &str, stretches: &[f64], cells| {
             let plate = plate(card, stretches);
             let elements = FiniteElements::new(&plate, cells, Element::Q2);
-            Quarter::of(&plate, &elements).is_some()
+            Quarter::of(&plate, &elements.mesh, elements.linear_solver).is_some()
         };
         assert!(has_one("pva-10", &[0.1, 0.2], [4, 2]));
         assert!(!has_one("pva-10", &[-0.1], [4, 2]));
@@ -277,7 +277,7 @@ mod tests {
         let mut states = elements
             .solve(&plate, NewtonSettings::default(), &|_| ())
             .unwrap();
-        let quarter = Quarter::of(&plate, &elements).unwrap();
+        let quarter = Quarter::of(&plate, &elements.mesh, elements.linear_solver).unwrap();
         assert!(quarter.influences(&states).is_some());
         // The second node behind the left side.
         let unknown = 2 * (5 + 1) + 1;

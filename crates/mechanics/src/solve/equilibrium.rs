@@ -27,12 +27,5 @@ pub fn equilibrium(
         &|element| loading.describe(element),
     )?;
     loading.impose(stage.factor, &mut displacement);
-    Ok(State {
-        factor: stage.factor,
-        displacement,
-        residual,
-        history: stage.history.to_vec(),
-        load_steps: 1,
-        convergence,
-    })
+    Ok(stage.reached(displacement, residual, convergence))
 }

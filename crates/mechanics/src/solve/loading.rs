@@ -25,6 +25,25 @@ impl Stage<'static> {
     }
 }
 
+impl Stage<'_> {
+    /// The state that is reached here in one load step.
+    pub fn reached(
+        self,
+        displacement: Vec<f64>,
+        residual: Vec<f64>,
+        convergence: Convergence,
+    ) -> State {
+        State {
+            factor: self.factor,
+            displacement,
+            residual,
+            history: self.history.to_vec(),
+            load_steps: 1,
+            convergence,
+        }
+    }
+}
+
 /// A system whose supports and loads follow one load factor.
 pub trait Loading {
     /// Marks the unknowns that supports hold.

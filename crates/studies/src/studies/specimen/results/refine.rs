@@ -7,15 +7,15 @@ use super::measured::Measured;
 use super::reference::{OutlineChange, Reference, Round, on_nodes_of};
 use crate::compare::area_weighted_percent;
 use crate::error::Error;
+use crate::finite_element::Quarter;
 use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, side_by_side};
 use crate::finite_element::recovery::Recovery;
-use crate::finite_element::{FiniteElements, Quarter};
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
 use crate::statistics::larger;
 use crate::studies::Progress;
-use crate::studies::specimen::problem::{GridElements, Refinement, Specimen};
+use crate::studies::specimen::problem::{Refinement, Specimen};
 
 /// The part of the squared error that is refined in a round.
 const SHARE: f64 = 0.5;
@@ -239,12 +239,8 @@ fn on_mesh(
 
 /// The quarter of a plate's finite elements, by which they are solved sooner; `None` where the specimen is none that stays symmetric.
 fn quarter(specimen: &Specimen, mesh: &Mesh) -> Option<Quarter> {
-    let (plate, grids) = specimen.plate()?;
-    let GridElements {
-        element, grading, ..
-    } = grids.elements;
-    let elements = FiniteElements::graded(&plate, mesh.grid().cells, element, grading);
-    Quarter::of(&plate, &elements.solved_by(specimen.linear_solver))
+    let (plate, _) = specimen.plate()?;
+    Quarter::of(&plate, mesh, specimen.linear_solver)
 }
 
 impl Round {
