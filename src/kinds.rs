@@ -19,17 +19,20 @@ use crate::validation::{
     real_measurements, smoothing, spring_identification, vibrating_plate, vibrating_spring,
 };
 
-/// A table of kinds: name, built-in study, `quick` or `slow`, and reader.
+/// A table of kinds: name, built-in study, `quick` or `slow`, reader, and the built-in study of a shape.
 macro_rules! kinds {
     (@slow quick) => { false };
     (@slow slow) => { true };
-    ($($kind:expr, $file:literal, $speed:ident, $prepare:path;)*) => {
+    (@shape) => { None };
+    (@shape $file:literal) => { Some(($file, include_str!(concat!("../", $file)))) };
+    ($($kind:expr, $file:literal, $speed:ident, $prepare:path $(, $shape:literal)?;)*) => {
         /// All kinds, in the order of the report.
         pub const KINDS: &[Kind] = &[$(Kind {
             name: $kind,
             study: include_str!(concat!("../", $file)),
             file: $file,
             slow: kinds!(@slow $speed),
+            of_shape: kinds!(@shape $($shape)?),
         }),*];
 
         /// Their readers, kept apart so that a program that computes no study contains no solver.
@@ -50,7 +53,7 @@ kinds! {
     REAL_MEASUREMENTS, "validation/cases/real_measurements.toml", slow, real_measurements::prepare;
     "test-curves", "validation/cases/test_curves.toml", slow, fit_coverage::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
-    motion::KIND, "examples/released_plate.toml", slow, motion::prepare;
+    motion::KIND, "examples/released_plate.toml", slow, motion::prepare, "examples/vibrating_strip.toml";
     "cost", "examples/cost.toml", slow, cost::prepare;
     "correction-matrix", "validation/correction_matrix.toml", quick, correction_matrix::prepare;
     "other-codes", "validation/other_codes.toml", slow, other_codes::prepare;

@@ -24,6 +24,8 @@ pub enum FileKind {
     Specimen,
     /// A study of a plate in motion
     Motion,
+    /// A study of a specimen of any shape in motion
+    MovingSpecimen,
     /// What is known about measured markers besides their displacements
     Markers,
     /// A material card
@@ -32,21 +34,26 @@ pub enum FileKind {
 
 impl FileKind {
     /// All, in the order of the reference.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Plate,
         Self::Specimen,
         Self::Motion,
+        Self::MovingSpecimen,
         Self::Markers,
         Self::Card,
     ];
 
     fn case(self) -> Option<&'static Kind> {
-        kinds::named(self.name())
+        kinds::named(match self {
+            Self::MovingSpecimen => Self::Motion.name(),
+            other => other.name(),
+        })
     }
 
     /// The file that comes along, with remarks.
     pub fn template(self) -> &'static str {
         match (self, self.case()) {
+            (Self::MovingSpecimen, Some(Kind { of_shape: Some((_, study)), .. })) => study,
             (_, Some(case)) => case.study,
             (Self::Markers, _) => markers::TEMPLATE,
             (Self::Card, _) => include_str!("new_card.toml"),
@@ -60,6 +67,7 @@ impl FileKind {
             Self::Plate => "plate",
             Self::Specimen => "specimen",
             Self::Motion => "motion",
+            Self::MovingSpecimen => "moving-specimen",
             Self::Markers => "markers",
             Self::Card => "card",
         }
@@ -69,7 +77,8 @@ impl FileKind {
         match self {
             Self::Plate => "Plates: `kind = \"plate\"`, or no kind",
             Self::Specimen => "Specimens: `kind = \"specimen\"`",
-            Self::Motion => "Motions: `kind = \"motion\"`",
+            Self::Motion => "Motions of plates: `kind = \"motion\"` with `[plate]`",
+            Self::MovingSpecimen => "Motions of specimens: `kind = \"motion\"` with `[specimen]`",
             Self::Markers => "Measured markers: the file of `correct --study`",
             Self::Card => "Material cards",
         }
@@ -79,6 +88,9 @@ impl FileKind {
     pub fn keys(self) -> Vec<FoundKey> {
         let read = |text: &str| -> Vec<Key> {
             match (self, self.case()) {
+                (Self::MovingSpecimen, Some(case)) if !text.contains("[specimen]") => {
+                    kinds::keys(case, &format!("{text}[specimen]\n"))
+                }
                 (_, Some(case)) => kinds::keys(case, text),
                 (Self::Markers, _) => markers::keys(text),
                 (Self::Card, _) => Card::keys(text),

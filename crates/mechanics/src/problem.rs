@@ -28,6 +28,7 @@ mod work;
 pub use balance::{Balance, Resultant};
 pub use boundary::BoundaryProblem;
 pub use boundary_conditions::{Drive, LONGEST_TURN, Load, Support};
+pub use groups::mean_displacement;
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use model::Model;
 pub use plate::{ClampedPlate, Measures};

@@ -155,6 +155,8 @@ pub struct Kind {
     pub study: &'static str,
     /// The path of that study.
     pub file: &'static str,
+    /// Path and text of the built-in study of a shape, whose values are the defaults of studies with a `[specimen]`.
+    pub of_shape: Option<(&'static str, &'static str)>,
     /// Whether `--quick` leaves it out.
     pub slow: bool,
 }
@@ -168,6 +170,15 @@ const UNTITLED: [(&str, &str); 3] = [
 ];
 
 impl Kind {
+    /// The built-in study whose values are the defaults of a study.
+    fn defaults(&self, study: &Document, faults: &Faults) -> Document<'static> {
+        let root = study.root(None, faults);
+        match self.of_shape.filter(|_| root.is_of("specimen")) {
+            Some((file, text)) => Document::parse(file, text, faults),
+            None => Document::parse(self.file, self.study, faults),
+        }
+    }
+
     /// Reads a study of this kind with `prepare`, within a budget.
     ///
     /// # Errors
@@ -209,8 +220,8 @@ impl Kind {
     /// The same with any reader.
     fn keys_with<T>(&self, text: &str, read: impl FnOnce(&Section, &Path) -> T) -> Vec<Key> {
         let faults = Faults::default();
-        let defaults = Document::parse(self.file, self.study, &faults);
         let document = Document::parse("", text, &faults);
+        let defaults = self.defaults(&document, &faults);
         let root = document.root(Some(&defaults), &faults);
         root.text("kind");
         self.title(&root, text, Path::new("."));
@@ -236,8 +247,8 @@ impl Kind {
         root.own_heading("title").unwrap_or_else(|| {
             // Faults of the card are reported where the study is read.
             let faults = Faults::default();
-            let defaults = Document::parse(self.file, self.study, &faults);
             let document = Document::parse("", text, &faults);
+            let defaults = self.defaults(&document, &faults);
             let root = document.root(Some(&defaults), &faults);
             let card = Card::load(&root.section("material").text("card"), folder);
             card.map_or_else(|_| (*what).to_owned(), |card| card.title_of(what))
@@ -256,8 +267,8 @@ impl Kind {
         let file = file.display().to_string();
         let faults = Faults::within(budget);
         let (title, made, output) = {
-            let defaults = Document::parse(self.file, self.study, &faults);
             let document = Document::parse(&file, text, &faults);
+            let defaults = self.defaults(&document, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
             let title = self.title(&root, text, folder);

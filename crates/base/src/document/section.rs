@@ -133,6 +133,11 @@ impl<'a> Section<'a> {
             .collect()
     }
 
+    /// Whether the file itself contains the table `key`, which selects a dialect and is no key that was looked up.
+    pub fn is_of(&self, key: &'static str) -> bool {
+        self.written(key).is_some()
+    }
+
     /// Whether the file itself contains `key`.
     pub fn has(&self, key: &'static str) -> bool {
         self.asks(key, None);

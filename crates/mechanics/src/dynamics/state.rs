@@ -7,6 +7,9 @@ use super::viscosity::Memory;
 use crate::error::SolveFault;
 use crate::solve::{Assembly, Inadmissible};
 
+/// A time before the start in s.
+const BEFORE: f64 = -1.0;
+
 /// The forces of a state in N, on all unknowns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forces {
@@ -31,7 +34,7 @@ pub(super) struct BodyState {
 }
 
 impl Motion<'_> {
-    /// The body at time 0, accelerations included.
+    /// The body at time 0, accelerations included; where the velocity of a support jumps then, it is the one before.
     pub(super) fn begin(&self) -> Result<BodyState, SolveFault> {
         let size = self.energy.unknowns();
         let mut start = self.start.clone();
@@ -41,7 +44,7 @@ impl Motion<'_> {
             &mut start.velocity,
             &mut acceleration,
         ];
-        self.impose(0.0, 0.0, imposed.map(|values| &mut values[..]));
+        self.impose(0.0, BEFORE, imposed.map(|values| &mut values[..]));
         let rest = vec![0.0; size];
         let past = if start.relaxed {
             &start.displacement

@@ -14,7 +14,7 @@ pub enum TimeFunction {
         /// The time at which it is complete.
         end: f64,
     },
-    /// m + a sin(2π f t).
+    /// m + a sin(2π f t) from time 0 on; m before.
     Sine {
         /// m.
         mean: f64,
@@ -38,7 +38,7 @@ impl TimeFunction {
                 mean,
                 amplitude,
                 frequency,
-            } => {
+            } if within >= 0.0 => {
                 let omega = TAU * frequency;
                 let (sine, cosine) = (omega * time).sin_cos();
                 [
@@ -47,6 +47,7 @@ impl TimeFunction {
                     -amplitude * omega * omega * sine,
                 ]
             }
+            Self::Sine { mean, .. } => [*mean, 0.0, 0.0],
             Self::Table(points) => between(points, time, within),
         }
     }

@@ -56,6 +56,20 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
         .collect()
 }
 
+/// The mean displacement of a group in mm; see [`shares`].
+///
+/// # Panics
+/// When the mesh has no such group.
+pub fn mean_displacement(mesh: &Mesh, group: &str, displacement: &[f64]) -> [f64; 2] {
+    let shares = shares(mesh, &mesh.groups()[group]);
+    [0, 1].map(|axis| {
+        let parts = shares.iter();
+        parts
+            .map(|(node, share)| share * displacement[2 * node + axis])
+            .sum()
+    })
+}
+
 /// The share of an edge's length that belongs to each of its nodes, in mm.
 pub fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
     const GAUSS: [(f64, f64); 3] = [

@@ -1,4 +1,4 @@
-//! A plate in motion: springs with dashpots, corrected in time, compared with finite elements, from one study.
+//! A sheet of any shape in motion: springs with dashpots, corrected in time, compared with finite elements, from one study.
 
 use std::path::Path;
 
@@ -6,8 +6,8 @@ use crate::budget::Budget;
 use crate::document::Section;
 use crate::dynamics::{Dashpots, SheetViscosity, TimeSettings, Viscosity};
 use crate::error::Error;
-use crate::finite_element::FiniteElements;
-use crate::mass_spring::{DashpotLaw, MassSpring};
+use crate::mass_spring::DashpotLaw;
+use crate::mesh::Mesh;
 use crate::material::softened_law::check_memory;
 use crate::results::Outcome;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
@@ -21,22 +21,22 @@ mod files;
 mod functions;
 mod headline;
 mod outcome;
-mod plates;
 mod problem;
 mod read;
+mod shown;
 mod solution;
 mod statement;
 mod timing;
 mod warnings;
 
 use deviations::OwnError;
-pub use problem::MovingPlate;
-use solution::ModelMotion;
+pub use problem::MovingSheet;
+use solution::{ModelMotion, Motions};
 
 /// The `kind` of these studies.
 pub const KIND: &str = "motion";
 
-/// A motion's study: its title, the moving plate, and warnings.
+/// A motion's study: its title, the moving sheet, and warnings.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
@@ -45,62 +45,69 @@ pub fn load(
     file: &Path,
     text: &str,
     budget: Budget,
-) -> Result<Loaded<MovingPlate>, Error> {
+) -> Result<Loaded<MovingSheet>, Error> {
     case.load(file, text, budget, read::read)
 }
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
-    let plate = read::read(root, folder);
-    Box::new(move |progress| compute(&plate.expect(SOUND), progress))
+    let sheet = read::read(root, folder);
+    Box::new(move |progress| compute(&sheet.expect(SOUND), progress))
 }
 
-/// Moves the plate by springs and finite elements, and corrects the springs; its material may be that of
-/// [`MovingPlate::with_card`].
+/// Moves the sheet by springs and finite elements, and corrects the springs; its material may be that of
+/// [`MovingSheet::with_card`].
 ///
 /// # Errors
 /// [`Error::Solve`] where a model has no solution.
-pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error> {
-    check_memory(&*plate.problem.law, "a motion in time")?;
-    let springs = MassSpring::new(&plate.problem, plate.cells, plate.lattice)
-        .with_spring_law(plate.springs.clone());
-    let dashpots = Dashpots::new(&springs, &plate.dashpots);
-    let damped = match &plate.dashpots {
-        DashpotLaw::Material(material) => !material.is_none(),
-        DashpotLaw::Viscosity { .. } => true,
+pub fn compute(sheet: &MovingSheet, progress: Progress) -> Result<Outcome, Error> {
+    check_memory(&*sheet.specimen.problem.law, "a motion in time")?;
+    let springs = sheet.springs_moved(progress)?;
+    let mesh = sheet.elements_mesh(0).expect("the mesh of the study");
+    let elements = sheet.elements_moved(&mesh, sheet.time, progress, FINITE_ELEMENTS.name)?;
+    let own_error = OwnError::of(sheet, &elements, progress);
+    let correction = sheet.correct(&springs, progress)?;
+    let motions = Motions {
+        springs,
+        elements,
+        correction,
     };
-    let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
-    let model = springs.model(&plate.problem);
-    let told = |time: f64| progress.tell(&plate.at(MASS_SPRING.name, time));
-    let springs_moved = plate.moved(MASS_SPRING, &model, dashpots, plate.time, &told)?;
-    let (_, cells) = plate.element;
-    let elements_moved = plate.elements_moved(cells, plate.time, progress, FINITE_ELEMENTS.name)?;
-    let own_error = OwnError::of(plate, &elements_moved, progress);
-    let corrected = plate.correct(&springs_moved, progress)?;
-    let models = [springs_moved, elements_moved];
-    Ok(outcome::outcome(
-        plate,
-        &models,
-        own_error.as_ref(),
-        &corrected,
-    ))
+    Ok(outcome::outcome(sheet, &motions, own_error.as_ref()))
 }
 
-impl MovingPlate {
-    /// The motion of finite elements of the study's kind with so many cells; `what` is what progress calls it.
+impl MovingSheet {
+    /// The motion of the springs with their dashpots.
+    fn springs_moved(&self, progress: Progress) -> Result<ModelMotion, Error> {
+        let springs = self.lattice();
+        let dashpots = Dashpots::new(&springs, &self.dashpots);
+        let damped = match &self.dashpots {
+            DashpotLaw::Material(material) => !material.is_none(),
+            DashpotLaw::Viscosity { .. } => true,
+        };
+        let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
+        let name = format!("mass-spring ({})", springs.mesh.describe());
+        let model = self.specimen.on(&springs.mesh, springs.potential())?;
+        let model = model.named(name);
+        let model = model.describing(|element| springs.describe_element(element));
+        let report = |now: f64| progress.tell(&self.at(MASS_SPRING.name, now));
+        self.moved(MASS_SPRING, &model, dashpots, self.time, &report)
+    }
+
+    /// The motion of the study's finite elements on a mesh; `what` is what progress calls it.
     fn elements_moved(
         &self,
-        cells: [usize; 2],
+        mesh: &Mesh,
         time: TimeSettings,
         progress: Progress,
         what: &str,
     ) -> Result<ModelMotion, Error> {
-        let elements = FiniteElements::new(&self.problem, cells, self.element.0);
-        let sheet = SheetViscosity::new(elements.energy(), &self.viscosity);
+        let energy = self.specimen.problem.finite_elements(mesh);
+        let sheet = SheetViscosity::new(&energy, &self.viscosity);
         let sheet = (!self.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
-        let model = elements.model(&self.problem);
-        let told = |now: f64| progress.tell(&self.at(what, now));
-        self.moved(FINITE_ELEMENTS, &model, sheet, time, &told)
+        let model = self.specimen.on(mesh, &energy)?;
+        let model = model.named(format!("finite elements ({})", mesh.describe()));
+        let report = |now: f64| progress.tell(&self.at(what, now));
+        self.moved(FINITE_ELEMENTS, &model, sheet, time, &report)
     }
 
     /// The progress of a computation.

@@ -18,6 +18,7 @@ pub const DEFAULT: &str = include_str!("plate/default.toml");
 
 /// Studies of plates, which need no `kind`.
 pub const PLATE: Kind = Kind {
+    of_shape: None,
     name: KIND,
     study: DEFAULT,
     file: "default.toml",

@@ -1,68 +1,56 @@
 //! The springs' motion, corrected in time.
 
-use super::problem::MovingPlate;
-use super::solution::ModelMotion;
-use crate::corrector::DifferenceScheme;
+use web_time::Instant as Clock;
+
+use super::problem::MovingSheet;
+use super::solution::{Correction, ModelMotion};
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
-use crate::dynamics::{Instant, Motion, SheetViscosity, Viscosity};
+use crate::dynamics::{EnergyBalance, History, Instant, Motion, SheetViscosity, Viscosity};
 use crate::error::{Error, SolveFault};
+use crate::results::models::CORRECTED;
 use crate::studies::Progress;
 use crate::units::number;
 
-/// The corrected motion at the instants that are written.
-pub struct CorrectedInstants {
-    /// In mm.
-    pub displacement: Vec<Vec<f64>>,
-    /// In mm/s.
-    pub velocity: Vec<Vec<f64>>,
-    /// Of the right grip on the plate along both axes, in N.
-    pub right_force: Vec<[f64; 2]>,
-    /// What was done, or why nothing was.
-    pub note: String,
-    /// Why it ended before the springs' motion did, where it did.
-    pub end: Option<Error>,
+/// The instants that are written, of displacements at all steps, of which `within` lie in an interval and each takes `step` s.
+///
+/// # Errors
+/// [`SolveFault::Inverted`].
+fn instants(
+    motion: &Motion,
+    fine: &[Vec<f64>],
+    within: usize,
+    step: f64,
+) -> Result<Vec<Instant>, SolveFault> {
+    // The start alone is no motion.
+    let count = if fine.len() > within { fine.len() } else { 0 };
+    let marks = motion.marks(step * count as f64);
+    let marks: Vec<f64> = marks.iter().map(|mark| mark / step).collect();
+    let instant = |i: usize| {
+        let velocity = match i {
+            0 => motion.start.velocity.clone(),
+            _ => velocity(fine, i, step, &marks),
+        };
+        // Where a velocity jumps, the forces are those before, as in the other models.
+        let [time, before] = [0.0, 0.5].map(|back| step * (i as f64 - back));
+        let support_forces = motion.support_forces(time, before, [&fine[i], &velocity])?;
+        Ok(Instant {
+            time,
+            displacement: fine[i].clone(),
+            velocity,
+            acceleration: Vec::new(),
+            energy: EnergyBalance::default(),
+            support_forces,
+        })
+    };
+    (0..count).step_by(within).map(instant).collect()
 }
 
-impl CorrectedInstants {
-    /// Of displacements at all steps, of which `within` lie in an interval and each takes `step` s.
-    ///
-    /// # Errors
-    /// [`SolveFault::Inverted`].
-    fn of(
-        motion: &Motion,
-        fine: &[Vec<f64>],
-        within: usize,
-        step: f64,
-    ) -> Result<Self, SolveFault> {
-        // The start alone is no motion.
-        let count = if fine.len() > within { fine.len() } else { 0 };
-        let marks = motion.marks(step * count as f64);
-        let marks: Vec<f64> = marks.iter().map(|mark| mark / step).collect();
-        let mut all = Self::none(String::new());
-        for i in (0..count).step_by(within) {
-            let velocity = match i {
-                0 => motion.start.velocity.clone(),
-                _ => velocity(fine, i, step, &marks),
-            };
-            // Where a velocity jumps, the forces are those before, as in the other models.
-            let [time, before] = [0.0, 0.5].map(|back| step * (i as f64 - back).max(0.0));
-            let forces = motion.support_forces(time, before, [&fine[i], &velocity])?;
-            all.displacement.push(fine[i].clone());
-            all.velocity.push(velocity);
-            all.right_force.push(forces[1]);
-        }
-        Ok(all)
-    }
-
-    /// No motion, and why.
-    fn none(note: String) -> Self {
-        Self {
-            displacement: Vec::new(),
-            velocity: Vec::new(),
-            right_force: Vec::new(),
-            note,
-            end: None,
-        }
+/// No corrected motion, and why.
+fn none(note: String) -> Correction {
+    Correction {
+        motion: None,
+        note,
+        end: None,
     }
 }
 
@@ -71,41 +59,41 @@ const STEPS: f64 = 200.0;
 /// β of Newmark's average acceleration.
 const AVERAGE_ACCELERATION: f64 = 0.25;
 
-impl MovingPlate {
-    /// Corrects the motion of the springs; nothing but a note where three consecutive instants do not hold the equation
-    /// of motion.
-    pub fn correct(
-        &self,
-        springs: &ModelMotion,
-        progress: Progress,
-    ) -> Result<CorrectedInstants, Error> {
+impl MovingSheet {
+    /// Corrects the motion of the springs on the mesh of the corrected field; nothing but a note where three consecutive instants do not
+    /// hold the equation of motion.
+    pub fn correct(&self, springs: &ModelMotion, progress: Progress) -> Result<Correction, Error> {
         if !self.is_corrected {
-            return Ok(CorrectedInstants::none(
+            return Ok(none(
                 "The study disables the correction of the motion.".into(),
             ));
         }
-        let mesh = &springs.mesh;
-        let energy = self.scheme().energy(&self.problem, mesh);
+        let clock = Clock::now();
+        let mesh = self.specimen.outline.corrected_mesh();
+        let energy = self.specimen.corrected_energy(&mesh);
         let viscosity = SheetViscosity::new(&energy, &self.viscosity);
         let viscosity = (!self.viscosity.is_none()).then_some(&viscosity as &dyn Viscosity);
-        let model = self.problem.on(mesh, &energy).named("corrector");
+        let model = self.specimen.on(&mesh, &energy)?.named("corrector");
         let model = model.describing(|element| format!("cell {element}"));
         let motion = self.motion(&model, viscosity)?;
         let interval = self.time.interval;
-        let within = (STEPS * interval * springs.frequency.unwrap_or_else(|| self.bar_frequency()))
-            .ceil()
-            .max(1.0) as usize;
+        let frequency = springs.frequency.unwrap_or_else(|| self.bar_frequency());
+        let within = (STEPS * interval * frequency).ceil().max(1.0) as usize;
         let step = interval / within as f64;
         let equation = match EquationOfMotion::new(&motion, step, AVERAGE_ACCELERATION) {
             Ok(equation) => equation,
             Err(reason) => {
                 let note = format!("The motion of the springs is not corrected: {reason}.");
-                return Ok(CorrectedInstants::none(note));
+                return Ok(none(note));
             }
         };
-        let data = between(&springs.history.instants, within);
-        let told = |count: usize| progress.tell(&self.at("corrector", step * (count - 1) as f64));
-        let (found, fault) = match equation.correct(&data, &motion.start, self.windows(), &told) {
+        let onto_mesh = springs.mesh.interpolation_on(&mesh);
+        let data: Vec<Vec<f64>> = between(springs.instants(), within)
+            .iter()
+            .map(|field| onto_mesh.apply(field))
+            .collect();
+        let report = |count: usize| progress.tell(&self.at("corrector", step * (count - 1) as f64));
+        let (found, fault) = match equation.correct(&data, &motion.start, self.windows(), &report) {
             Ok(found) => (found, None),
             Err(end) => (*end.corrected, Some(end.fault)),
         };
@@ -115,38 +103,39 @@ impl MovingPlate {
             step,
             fault,
         };
-        let at_instants = CorrectedInstants::of(&motion, &found.displacement, within, step);
-        let at_instants =
-            at_instants.map_err(|fault| error("the force of the right grip".into(), fault))?;
-        Ok(CorrectedInstants {
+        let instants = instants(&motion, &found.displacement, within, step);
+        let instants = instants.map_err(|fault| error("the force of the supports".into(), fault))?;
+        let end = fault.map(|fault| error(format!("time {} s", number(reached)), fault));
+        Ok(Correction {
             note: format!(
                 "The corrector moves the springs' motion to the nearest motion that satisfies the sheet's equation of motion at every three \
                  consecutive instants, with {within} steps per interval: {} Newton steps, {} factorisations. Because the start is known, the result \
                  does not depend on the springs.",
                 found.iterations, found.factorisations
             ),
-            end: fault.map(|fault| error(format!("time {} s", number(reached)), fault)),
-            ..at_instants
+            motion: (!instants.is_empty()).then(|| ModelMotion {
+                style: CORRECTED,
+                mesh: mesh.clone(),
+                history: History {
+                    instants,
+                    ..History::default()
+                },
+                end: None,
+                frequency: None,
+                seconds: clock.elapsed().as_secs_f64(),
+            }),
+            end,
         })
     }
 
     /// How the motion is corrected.
     fn windows(&self) -> WindowSettings {
+        let [low, high] = self.specimen.outline.coarse().bounding_box();
         WindowSettings {
             steps: 20,
             tolerance: 1e-9,
             max_iterations: 20,
-            size: self.problem.size[0].max(self.problem.size[1]),
-        }
-    }
-
-    /// Differences of second order where the numbers of cells allow them.
-    fn scheme(&self) -> DifferenceScheme {
-        let pairs = DifferenceScheme::Biquadratic.side();
-        if self.cells.iter().all(|count| count.is_multiple_of(pairs)) {
-            DifferenceScheme::Biquadratic
-        } else {
-            DifferenceScheme::Gauss
+            size: (high[0] - low[0]).max(high[1] - low[1]),
         }
     }
 }

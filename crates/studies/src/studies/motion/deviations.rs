@@ -1,8 +1,7 @@
 //! How far a motion is from the finite elements', and how far these may be from the truth.
 
-use super::corrected::CorrectedInstants;
-use super::problem::MovingPlate;
-use super::solution::ModelMotion;
+use super::problem::MovingSheet;
+use super::solution::{ModelMotion, Motions};
 use crate::compare::judgement::percent;
 use crate::dynamics::{History, Integrator, Step, TimeSettings, lumped_mass};
 use crate::finite_element::convergence::of_distances;
@@ -20,29 +19,27 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    /// Of fields on the lattice and forces of the right grip, at the first instants, from those of the finite elements.
-    fn new<'a>(
-        lattice: &Mesh,
-        fields: impl Iterator<Item = &'a Vec<f64>>,
-        forces: impl Iterator<Item = [f64; 2]>,
-        expected: &[Vec<f64>],
-        expected_forces: &[[f64; 2]],
-    ) -> Self {
+    /// Of a motion from another one, at the nodes of a lattice and the instants of both.
+    fn between(sheet: &MovingSheet, lattice: &Mesh, [model, expected]: [&ModelMotion; 2]) -> Self {
         let weights = lumped_mass(lattice, 1.0, 1.0);
         let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
+        let [fields, expected_fields] =
+            [model, expected].map(|model| displacements_on(lattice, model));
         let errors: Vec<f64> = fields
-            .zip(expected)
+            .iter()
+            .zip(&expected_fields)
             .map(|(now, expected)| {
                 let both = now.iter().zip(expected);
                 square(&both.map(|(u, v)| u - v).collect::<Vec<_>>())
             })
             .collect();
-        let sizes: Vec<f64> = expected.iter().map(|u| square(u)).collect();
+        let sizes: Vec<f64> = expected_fields.iter().map(|u| square(u)).collect();
         let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let displacement = errors.iter().map(|error| 100.0 * (error / largest).sqrt());
         let [all, size] =
             [&errors, &sizes[..errors.len()]].map(|values| values.iter().sum::<f64>());
-        let pairs = forces.zip(expected_forces).flat_map(|(now, expected)| {
+        let [forces, expected_forces] = [model, expected].map(|model| sheet.measured_forces(model));
+        let pairs = forces.iter().zip(&expected_forces).flat_map(|(now, expected)| {
             [0, 1].map(|axis| ((now[axis] - expected[axis]).powi(2), expected[axis].powi(2)))
         });
         let (wrong, force) = pairs.fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
@@ -53,46 +50,25 @@ impl Deviations {
         }
     }
 
-    /// Those of a model.
-    fn of_model(
-        lattice: &Mesh,
-        model: &ModelMotion,
-        expected: &[Vec<f64>],
-        expected_forces: &[[f64; 2]],
-    ) -> Self {
-        let fields = displacements_on(lattice, model);
-        let forces = right_forces(model);
-        Self::new(lattice, fields.iter(), forces, expected, expected_forces)
-    }
-
-    /// Of the springs and of the corrected motion, from the finite elements at the nodes of the lattice.
-    pub fn both(
-        [springs, elements]: &[ModelMotion; 2],
-        corrected: &CorrectedInstants,
-        expected: &[Vec<f64>],
-    ) -> [Self; 2] {
-        let lattice = &springs.mesh;
-        let forces: Vec<_> = right_forces(elements).collect();
-        let fields = corrected.displacement.iter();
-        let of_corrected = corrected.right_force.iter().copied();
+    /// Of the springs and of the corrected motion, where there is one, from the finite elements at the nodes of the lattice.
+    pub fn all(sheet: &MovingSheet, motions: &Motions) -> [Option<Self>; 2] {
+        let of = |model: &ModelMotion| {
+            Self::between(sheet, &motions.springs.mesh, [model, &motions.elements])
+        };
         [
-            Self::of_model(lattice, springs, expected, &forces),
-            Self::new(lattice, fields, of_corrected, expected, &forces),
+            Some(of(&motions.springs)),
+            motions.correction.motion.as_ref().map(of),
         ]
     }
 }
 
-/// A model's displacements at the nodes of the lattice at all instants.
+/// A model's displacements at the nodes of a lattice at all instants.
 pub fn displacements_on(lattice: &Mesh, model: &ModelMotion) -> Vec<Vec<f64>> {
-    let instants = model.history.instants.iter();
+    let onto_lattice = model.mesh.interpolation_on(lattice);
+    let instants = model.instants().iter();
     instants
-        .map(|now| model.mesh.displacement_on(&now.displacement, lattice))
+        .map(|now| onto_lattice.apply(&now.displacement))
         .collect()
-}
-
-fn right_forces(model: &ModelMotion) -> impl Iterator<Item = [f64; 2]> + '_ {
-    let instants = model.history.instants.iter();
-    instants.map(|now| now.support_forces[1])
 }
 
 /// The finite elements' own error over all instants, by cells twice and four times as large and by steps half as long.
@@ -104,8 +80,8 @@ pub struct OwnError {
     /// Its share by the length of the steps, in % of the displacement; `None` where steps are far shorter than cells need, or half
     /// of them are too many.
     pub by_steps: Option<f64>,
-    /// The cells by which it is estimated.
-    pub cells: Vec<[usize; 2]>,
+    /// The meshes by which it is estimated, in words.
+    pub meshes: Vec<String>,
 }
 
 impl OwnError {
@@ -114,36 +90,22 @@ impl OwnError {
     /// ```text
     /// e = |u₂ₕ − uₕ|/(2ᵖ − 1) + 4/3 |u₂ₕ(Δt) − u₂ₕ(Δt/2)|      p ≥ 1 from u₄ₕ where cells can be halved twice, else 1
     /// ```
-    pub fn of(plate: &MovingPlate, elements: &ModelMotion, progress: Progress) -> Option<Self> {
-        let (_, fine) = plate.element;
-        let halves = |cells: [usize; 2]| {
-            let even = cells.iter().all(|count| count.is_multiple_of(2));
-            even.then(|| cells.map(|count| count / 2))
+    pub fn of(sheet: &MovingSheet, elements: &ModelMotion, progress: Progress) -> Option<Self> {
+        let moved = |coarser: usize, time| {
+            let mesh = sheet.elements_mesh(coarser)?;
+            let moved = sheet.elements_moved(&mesh, time, progress, "finite elements' own error");
+            moved.ok()
         };
-        let larger = halves(fine).unwrap_or(fine.map(|count| count.div_ceil(2)));
-        if larger == fine {
-            return None;
-        }
-        let moved = |cells, time| {
-            plate
-                .elements_moved(cells, time, progress, "finite elements' own error")
-                .ok()
-        };
-        let coarse = moved(larger, plate.time)?;
-        let coarsest = halves(fine).and(halves(larger));
-        let coarsest = coarsest.and_then(|cells| Some((cells, moved(cells, plate.time)?)));
-        let quicker = plate.halved_steps(&coarse.history);
-        let quicker = quicker.and_then(|time| moved(larger, time));
+        let coarse = moved(1, sheet.time)?;
+        let coarsest = moved(2, sheet.time);
+        let quicker = sheet.halved_steps(&coarse.history);
+        let quicker = quicker.and_then(|time| moved(1, time));
         let distance = |a: &ModelMotion, b: &ModelMotion| {
-            let (fields, forces) = (
-                displacements_on(&elements.mesh, b),
-                right_forces(b).collect::<Vec<_>>(),
-            );
-            let found = Deviations::of_model(&elements.mesh, a, &fields, &forces);
+            let found = Deviations::between(sheet, &elements.mesh, [a, b]);
             [Some(found.whole), found.force]
         };
         let last = distance(&coarse, elements);
-        let before = coarsest.as_ref().map(|(_, own)| distance(own, &coarse));
+        let before = coarsest.as_ref().map(|own| distance(own, &coarse));
         let steps = quicker.as_ref().map(|own| distance(&coarse, own));
         let both = [0, 1].map(|which| {
             let last = last[which]?;
@@ -157,25 +119,25 @@ impl OwnError {
             displacement: both[0]?,
             force: both[1],
             by_steps: steps.and_then(|own| Some(BY_HALVED_STEPS * own[0]?)),
-            cells: [larger]
+            meshes: [&coarse]
                 .into_iter()
-                .chain(coarsest.map(|(cells, _)| cells))
+                .chain(&coarsest)
+                .map(|own| own.mesh.describe())
                 .collect(),
         })
     }
 
     /// In a sentence.
     pub fn describe(&self) -> String {
-        let cells = self.cells.iter().map(|[x, y]| format!("{x} × {y}"));
         let by_steps = self.by_steps.map_or_else(String::new, |share| {
             format!(" (of which {} % from the time steps)", percent(share))
         });
         let force = self.force.map_or_else(String::new, |force| {
-            format!(", {} % of the right grip's force", percent(force))
+            format!(", {} % of the force", percent(force))
         });
         format!(
-            "The finite elements' own error over all instants, estimated from {} cells{}: {} % of the displacement{by_steps}{force}.",
-            cells.collect::<Vec<_>>().join(" and "),
+            "The finite elements' own error over all instants, estimated from {}{}: {} % of the displacement{by_steps}{force}.",
+            self.meshes.join(" and "),
             self.by_steps.map_or("", |_| " and from steps half as long"),
             percent(self.displacement),
         )
@@ -185,7 +147,15 @@ impl OwnError {
 /// The error of second order in the steps, over the distance to steps half as long.
 const BY_HALVED_STEPS: f64 = 4.0 / 3.0;
 
-impl MovingPlate {
+impl MovingSheet {
+    /// The force in N of the measured group at all instants; none where no support holds it.
+    pub(super) fn measured_forces(&self, model: &ModelMotion) -> Vec<[f64; 2]> {
+        let instants = model.instants().iter();
+        instants
+            .filter_map(|now| self.measured_force(&now.support_forces))
+            .collect()
+    }
+
     /// The same time with twice as many steps as a motion took; `None` where the smallest cell's vibration limits them: they are far shorter
     /// then than what is seen of the motion needs.
     fn halved_steps(&self, history: &History) -> Option<TimeSettings> {

@@ -1,12 +1,12 @@
 //! Pictures, grids and tables of a motion.
 
 use super::between::{PARTS, with_cubics};
-use super::corrected::CorrectedInstants;
-use super::plates::PlateMotion;
-use super::problem::{MovingPlate, Probe};
-use super::solution::ModelMotion;
+use super::deviations::displacements_on;
+use super::problem::{MovingSheet, Probe};
+use super::shown::ShownSheet;
+use super::solution::{ModelMotion, Motions};
 use crate::dynamics::{EnergyBalance, Instant};
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
+use crate::results::models::CORRECTED;
 use crate::results::{
     Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
     GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, sheet_figures,
@@ -15,8 +15,6 @@ use crate::units::number;
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
-/// The styles of springs and finite elements.
-const STYLES: [ModelStyle; 2] = [MASS_SPRING, FINITE_ELEMENTS];
 
 fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
     LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
@@ -30,29 +28,25 @@ fn pair(upper: LineChart, lower: LineChart) -> Drawing {
 
 /// A line for each model through a pair of figures of all instants.
 fn lines(
-    models: &[ModelMotion; 2],
+    models: [&ModelMotion; 2],
     point: impl Fn(&ModelMotion, &Instant) -> [f64; 2],
 ) -> Vec<Line> {
-    let models = models
-        .iter()
-        .zip(STROKES)
-        .zip(STYLES.map(|style| style.colour));
-    let line = |((model, stroke), colour): ((&ModelMotion, _), _)| {
+    let line = |(model, stroke): (&ModelMotion, _)| {
         let points = model.points(|now| point(model, now));
-        Line::new(model.name, points, colour, stroke)
+        Line::new(model.style.name, points, model.style.colour, stroke)
     };
-    models.map(line).collect()
+    models.into_iter().zip(STROKES).map(line).collect()
 }
 
 impl ModelMotion {
     /// Pairs of figures of all instants.
     fn points(&self, pair: impl Fn(&Instant) -> [f64; 2]) -> Vec<[f64; 2]> {
-        self.history.instants.iter().map(pair).collect()
+        self.instants().iter().map(pair).collect()
     }
 
-    /// Time, displacement along the plate and velocity of a probe, at the instants and between them.
+    /// Time, displacement along x and velocity of a probe, at the instants and between them.
     fn course(&self, probe: &Probe) -> Vec<[f64; 3]> {
-        let instants = self.history.instants.iter().map(|now| {
+        let instants = self.instants().iter().map(|now| {
             let [displacement, velocity] =
                 [&now.displacement, &now.velocity].map(|field| self.at(field, probe)[0]);
             [now.time, displacement, velocity]
@@ -65,55 +59,41 @@ impl ModelMotion {
     }
 }
 
-/// Displacement of the probes, phase of the first, energies, force of the grip, and the plates at the end.
-pub fn figures(
-    plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    corrected: &CorrectedInstants,
-    shown: &[PlateMotion],
-) -> Vec<Figure> {
-    let [springs, elements] = models;
-    // The instants of all plates.
+/// Displacement of the probes, phase of the first, energies, force of the measured group, and the sheets at the end.
+pub fn figures(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Vec<Figure> {
+    let Motions {
+        springs, elements, ..
+    } = motions;
+    // The instants of all sheets.
     let count = shown.iter().map(|own| own.motion.len()).min().unwrap_or(0);
     let instants = &springs.history.times()[..count];
-    let plates = displaced(shown, count.saturating_sub(1));
+    let sheets = displaced(shown, count.saturating_sub(1));
     let until = brief(instants.last().copied().unwrap_or_default());
-    let plates = FieldFigure::new(format!("Plates at t = {until} s"), ALONG, plates);
-    let mut figures = vec![
-        Figure::new(
+    let sheets = FieldFigure::new(format!("Sheets at t = {until} s"), ALONG, sheets);
+    let mut figures = Vec::new();
+    if !sheet.probes.is_empty() {
+        figures.push(Figure::new(
             "motion_probes.png",
-            "Displacement of the probes along the plate.",
-            probes(plate, models, corrected),
-        ),
+            "Displacement of the probes along x.",
+            probes(sheet, motions),
+        ));
+    }
+    figures.extend([
         Figure::new(
             "motion_energy.png",
             "Energies over time: springs above, finite elements below.",
             pair(energy(springs), energy(elements)),
         ),
         Figure::new(
-            "motion_plates.png",
-            "The plates at the last instant of all models, with their displacement along the plate.",
-            plates,
+            "motion_sheets.png",
+            "The sheets at the last instant of all models, with their displacement along x.",
+            sheets,
         ),
-    ];
-    figures.extend(stress_figures(plate, instants, shown));
-    if plate.release != Some(0.0) {
-        let mut over_time = force(models, "time [s]", |_, now| now.time);
-        let corrected = corrected.right_force.iter().zip(&springs.history.instants);
-        let points = corrected.map(|(force, now)| [now.time, force[0]]);
-        let corrected = Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Points);
-        over_time
-            .lines
-            .extend((!corrected.points.is_empty()).then_some(corrected));
-        let over_place = force(models, "displacement of the right side [mm]", right_side);
-        figures.push(Figure::new(
-            "motion_force.png",
-            "Force of the right grip along the plate over its displacement and over time.",
-            pair(over_time, over_place),
-        ));
-    }
-    figures.extend(plate.probes.first().map(|probe| {
-        let caption = "Velocity over displacement of the first probe along the plate, springs above, finite elements below; \
+    ]);
+    figures.extend(stress_figures(sheet, instants, shown));
+    figures.extend(force_figure(sheet, motions));
+    figures.extend(sheet.probes.first().map(|probe| {
+        let caption = "Velocity over displacement of the first probe along x, springs above, finite elements below; \
                        later parts of the motion are darker.";
         let charts = pair(phase(springs, probe), phase(elements, probe));
         Figure::new("motion_phase.png", caption, charts)
@@ -121,23 +101,56 @@ pub fn figures(
     figures
 }
 
+/// The force of the measured group over time and over its displacement.
+fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
+    let axis = sheet.measured_axis(&motions.elements)?;
+    if !sheet.has_force() {
+        return None;
+    }
+    let along = ["x", "y"][axis];
+    let (name, moved) = (sheet.measured_name(), sheet.moved_axis(&motions.elements));
+    let force = move |now: &Instant| {
+        let force = sheet.measured_force(&now.support_forces);
+        force.map_or(f64::NAN, |force| force[axis])
+    };
+    let group = &sheet.specimen.group;
+    let moved_by = |model: &ModelMotion, now: &Instant| model.displacement_of(group, now)[moved];
+    let chart_of = |label: &str, lines| chart(&format!("Force of the {name}"), label, "force [N]", lines);
+    let models = motions.models();
+    let mut over_time = lines(models, |_, now| [now.time, force(now)]);
+    over_time.extend(motions.correction.motion.as_ref().map(|corrected| {
+        let points = corrected.points(|now| [now.time, force(now)]);
+        Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Points)
+    }));
+    let over_displacement = lines(models, |model, now| [moved_by(model, now), force(now)]);
+    let label = format!("displacement along {} [mm]", ["x", "y"][moved]);
+    let charts = pair(
+        chart_of("time [s]", over_time),
+        chart_of(&label, over_displacement),
+    );
+    let caption =
+        format!("Force of the {name} along {along} over its displacement and over time.");
+    Some(Figure::new("motion_force.png", &caption, charts))
+}
+
 /// Stresses and strains at the instants that the study chooses, else at the last one.
-fn stress_figures(plate: &MovingPlate, times: &[f64], shown: &[PlateMotion]) -> Vec<Figure> {
+fn stress_figures(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> Vec<Figure> {
+    let pictures = &sheet.specimen.pictures;
+    let law = &*sheet.specimen.problem.law;
     let at_instant = |instant: usize| {
-        let deformed = shown.iter().filter_map(|plate| {
-            let [displacement, _] = *plate.motion.get(instant)?;
+        let deformed = shown.iter().filter_map(|own| {
+            let [displacement, _] = *own.motion.get(instant)?;
             Some(Deformed {
-                viscous: &plate.viscous[instant].at_nodes,
-                ..Deformed::elastic(plate.name, plate.mesh, vec![displacement])
+                viscous: &own.viscous[instant].at_nodes,
+                ..Deformed::elastic(own.style.name, own.mesh, vec![displacement])
             })
         });
         let deformed: Vec<_> = deformed.collect();
         let at = format!("t = {} s", brief(times[instant]));
         let file = |field: &str| format!("motion_{field}_{:05}.png", instant + 1);
-        let fields = &plate.pictures.fields;
-        sheet_figures(fields, &*plate.problem.law, &deformed, &at, &file)
+        sheet_figures(&pictures.fields, law, &deformed, &at, &file)
     };
-    let instants = plate.pictures.shown.instants(times);
+    let instants = pictures.shown.instants(times);
     instants.into_iter().flat_map(at_instant).collect()
 }
 
@@ -171,7 +184,7 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
             Stroke::Thin,
         )
     });
-    let title = format!("Phase of the probe {}, {}", probe.name, model.name);
+    let title = format!("Phase of the probe {}, {}", probe.name, model.style.name);
     chart(
         &title,
         "displacement [mm]",
@@ -180,31 +193,26 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     )
 }
 
-fn probes(
-    plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    corrected: &CorrectedInstants,
-) -> LineChart {
+fn probes(sheet: &MovingSheet, motions: &Motions) -> LineChart {
     let mut lines = Vec::new();
-    let [springs, _] = models;
-    let times = springs.history.times();
-    for (probe, colour) in plate.probes.iter().zip(PALETTE.into_iter().cycle()) {
-        let fields = times.iter().zip(&corrected.displacement);
-        let points = fields.map(|(time, field)| [*time, springs.at(field, probe)[0]]);
-        let label = format!("{}, corrected", probe.name);
-        let between = Line::new(label, points, colour, Stroke::Points);
-        lines.extend((!between.points.is_empty()).then_some(between));
-        lines.extend(models.iter().zip(STROKES).map(|(model, stroke)| {
+    for (probe, colour) in sheet.probes.iter().zip(PALETTE.into_iter().cycle()) {
+        lines.extend(motions.correction.motion.as_ref().map(|corrected| {
+            let points =
+                corrected.points(|now| [now.time, corrected.at(&now.displacement, probe)[0]]);
+            let label = format!("{}, corrected", probe.name);
+            Line::new(label, points, colour, Stroke::Points)
+        }));
+        let models = motions.models().into_iter().zip(STROKES);
+        lines.extend(models.map(|(model, stroke)| {
             let points = model
                 .course(probe)
                 .into_iter()
                 .map(|[time, x, _]| [time, x]);
-            let label = format!("{}, {}", probe.name, model.name);
+            let label = format!("{}, {}", probe.name, model.style.name);
             Line::new(label, points, colour, stroke)
         }));
     }
-    let along = "displacement along the plate [mm]";
-    chart("Displacement of the probes", "time [s]", along, lines)
+    chart("Displacement of the probes", "time [s]", ALONG, lines)
 }
 
 fn energy(model: &ModelMotion) -> LineChart {
@@ -220,150 +228,121 @@ fn energy(model: &ModelMotion) -> LineChart {
         let points = model.points(|now| [now.time, part(&now.energy)]);
         Line::new(*name, points, colour, Stroke::Solid)
     });
-    let title = format!("Energies of the {}", model.name);
+    let title = format!("Energies of the {}", model.style.name);
     chart(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
-/// The displacement of the middle of the right side along the plate in mm.
-pub fn right_side(model: &ModelMotion, now: &Instant) -> f64 {
-    let [length, width] = model.mesh.grid().size;
-    let middle = [length, 0.5 * width];
-    model.mesh.displacement_at(&now.displacement, middle)[0]
-}
+/// What the pictures of the sheets show.
+const ALONG: &str = "displacement along x [mm]";
 
-fn force(models: &[ModelMotion; 2], axis: &str, x: fn(&ModelMotion, &Instant) -> f64) -> LineChart {
-    let lines = lines(models, |model, now| {
-        [x(model, now), now.support_forces[1][0]]
-    });
-    chart("Force of the right grip", axis, "force [N]", lines)
-}
-
-/// What the pictures of the plates show.
-const ALONG: &str = "displacement along the plate [mm]";
-
-/// The plates at an instant, with their displacement along x.
-fn displaced(plates: &[PlateMotion], instant: usize) -> Vec<Panel> {
-    let panel = |plate: &PlateMotion| {
-        let [displacement, _] = *plate.motion.get(instant)?;
+/// The sheets at an instant, with their displacement along x.
+fn displaced(shown: &[ShownSheet], instant: usize) -> Vec<Panel> {
+    let panel = |own: &ShownSheet| {
+        let [displacement, _] = *own.motion.get(instant)?;
         let along = |node: usize| displacement[2 * node];
         Some(Panel::at_nodes(
-            plate.name,
-            plate.mesh,
+            own.style.name,
+            own.mesh,
             displacement,
             &along,
         ))
     };
-    plates.iter().filter_map(panel).collect()
+    shown.iter().filter_map(panel).collect()
 }
 
-/// The plates in motion: a picture that plays in every browser.
-pub fn animation(times: &[f64], plates: &[PlateMotion]) -> Animation {
+/// The sheets in motion: a picture that plays in every browser.
+pub fn animation(times: &[f64], shown: &[ShownSheet]) -> Animation {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
     let every = times.len().div_ceil(FRAMES).max(1);
-    let count = plates.iter().map(|plate| plate.motion.len()).min();
+    let count = shown.iter().map(|own| own.motion.len()).min();
     let instants = (0..count.unwrap_or(0)).step_by(every);
     let frame = |instant: usize| Frame {
         time: times[instant],
-        panels: displaced(plates, instant),
+        panels: displaced(shown, instant),
     };
     Animation {
-        title: "Plates in motion".into(),
+        title: "Sheets in motion".into(),
         quantity: ALONG.into(),
         frames: instants.map(frame).collect(),
         milliseconds: MILLISECONDS,
     }
 }
 
-/// The fields of each model and of the corrected motion; those on the lattice hold the difference to the `expected`
-/// displacements.
-pub fn grids(
-    plate: &MovingPlate,
-    times: &[f64],
-    plates: &[PlateMotion],
-    expected: &[Vec<f64>],
-) -> Vec<GridSeries> {
-    let series = |own: &PlateMotion| {
+/// The fields of each model and of the corrected motion; those of the springs and of the corrected motion hold the difference to the
+/// displacements of the finite elements.
+pub fn grids(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Vec<GridSeries> {
+    let times = motions.times();
+    let series = |own: &ShownSheet| {
+        let expected = if own.is_reference() {
+            Vec::new()
+        } else {
+            displacements_on(own.mesh, &motions.elements)
+        };
         let grid = |(instant, [displacement, velocity]): (usize, &[&[f64]; 2])| {
             let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
-            let expected = expected.get(instant).filter(|_| !own.is_reference);
+            let expected = expected.get(instant);
             let difference =
                 expected.map(|expected| Array::to_finite_elements(displacement, expected));
-            let sheet = Sheet {
-                law: &*plate.problem.law,
-                thickness: plate.problem.thickness,
-                past: &[],
+            let strained = Sheet {
                 viscous: Some(&own.viscous[instant]),
+                ..sheet.specimen.sheet()
             };
-            let grid = Grid::sheet(sheet, own.mesh, displacement);
+            let grid = Grid::sheet(strained, own.mesh, displacement);
             (times[instant], grid.with([velocity]).with(difference))
         };
-        GridSeries::instants(own.file, own.motion.iter().enumerate().map(grid))
+        GridSeries::instants(own.style.key, own.motion.iter().enumerate().map(grid))
     };
-    plates.iter().map(series).collect()
+    shown.iter().map(series).collect()
 }
 
-/// Probes, energies and the grip's force over time, one table for each model.
-pub fn tables(
-    plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    corrected: &CorrectedInstants,
-) -> Vec<(String, Content)> {
-    let [springs, _] = models;
-    let times = springs.history.times();
-    let of_model = |model: &ModelMotion| {
-        let instants = &model.history.instants;
+/// Probes, energies and the measured group's force over time, one table for each model.
+pub fn tables(sheet: &MovingSheet, motions: &Motions) -> Vec<(String, Content)> {
+    let of_model = |model: &&ModelMotion| {
+        let instants = model.instants();
         type Column = fn(&Instant) -> f64;
-        let columns: [(_, _, Column); 6] = [
-            ("kinetic energy", "mJ", |now| now.energy.kinetic),
-            ("stored energy", "mJ", |now| now.energy.stored),
-            ("viscous work", "mJ", |now| now.energy.viscous_work),
-            ("external work", "mJ", |now| now.energy.external_work),
-            ("grip force x", "N", |now| now.support_forces[1][0]),
-            ("grip force y", "N", |now| now.support_forces[1][1]),
+        let energies: [(_, Column); 4] = [
+            ("kinetic energy", |now| now.energy.kinetic),
+            ("stored energy", |now| now.energy.stored),
+            ("viscous work", |now| now.energy.viscous_work),
+            ("external work", |now| now.energy.external_work),
         ];
-        let columns = columns.into_iter().map(|(name, unit, value)| {
-            Series::new(name, unit, instants.iter().map(value).collect())
-        });
-        let fields = instants
-            .iter()
-            .map(|now| [&now.displacement, &now.velocity]);
-        let columns = columns.chain(of_probes(plate, model, fields)).collect();
-        table(model.file, &model.history.times(), columns)
+        let energies = energies
+            .into_iter()
+            .filter(|_| model.style != CORRECTED)
+            .map(|(name, value)| Series::new(name, "mJ", instants.iter().map(value).collect()));
+        let forces = sheet.measured_forces(model);
+        let forces = [("grip force x", 0), ("grip force y", 1)]
+            .into_iter()
+            .filter(|_| !forces.is_empty())
+            .map(|(name, axis)| {
+                let values = forces.iter().map(|force| force[axis]);
+                Series::new(name, "N", values.collect())
+            });
+        let columns: Vec<Series> = energies
+            .chain(forces)
+            .chain(of_probes(sheet, model))
+            .collect();
+        let text = csv(&model.history.times(), &columns);
+        let name = format!("motion_{}.csv", model.style.key);
+        (name, Content::Text(text))
     };
-    let mut all: Vec<_> = models.iter().map(of_model).collect();
-    if !corrected.displacement.is_empty() {
-        let fields = corrected.displacement.iter().zip(&corrected.velocity);
-        let forces = [("grip force x", 0), ("grip force y", 1)].map(|(name, axis)| {
-            let values = corrected.right_force.iter().map(|force| force[axis]);
-            Series::new(name, "N", values.collect())
-        });
-        let probes = of_probes(plate, springs, fields.map(|(u, v)| [u, v]));
-        let columns = forces.into_iter().chain(probes).collect();
-        let times = &times[..corrected.displacement.len()];
-        all.push(table("corrected", times, columns));
-    }
-    all
+    motions.all().iter().map(of_model).collect()
 }
 
-fn table(model: &str, times: &[f64], columns: Vec<Series>) -> (String, Content) {
-    let text = csv(times, &columns);
-    (format!("motion_{model}.csv"), Content::Text(text))
-}
-
-/// Displacements and velocities of the probes, from those of all nodes at every instant.
-fn of_probes<'a>(
-    plate: &MovingPlate,
-    model: &ModelMotion,
-    fields: impl Iterator<Item = [&'a Vec<f64>; 2]> + Clone,
-) -> Vec<Series> {
+/// Displacements and velocities of the probes at every instant.
+fn of_probes(sheet: &MovingSheet, model: &ModelMotion) -> Vec<Series> {
     let mut columns = Vec::new();
-    for probe in &plate.probes {
+    for probe in &sheet.probes {
         for (axis, direction) in ["x", "y"].into_iter().enumerate() {
-            for (which, what, unit) in [(0, "displacement", "mm"), (1, "velocity", "mm/s")] {
-                let values = fields
-                    .clone()
-                    .map(|pair| model.at(pair[which], probe)[axis]);
+            type Field = fn(&Instant) -> &Vec<f64>;
+            let fields: [(Field, _, _); 2] = [
+                (|now| &now.displacement, "displacement", "mm"),
+                (|now| &now.velocity, "velocity", "mm/s"),
+            ];
+            for (field, what, unit) in fields {
+                let values = model.instants().iter();
+                let values = values.map(|now| model.at(field(now), probe)[axis]);
                 let head = format!("{} {what} {direction}", probe.name);
                 columns.push(Series::new(&head, unit, values.collect()));
             }

@@ -1,10 +1,12 @@
-//! Functions that a study of motion states: the grip's motion in time, stiffness and damping of springs.
+//! Functions that a study of motion states: the load factor in time, stiffness and damping of springs.
 
+use super::problem::Drive;
 use crate::document::{Bound, Section};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
 use crate::material::scalar_function::ScalarFunction;
 use crate::statistics::extremes;
+use crate::studies::specimen::Along;
 use crate::units::Dimension;
 
 /// Stretches that a grip may reach.
@@ -13,16 +15,8 @@ pub const STRETCHES: Bound = Bound::Within(LEAST, 10.0);
 /// The least of them.
 const LEAST: f64 = -0.5;
 
-/// The motion of the right grip.
-pub struct GripMotion {
-    /// Its stretch in time.
-    pub stretch: TimeFunction,
-    /// When it lets go, in s.
-    pub release: Option<f64>,
-}
-
 #[derive(Clone, Copy)]
-enum Grip {
+enum Course {
     Hold,
     Release,
     Ramp,
@@ -30,75 +24,84 @@ enum Grip {
     Table,
 }
 
-/// The right grip's motion from a stretch at the start.
-pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
+/// The load factor in time from that at the start: of a plate the stretch of its right grip, under keys of its own.
+pub fn read_drive(section: &Section, start: f64, along: Along) -> Option<Drive> {
     let kinds = [
-        ("hold", Grip::Hold),
-        ("release", Grip::Release),
-        ("ramp", Grip::Ramp),
-        ("sine", Grip::Sine),
-        ("table", Grip::Table),
+        ("hold", Course::Hold),
+        ("release", Course::Release),
+        ("ramp", Course::Ramp),
+        ("sine", Course::Sine),
+        ("table", Course::Table),
     ];
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let mut release = None;
-    let stretch = match section.choice("motion", &kinds)? {
-        Grip::Hold => TimeFunction::Constant(start),
-        Grip::Release => {
+    let factor = match section.choice("motion", &kinds)? {
+        Course::Hold => TimeFunction::Constant(start),
+        Course::Release => {
             release = Some(instant("time"));
             TimeFunction::Constant(start)
         }
-        Grip::Ramp => {
-            let (begin, end, to) = (
-                instant("begin"),
-                instant("end"),
-                section.stretch("to", STRETCHES),
-            );
+        Course::Ramp => {
+            let (begin, end) = (instant("begin"), instant("end"));
+            let to = match along {
+                Along::Stretch => section.stretch("to", STRETCHES),
+                Along::LoadFactor => section.quantity("to", Dimension::Ratio, Bound::Any),
+            };
             if end <= begin {
                 section.fault("end", "must be after the begin", "give a later time");
                 return None;
             }
             TimeFunction::Table(vec![[begin, start], [end, to]])
         }
-        Grip::Sine => {
-            let amplitude = section.quantity("amplitude", Dimension::Ratio, STRETCHES);
-            if start - amplitude.abs() < LEAST {
-                let message = "compresses the plate to less than half of its length";
-                section.fault(
-                    "amplitude",
-                    message,
-                    "take a smaller one, or a larger `start.stretch`",
-                );
-            }
-            TimeFunction::Sine {
-                mean: start,
-                amplitude,
-                frequency: section.quantity("frequency", Dimension::Frequency, Bound::Positive),
-            }
-        }
-        Grip::Table => TimeFunction::Table(read_table(section, start)?),
+        Course::Sine => TimeFunction::Sine {
+            mean: start,
+            amplitude: read_amplitude(section, start, along),
+            frequency: section.quantity("frequency", Dimension::Frequency, Bound::Positive),
+        },
+        Course::Table => TimeFunction::Table(read_table(section, start, along)?),
     };
-    Some(GripMotion { stretch, release })
+    Some(Drive { factor, release })
 }
 
-/// The instants and stretches of a grip that moves as a table says.
-fn read_table(section: &Section, start: f64) -> Option<Vec<[f64; 2]>> {
-    let times = section.quantities("times", Dimension::Time, Bound::NonNegative);
-    let stretches = section.stretches("stretches", STRETCHES);
-    if stretches.first().is_some_and(|first| *first != start) {
-        let hint = "the grips have held the plate at `start.stretch` before time 0";
-        section.fault(
-            "stretches",
-            "must begin with the stretch at the start",
-            hint,
-        );
+/// The amplitude of an oscillation about the start.
+fn read_amplitude(section: &Section, start: f64, along: Along) -> f64 {
+    if along == Along::LoadFactor {
+        return section.quantity("amplitude", Dimension::Ratio, Bound::Any);
     }
-    ascending(section, "times", times, stretches)
+    let amplitude = section.quantity("amplitude", Dimension::Ratio, STRETCHES);
+    if start - amplitude.abs() < LEAST {
+        let message = "compresses the plate to less than half of its length";
+        let hint = "take a smaller one, or a larger `start.stretch`";
+        section.fault("amplitude", message, hint);
+    }
+    amplitude
 }
 
-/// The least and the largest stretch of a grip's motion.
-pub fn reached_stretches(motion: &TimeFunction) -> [f64; 2] {
+/// The instants and load factors of a table.
+fn read_table(section: &Section, start: f64, along: Along) -> Option<Vec<[f64; 2]>> {
+    let times = section.quantities("times", Dimension::Time, Bound::NonNegative);
+    let (key, factors) = match along {
+        Along::Stretch => ("stretches", section.stretches("stretches", STRETCHES)),
+        Along::LoadFactor => {
+            let factors = section.multiples("factors", Bound::Any, f64::INFINITY);
+            ("factors", factors)
+        }
+    };
+    if factors.first().is_some_and(|first| *first != start) {
+        let message = format!("must begin with the {} at the start", along.name());
+        let hint = match along {
+            Along::Stretch => "the grips have held the plate at `start.stretch` before time 0",
+            Along::LoadFactor => "the sheet has been held at `start.factor` before time 0",
+        };
+        section.fault(key, &message, hint);
+    }
+    ascending(section, "times", times, factors)
+}
+
+/// The least and the largest load factor, or stretch, of a motion.
+pub fn reached(motion: &TimeFunction) -> [f64; 2] {
     match motion {
-        TimeFunction::Constant(stretch) => [*stretch; 2],
+        TimeFunction::Constant(factor) => [*factor; 2],
         TimeFunction::Ramp { .. } => [0.0, 1.0],
         TimeFunction::Sine {
             mean, amplitude, ..
@@ -107,7 +110,7 @@ pub fn reached_stretches(motion: &TimeFunction) -> [f64; 2] {
     }
 }
 
-/// The slowest and the fastest rate of a grip's motion in 1/s, rests left out; nothing where it rests.
+/// The slowest and the fastest rate of a load factor, or stretch, in 1/s, rests left out; nothing where it rests.
 pub fn rates(motion: &TimeFunction) -> Option<[f64; 2]> {
     let own: Vec<f64> = match motion {
         TimeFunction::Constant(_) => Vec::new(),

@@ -2,80 +2,99 @@
 
 use std::collections::BTreeSet;
 
-use super::files::right_side;
-use super::plates::PlateMotion;
-use super::problem::MovingPlate;
-use super::solution::ModelMotion;
-use crate::dynamics::Instant;
+use super::problem::MovingSheet;
+use super::shown::ShownSheet;
+use super::solution::Motions;
 use crate::problem::GroupState;
-use crate::results::{Block, Deformed, Gauge, Headline, LoadedSheet};
+use crate::results::{Block, Deformed, Headline, LoadedSheet};
+use crate::studies::specimen::gauge;
 use crate::units::number;
 
-/// Force and displacement of the right side at the begin, at their extremes and at the end, and the largest values when most energy is stored, by the
-/// finite elements.
-pub fn headline(plate: &MovingPlate, elements: &ModelMotion, shown: &[PlateMotion]) -> Vec<Block> {
-    let Some(reference) = shown.iter().find(|plate| plate.is_reference) else {
+/// Force and displacement of the measured group at the begin, at their extremes and at the end, and the largest values when most energy is
+/// stored, by the finite elements.
+pub fn headline(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Vec<Block> {
+    let Some(reference) = shown.iter().find(|own| own.is_reference()) else {
         return Vec::new();
     };
-    let instants = &elements.history.instants;
-    let of = |now: &Instant| GroupState {
-        force: now.support_forces[1],
-        displacement: [right_side(elements, now), 0.0],
-        ..GroupState::default()
-    };
-    let row = |instant: usize| (number(instants[instant].time), vec![of(&instants[instant])]);
+    let instants = motions.elements.instants();
+    let specimen = &sheet.specimen;
+    let states: Vec<GroupState> = instants
+        .iter()
+        .map(|now| GroupState {
+            force: sheet
+                .measured_force(&now.support_forces)
+                .unwrap_or_default(),
+            displacement: motions.elements.displacement_of(&specimen.group, now),
+            ..GroupState::default()
+        })
+        .collect();
+    let row = |instant: usize| (number(instants[instant].time), vec![states[instant]]);
     let stored = extreme(instants, |now| now.energy.stored);
-    let [length, width] = plate.problem.size;
-    let fields = reference
-        .motion
-        .get(stored)
-        .map(|[displacement, _]| *displacement);
+    let fields = reference.motion.get(stored);
+    let fields = fields.map(|[displacement, _]| *displacement);
+    let viscous = reference.viscous.get(stored);
+    let name = match specimen.grids() {
+        Some(_) => "right side",
+        None => &specimen.group,
+    };
     let headline = Headline {
-        model: reference.name,
+        model: reference.style.name,
         along: "time [s]",
-        groups: vec!["right side"],
-        steps: telling(elements, instants).into_iter().map(row).collect(),
+        groups: vec![name],
+        steps: telling(&states).into_iter().map(row).collect(),
         state: LoadedSheet {
             at: format!(
                 "{} s, with most energy stored",
                 number(instants[stored].time)
             ),
-            law: &*plate.problem.law,
+            law: &*specimen.problem.law,
             deformed: Deformed {
-                viscous: reference
-                    .viscous
-                    .get(stored)
-                    .map_or(&[], |viscous| &viscous.at_nodes),
-                ..Deformed::elastic(reference.name, reference.mesh, fields.into_iter().collect())
+                viscous: viscous.map_or(&[], |viscous| &viscous.at_nodes),
+                ..Deformed::elastic(
+                    reference.style.name,
+                    reference.mesh,
+                    fields.into_iter().collect(),
+                )
             },
-            singular: [[0.0, 0.0], [0.0, width], [length, 0.0], [length, width]].to_vec(),
-            gauge: Some(Gauge::middle_half(
-                reference.mesh,
-                length,
-                "the middle half of the length",
-            )),
+            // Supports were checked when the study was read.
+            singular: specimen
+                .problem
+                .singular_points(reference.mesh)
+                .unwrap_or_default(),
+            gauge: gauge(&specimen.outline, reference.mesh),
         },
     };
     headline.blocks()
 }
 
-/// The first instant, the last one, and those at which displacement and force of the right side are largest and smallest.
-fn telling(elements: &ModelMotion, instants: &[Instant]) -> BTreeSet<usize> {
-    let displacement = |now: &Instant| right_side(elements, now);
-    let force = |now: &Instant| now.support_forces[1][0];
+/// The first instant, the last one, and those at which displacement and force of the measured group along x or y, whichever is larger, are largest
+/// and smallest.
+fn telling(states: &[GroupState]) -> BTreeSet<usize> {
+    let larger = |value: fn(&GroupState) -> [f64; 2]| {
+        let most = |axis: usize| {
+            states
+                .iter()
+                .map(move |state| value(state)[axis].abs())
+                .fold(0.0, f64::max)
+        };
+        let axis = usize::from(most(1) > most(0));
+        move |state: &GroupState| value(state)[axis]
+    };
+    let displacement = larger(|state| state.displacement);
+    let force = larger(|state| state.force);
     BTreeSet::from([
         0,
-        instants.len() - 1,
-        extreme(instants, displacement),
-        extreme(instants, |now| -displacement(now)),
-        extreme(instants, force),
-        extreme(instants, |now| -force(now)),
+        states.len() - 1,
+        extreme(states, &displacement),
+        extreme(states, |state| -displacement(state)),
+        extreme(states, &force),
+        extreme(states, |state| -force(state)),
     ])
 }
 
-/// The first instant at which a value is largest.
-fn extreme(instants: &[Instant], value: impl Fn(&Instant) -> f64) -> usize {
-    let numbers = (0..instants.len()).rev();
-    let largest = numbers.max_by(|a, b| value(&instants[*a]).total_cmp(&value(&instants[*b])));
+/// The first of some states at which a value is largest.
+fn extreme<T>(states: &[T], value: impl Fn(&T) -> f64) -> usize {
+    let numbers = (0..states.len()).rev();
+    let largest = numbers.max_by(|a, b| value(&states[*a]).total_cmp(&value(&states[*b])));
     largest.unwrap_or_default()
 }

@@ -2,13 +2,12 @@
 
 use serde_json::json;
 
-use super::corrected::CorrectedInstants;
-use super::deviations::{Deviations, OwnError, displacements_on};
+use super::deviations::{Deviations, OwnError};
 use super::files::{animation, figures, grids, tables};
 use super::headline::headline;
-use super::plates::{shown, times};
-use super::problem::MovingPlate;
-use super::solution::ModelMotion;
+use super::problem::MovingSheet;
+use super::shown::shown;
+use super::solution::{ModelMotion, Motions};
 use super::statement;
 use super::warnings::warnings;
 use crate::compare::judgement::{judge_by_margin, percent};
@@ -21,52 +20,50 @@ use crate::units::number;
 const ROWS: usize = 12;
 
 /// The outcome of both models and the corrected motion.
-pub fn outcome(
-    plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    own_error: Option<&OwnError>,
-    corrected: &CorrectedInstants,
-) -> Outcome {
-    let [springs, elements] = models;
-    let expected = displacements_on(&springs.mesh, elements);
-    let deviations = Deviations::both(models, corrected, &expected);
-    let seconds = models
-        .iter()
-        .map(|model| (model.name.to_owned(), model.seconds));
+pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnError>) -> Outcome {
+    let deviations = Deviations::all(sheet, motions);
+    let seconds = motions.models().map(|model| {
+        let name = model.style.name.to_owned();
+        (name, model.seconds)
+    });
     let mut blocks = vec![
-            Block::Paragraph(introduction(plate)),
-            summary(models),
-            Block::Paragraph(corrected.note.clone()),
-            Block::Paragraph(compared(&deviations, own_error)),
-            Block::Paragraph(
-                "Deviation at some instants, relative to the largest displacement field of the finite elements, and force of the right grip:"
-                    .into(),
-            ),
-            in_time(models, corrected, &deviations),
-        ];
-    blocks.extend(statement::blocks(plate));
-    let mut files = tables(plate, models, corrected);
-    let (plates, instants) = (shown(plate, models, corrected), times(models));
-    let animation = Drawing::Animation(animation(&instants, &plates));
+        Block::Paragraph(introduction(sheet, &motions.elements)),
+        summary(&motions.models()),
+        Block::Paragraph(motions.correction.note.clone()),
+        Block::Paragraph(compared(sheet, &deviations, own_error)),
+        Block::Paragraph(format!(
+            "Deviation at some instants, relative to the largest displacement field of the finite elements, and force of the {}:",
+            sheet.measured_name()
+        )),
+        in_time(sheet, motions, &deviations),
+    ];
+    blocks.extend(statement::blocks(sheet));
+    let mut files = tables(sheet, motions);
+    let (shown, times) = (shown(sheet, motions), motions.times());
+    let animation = Drawing::Animation(animation(&times, &shown));
     files.push(("motion.png".into(), Content::Picture(animation)));
     let mut outcome = Outcome {
-        headline: headline(plate, elements, &plates),
-        checks: checks(plate, models, &deviations, own_error),
+        headline: headline(sheet, motions, &shown),
+        checks: checks(sheet, motions, &deviations, own_error),
         blocks,
-        problem: statement::json(plate, own_error),
-        material: Some(Material::from(&plate.card)),
+        problem: statement::json(sheet, own_error),
+        material: Some(Material::from(&sheet.specimen.card)),
         along: "time",
-        steps: steps(models, corrected, &deviations),
-        figures: figures(plate, models, corrected, &plates),
-        style: plate.pictures.style.clone(),
-        grids: grids(plate, &instants, &plates, &expected),
-        warnings: warnings(plate, &instants, &plates),
+        steps: steps(sheet, motions, &deviations),
+        figures: figures(sheet, motions, &shown),
+        style: sheet.specimen.pictures.style.clone(),
+        grids: grids(sheet, motions, &shown),
+        warnings: warnings(sheet, &times, &shown),
         files,
-        times: seconds.collect(),
+        times: seconds.into(),
         ..Outcome::default()
     };
-    let ends = models.iter().map(|model| &model.end);
-    for end in ends.chain([&corrected.end]).flatten() {
+    let ends = motions.models().map(|model| model.end.as_ref());
+    for end in ends
+        .into_iter()
+        .chain([motions.correction.end.as_ref()])
+        .flatten()
+    {
         outcome.ended(end);
     }
     outcome
@@ -74,39 +71,48 @@ pub fn outcome(
 
 /// The figures of every instant for machines.
 fn steps(
-    [springs, elements]: &[ModelMotion; 2],
-    corrected: &CorrectedInstants,
-    deviations: &[Deviations; 2],
+    sheet: &MovingSheet,
+    motions: &Motions,
+    [of_springs, of_corrected]: &[Option<Deviations>; 2],
 ) -> Vec<Step> {
-    let quantities = |now: &Instant, deviations: Option<&Deviations>, instant: usize| {
-        let deviation = deviations.map(|own| own.displacement.get(instant));
+    let percent = |own: &Option<Deviations>, instant: usize| {
+        let own = own.as_ref()?;
+        own.displacement.get(instant).copied()
+    };
+    let quantities = |now: &Instant, percent: Option<f64>| {
         json!({
-            "displacement_percent": deviation,
-            "grip_force_N": now.support_forces[1],
+            "displacement_percent": percent,
+            "grip_force_N": sheet.measured_force(&now.support_forces),
             "kinetic_energy_mJ": now.energy.kinetic,
             "stored_energy_mJ": now.energy.stored,
             "viscous_work_mJ": now.energy.viscous_work,
             "external_work_mJ": now.energy.external_work,
         })
     };
-    let [of_springs, of_corrected] = deviations;
-    let instants = springs
-        .history
-        .instants
+    let of_both = |own: &Option<Deviations>, now: &Instant, instant: usize| {
+        percent(own, instant).map(|percent| {
+            json!({
+                "displacement_percent": percent,
+                "grip_force_N": sheet.measured_force(&now.support_forces),
+            })
+        })
+    };
+    let corrected = motions.correction.motion.as_ref();
+    let pairs = motions
+        .springs
+        .instants()
         .iter()
-        .zip(&elements.history.instants);
+        .zip(motions.elements.instants());
     let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| {
-        let percent = of_corrected.displacement.get(instant);
-        let of_corrected = percent.zip(corrected.right_force.get(instant)).map(
-            |(percent, force)| json!({ "displacement_percent": percent, "grip_force_N": force }),
-        );
+        let corrected = corrected.and_then(|own| own.instants().get(instant));
+        let corrected = corrected.and_then(|now| of_both(of_corrected, now, instant));
         let models = [
             (
                 MASS_SPRING.key,
-                quantities(springs, Some(of_springs), instant),
+                quantities(springs, percent(of_springs, instant)),
             ),
-            (CORRECTED.key, json!(of_corrected)),
-            (FINITE_ELEMENTS.key, quantities(elements, None, instant)),
+            (CORRECTED.key, json!(corrected)),
+            (FINITE_ELEMENTS.key, quantities(elements, None)),
         ];
         Step {
             at: springs.time,
@@ -116,29 +122,34 @@ fn steps(
                 .collect(),
         }
     };
-    instants.enumerate().map(step).collect()
+    pairs.enumerate().map(step).collect()
 }
 
-fn introduction(plate: &MovingPlate) -> String {
-    let [length, width] = plate.problem.size;
-    let ends = match plate.release {
-        Some(_) => "one end",
-        None => "both ends",
-    };
-    let waves = plate.bar_waves();
-    let (element, _) = plate.element;
-    format!(
-        "A plate of {length} × {width} × {} mm with a density of {} kg/m³ between grips, modelled by springs with dashpots and by finite elements \
-         ({}) with the same lumped mass. A bar of this length, clamped at {ends}, has its first longitudinal natural frequency √(E₀/ρ)/({waves} L) \
-         at {} Hz.",
-        plate.problem.thickness,
-        number(1e12 * plate.density),
-        element.name(),
-        number(plate.bar_frequency())
-    )
+fn introduction(sheet: &MovingSheet, elements: &ModelMotion) -> String {
+    let specimen = &sheet.specimen;
+    let mut text = format!(
+        "A sheet, {}, {} mm thick, with a density of {} kg/m³, modelled by springs with dashpots and by finite elements ({}) with the same \
+         lumped mass.",
+        specimen.outline.describe(),
+        specimen.problem.thickness,
+        number(1e12 * sheet.density),
+        elements.mesh.element_names(),
+    );
+    if specimen.grids().is_some() {
+        let ends = match sheet.drive.release {
+            Some(_) => "one end",
+            None => "both ends",
+        };
+        text += &format!(
+            " A bar of this length, clamped at {ends}, has its first longitudinal natural frequency √(E₀/ρ)/({} L) at {} Hz.",
+            sheet.bar_waves(),
+            number(sheet.bar_frequency())
+        );
+    }
+    text
 }
 
-fn summary(models: &[ModelMotion; 2]) -> Block {
+fn summary(models: &[&ModelMotion; 2]) -> Block {
     let head = [
         "model",
         "nodes",
@@ -151,13 +162,13 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
         "viscous work [mJ]",
         "work of grips and loads [mJ]",
     ];
-    let row = |model: &ModelMotion| {
+    let row = |model: &&ModelMotion| {
         let history = &model.history;
         let energies = history.instants.iter().map(|now| now.energy);
         let stored = energies.fold(0.0, |most: f64, energy| most.max(energy.stored));
         let last = history.instants[history.instants.len() - 1].energy;
         vec![
-            model.name.to_owned(),
+            model.style.name.to_owned(),
             model.mesh.nodes.len().to_string(),
             history.steps.to_string(),
             history.halved.to_string(),
@@ -173,19 +184,25 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
 }
 
 /// Deviations over all instants in a sentence, beside the finite elements' own error.
-fn compared([of_springs, of_corrected]: &[Deviations; 2], own_error: Option<&OwnError>) -> String {
-    let told = |name: &str, own: &Deviations| {
+fn compared(
+    sheet: &MovingSheet,
+    deviations: &[Option<Deviations>; 2],
+    own_error: Option<&OwnError>,
+) -> String {
+    let mut text = String::new();
+    let named = ["springs", "corrected motion"].into_iter().zip(deviations);
+    for (name, own) in named.filter_map(|(name, own)| Some((name, own.as_ref()?))) {
         let force = own.force.map_or_else(String::new, |force| {
-            format!(", and the force of the right grip by {} %", percent(force))
+            format!(
+                ", and the force of the {} by {} %",
+                sheet.measured_name(),
+                percent(force)
+            )
         });
-        format!(
+        text += &format!(
             "The displacement of the {name} deviates from the finite elements' by {} % over all instants{force}. ",
             percent(own.whole)
-        )
-    };
-    let mut text = told("springs", of_springs);
-    if !of_corrected.displacement.is_empty() {
-        text += &told("corrected motion", of_corrected);
+        );
     }
     text + &own_error.map_or_else(
         || {
@@ -196,39 +213,45 @@ fn compared([of_springs, of_corrected]: &[Deviations; 2], own_error: Option<&Own
     )
 }
 
-fn in_time(
-    [springs, elements]: &[ModelMotion; 2],
-    corrected: &CorrectedInstants,
-    deviations: &[Deviations; 2],
-) -> Block {
-    let head = [
-        "time [s]",
-        "mass-spring: displacement [%]",
-        "corrected: displacement [%]",
-        "mass-spring: force [N]",
-        "corrected: force [N]",
-        "finite elements: force [N]",
+fn in_time(sheet: &MovingSheet, motions: &Motions, deviations: &[Option<Deviations>; 2]) -> Block {
+    let mut head = vec![
+        "time [s]".to_owned(),
+        "mass-spring: displacement [%]".into(),
+        "corrected: displacement [%]".into(),
     ];
-    let count = deviations[0].displacement.len();
+    let axis = sheet.measured_axis(&motions.elements);
+    let corrected = motions.correction.motion.as_ref();
+    let models = [Some(&motions.springs), corrected, Some(&motions.elements)];
+    if axis.is_some() {
+        let names = ["mass-spring", "corrected", "finite elements"];
+        head.extend(names.map(|name| format!("{name}: force [N]")));
+    }
+    let count = deviations[0]
+        .as_ref()
+        .map_or(0, |own| own.displacement.len());
     let every = count.div_ceil(ROWS).max(1);
-    let percent = |own: &Deviations, instant: usize| {
-        let value = own.displacement.get(instant);
-        value.map_or("–".into(), |value| format!("{value:.3}"))
-    };
+    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".into());
     let row = |instant: usize| {
-        let force = |model: &ModelMotion| model.history.instants[instant].support_forces[1][0];
-        vec![
-            number(springs.history.instants[instant].time),
-            percent(&deviations[0], instant),
-            percent(&deviations[1], instant),
-            number(force(springs)),
-            corrected
-                .right_force
-                .get(instant)
-                .map_or("–".into(), |own| number(own[0])),
-            number(force(elements)),
-        ]
+        let percents = deviations.iter().map(|own| {
+            let value = own.as_ref()?.displacement.get(instant)?;
+            Some(format!("{value:.3}"))
+        });
+        let forces = models.iter().filter_map(|model| {
+            let axis = axis?;
+            let force = |model: &ModelMotion| {
+                let now = model.instants().get(instant)?;
+                Some(number(sheet.measured_force(&now.support_forces)?[axis]))
+            };
+            Some(model.and_then(force))
+        });
+        let time = number(motions.springs.instants()[instant].time);
+        std::iter::once(Some(time))
+            .chain(percents)
+            .chain(forces)
+            .map(or_dash)
+            .collect::<Vec<_>>()
     };
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
     Block::table(&head, (0..count).step_by(every).map(row))
 }
 
@@ -236,34 +259,33 @@ fn in_time(
 const REMEDY: &str = "take more `finite_element.cells`, or a shorter `time.step`";
 
 fn checks(
-    plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    deviations: &[Deviations; 2],
+    sheet: &MovingSheet,
+    motions: &Motions,
+    [of_springs, of_corrected]: &[Option<Deviations>; 2],
     own_error: Option<&OwnError>,
 ) -> Vec<Check> {
-    let limits = plate.tolerances;
+    let limits = sheet.tolerances;
     let check = |quantity: String, limit, value| {
         let wanted = Wanted::AtMost(limit);
         Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
     let energy = |model: &ModelMotion| {
-        let quantity = format!("{}: error of the energy balance", model.name);
+        let quantity = format!("{}: error of the energy balance", model.style.name);
         check(
             quantity,
             limits.energy_percent,
             100.0 * model.history.energy_error(),
         )
     };
-    let [of_springs, of_corrected] = deviations;
-    let (name, last) = if of_corrected.displacement.is_empty() {
-        (MASS_SPRING.name, of_springs)
-    } else {
-        (CORRECTED.name, of_corrected)
+    let energies = motions.models().map(energy).into_iter();
+    let corrected = of_corrected.as_ref().map(|own| (CORRECTED.name, own));
+    let springs = of_springs.as_ref().map(|own| (MASS_SPRING.name, own));
+    let Some((name, last)) = corrected.or(springs) else {
+        return energies.collect();
     };
-    let compared = last.displacement.len();
-    let until = times(models)[..compared].last().copied();
+    let until = motions.times()[..last.displacement.len()].last().copied();
     let until = until.unwrap_or_default();
-    let over = if until < plate.time.duration * (1.0 - 1e-9) {
+    let over = if until < sheet.time.duration * (1.0 - 1e-9) {
         format!("up to {} s", number(until))
     } else {
         "over all instants".to_owned()
@@ -277,8 +299,8 @@ fn checks(
     let displacement = deviation("displacement", limits.deviation_percent, last.whole, own);
     let force = limits.force_percent.zip(last.force).map(|(limit, value)| {
         let own = own_error.and_then(|own| own.force);
-        deviation("force of the right grip", limit, value, own)
+        let quantity = format!("force of the {}", sheet.measured_name());
+        deviation(&quantity, limit, value, own)
     });
-    let energies = models.iter().map(energy);
     energies.chain([displacement]).chain(force).collect()
 }

@@ -1,30 +1,26 @@
-//! A plate that moves: supports, loads, start, and what is computed.
+//! A sheet that moves: supports, loads, start, and what is computed.
 
+use super::solution::ModelMotion;
 use crate::budget::Need;
 use crate::dynamics::{
     Integrator, Motion, MovingForce, MovingSupport, Start, Step, TimeFunction, TimeSettings,
     Viscosity, lumped_mass,
 };
-use crate::error::Error;
-use crate::finite_element::Element;
-use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
+use crate::error::{Diagnostic, Error};
+use crate::mass_spring::{DashpotLaw, MassSpring, SpringLaw};
 use crate::material::Card;
 use crate::material::viscosity::ViscousMaterial;
-use crate::mesh::{Mesh, Side};
-use crate::problem::{ClampedPlate, Model};
-use crate::solve::NewtonSettings;
-use crate::studies::pictures::Pictures;
-
-/// How the plate at the start is solved.
-const NEWTON: NewtonSettings = NewtonSettings {
-    tolerance: 1e-10,
-    max_iterations: 60,
-};
+use crate::mesh::Mesh;
+use crate::problem::{BoundaryProblem, Model};
+use crate::studies::specimen::{NEWTON, Outline, PlateGrids, Specimen};
 
 /// Memory of an unknown at an instant, with what is written of it, estimated: numbers of the state, of the history and of the text.
 const BYTES_OF_AN_INSTANT: f64 = 200.0;
 
-/// A point of the plate that is watched.
+/// How often the cells of a shape's finite elements are halved: once beyond those of the corrected field.
+const HALVINGS: usize = 1;
+
+/// A point of the sheet that is watched.
 pub struct Probe {
     /// Its name.
     pub name: String,
@@ -42,6 +38,15 @@ pub struct PointForce {
     pub time: TimeFunction,
 }
 
+/// The load factor in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// The factor of all motions of supports and of all loads; of a plate, the stretch.
+    pub factor: TimeFunction,
+    /// When the supports of the measured group let go, in s.
+    pub release: Option<f64>,
+}
+
 /// What has to be reached, in %.
 #[derive(Clone, Copy)]
 pub struct Tolerances {
@@ -49,75 +54,88 @@ pub struct Tolerances {
     pub energy_percent: f64,
     /// Largest deviation of the corrected motion, or of the springs where there is none, from the finite elements.
     pub deviation_percent: f64,
-    /// Largest deviation of its force of the right grip; `None` where nothing is required of it.
+    /// Largest deviation of its force of the measured group; `None` where nothing is required of it.
     pub force_percent: Option<f64>,
 }
 
-/// A plate that moves.
-pub struct MovingPlate {
-    /// The plate; its stretches are that of the start, or none at rest.
-    pub problem: ClampedPlate,
-    /// The card of its material.
-    pub card: Card,
+/// A sheet that moves.
+pub struct MovingSheet {
+    /// The sheet with supports, loads and meshes; its load factors are that of the start, or none at rest.
+    pub specimen: Specimen,
     /// In tonne/mm³.
     pub density: f64,
     /// The viscous part of the material.
     pub viscosity: ViscousMaterial,
-    /// The right grip's stretch in time.
-    pub grip: TimeFunction,
-    /// When it lets go, in s.
-    pub release: Option<f64>,
+    /// What moves supports and loads.
+    pub drive: Drive,
     /// In mm/s².
     pub gravity: [f64; 2],
     /// Point forces.
     pub forces: Vec<PointForce>,
     /// Duration, instants, steps.
     pub time: TimeSettings,
-    /// Cells of the lattice.
-    pub cells: [usize; 2],
-    /// What it consists of.
-    pub lattice: LatticeSettings,
     /// K(·).
     pub springs: SpringLaw,
     /// D(·).
     pub dashpots: DashpotLaw,
     /// Whether the springs' motion is corrected.
     pub is_corrected: bool,
-    /// The finite element, and how many.
-    pub element: (Element, [usize; 2]),
     /// Points that are watched.
     pub probes: Vec<Probe>,
     /// What has to be reached.
     pub tolerances: Tolerances,
-    /// The pictures of its fields.
-    pub pictures: Pictures,
 }
 
-impl MovingPlate {
-    /// The length of the first longitudinal wave over that of the plate: a quarter of a wave where one end is released, else a half.
+impl MovingSheet {
+    /// The length of the first longitudinal wave over that of the sheet: a quarter of a wave where one end is released, else a half.
     pub(super) fn bar_waves(&self) -> u32 {
-        match self.release {
+        match self.drive.release {
             Some(_) => 4,
             None => 2,
         }
     }
 
-    /// The first longitudinal vibration of a bar of the plate's length in Hz.
+    /// The first longitudinal vibration of a bar of the sheet's length in Hz.
     pub(super) fn bar_frequency(&self) -> f64 {
-        let speed = (self.problem.law.youngs_modulus() / self.density).sqrt();
-        speed / (f64::from(self.bar_waves()) * self.problem.size[0])
+        let speed = (self.specimen.problem.law.youngs_modulus() / self.density).sqrt();
+        speed / (f64::from(self.bar_waves()) * self.length())
     }
 
-    /// The plate of another material, such as one made by [`Card::of_law`]; density and viscosity stay those of the study.
+    /// The extent of the sheet along x in mm.
+    pub(super) fn length(&self) -> f64 {
+        let [low, high] = self.specimen.outline.coarse().bounding_box();
+        high[0] - low[0]
+    }
+
+    /// The sheet of another material, such as one made by [`Card::of_law`]; density and viscosity stay those of the study.
     #[must_use]
-    pub fn with_card(mut self, card: Card) -> Self {
-        self.problem.law = std::sync::Arc::clone(&card.law);
-        self.card = card;
-        self
+    pub fn with_card(self, card: Card) -> Self {
+        Self {
+            specimen: self.specimen.with_card(card),
+            ..self
+        }
+    }
+
+    /// The springs on the lattice.
+    pub(super) fn lattice(&self) -> MassSpring {
+        self.specimen
+            .springs()
+            .with_spring_law(self.springs.clone())
+    }
+
+    /// The mesh of the finite elements, or one whose cells are twice as large so many times; `None` where there is none.
+    pub(super) fn elements_mesh(&self, coarser: usize) -> Option<Mesh> {
+        match &self.specimen.outline {
+            Outline::Grid(grids) => grids.elements.coarser_mesh(grids.size, coarser),
+            outline => {
+                let level = outline.halvings().min(HALVINGS).checked_sub(coarser)?;
+                Some(outline.reference_mesh(level))
+            }
+        }
     }
 
     /// What its motion will use. With the wave speed c at rest and cells of the side a, velocity Verlet takes steps of about
-    /// half of the longest stable one, which is shorter in a stretched or damped plate:
+    /// half of the longest stable one, which is shorter in a stretched or damped sheet:
     ///
     /// ```text
     /// c² = 4 μ/ρ,   h ≈ a/(2 c),   steps = duration/h
@@ -130,29 +148,24 @@ impl MovingPlate {
             integrator,
             ..
         } = self.time;
-        let (element, fine) = self.element;
-        let cells = |cells: [usize; 2]| cells[0] as f64 * cells[1] as f64;
-        let per_cell = match element {
-            Element::Q1 => 2.0,
-            Element::Q2 => 8.0,
-        };
-        let unknowns = (2.0 * cells(self.cells)).max(per_cell * cells(fine));
+        let Extent {
+            cells,
+            unknowns,
+            side,
+        } = self.extent();
         let instants =
-            duration / interval + (self.grip.kinks().len() + 2 * self.forces.len()) as f64;
-        let side = |cells: [usize; 2]| {
-            let sides = [0, 1].map(|axis| self.problem.size[axis] / cells[axis] as f64);
-            sides[0].min(sides[1])
-        };
-        let speed = (4.0 * self.problem.law.shear_modulus() / self.density).sqrt();
+            duration / interval + (self.drive.factor.kinks().len() + 2 * self.forces.len()) as f64;
+        let law = &self.specimen.problem.law;
+        let speed = (4.0 * law.shear_modulus() / self.density).sqrt();
         let step = match (step, integrator) {
             (Step::AtMost(step), _) => step.min(interval),
             (Step::Automatic, Integrator::VelocityVerlet) => {
-                side(self.cells).min(side(fine)) / (2.0 * speed)
+                side / (2.0 * speed)
             }
             (Step::Automatic, Integrator::GeneralisedAlpha { .. }) => interval,
         };
         Need {
-            cells: cells(self.cells).max(cells(fine)),
+            cells,
             instants,
             steps: duration / step,
             unknowns,
@@ -161,7 +174,38 @@ impl MovingPlate {
         }
     }
 
-    /// The motion of a model of the plate.
+    /// The larger extent of the lattice and of the finite elements; that of grids, which may be too large, without a mesh.
+    fn extent(&self) -> Extent {
+        let meshes = match &self.specimen.outline {
+            Outline::Grid(PlateGrids {
+                size,
+                cells,
+                elements,
+                ..
+            }) => {
+                let per_cell = 2.0 * (elements.element.shape().degree() as f64).powi(2);
+                [(*cells, 2.0), (elements.cells, per_cell)].map(|(cells, per_cell)| {
+                    let sides = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
+                    let cells = cells[0] as f64 * cells[1] as f64;
+                    Extent {
+                        cells,
+                        unknowns: per_cell * cells,
+                        side: sides[0].min(sides[1]),
+                    }
+                })
+            }
+            outline => [Some(outline.lattice()), self.elements_mesh(0)]
+                .map(|mesh| mesh.map_or_else(Extent::default, |mesh| Extent::of(&mesh))),
+        };
+        let [lattice, elements] = meshes;
+        Extent {
+            cells: lattice.cells.max(elements.cells),
+            unknowns: lattice.unknowns.max(elements.unknowns),
+            side: lattice.side.min(elements.side),
+        }
+    }
+
+    /// The motion of a model of the sheet.
     pub fn motion<'a>(
         &self,
         model: &'a Model<'a>,
@@ -169,15 +213,20 @@ impl MovingPlate {
     ) -> Result<Motion<'a>, Error> {
         let mesh = model.mesh;
         let size = 2 * mesh.nodes.len();
-        let mass = lumped_mass(mesh, self.density, self.problem.thickness);
-        let start = match self.problem.stretches[..] {
+        let problem = &self.specimen.problem;
+        let mass = lumped_mass(mesh, self.density, problem.thickness);
+        let start = match self.specimen.factors[..] {
             [] => vec![0.0; size],
-            _ => model.reach(&self.problem.stretches, NEWTON)?.displacement,
+            _ => model.reach(&self.specimen.factors, NEWTON)?.displacement,
         };
         let weight = (0..size).map(|i| mass[i] * self.gravity[i % 2]).collect();
         let gravity = MovingForce {
             force: weight,
             time: TimeFunction::Constant(1.0),
+        };
+        let loads = MovingForce {
+            force: problem.dead_forces(mesh).map_err(input)?,
+            time: self.drive.factor.clone(),
         };
         let points = self.forces.iter().map(|own| MovingForce {
             force: point_force(mesh, own.at, own.force),
@@ -186,40 +235,119 @@ impl MovingPlate {
         Ok(Motion {
             energy: model.energy,
             viscosity,
-            supports: vec![
-                MovingSupport::fixed(unknowns(mesh, Side::Left)),
-                self.right_grip(mesh),
-            ],
-            forces: [gravity].into_iter().chain(points).collect(),
+            supports: self.supports(mesh)?,
+            forces: [gravity, loads].into_iter().chain(points).collect(),
             start: Start::held_at(start),
             describe: Box::new(|element| (model.describe)(element)),
             mass,
         })
     }
 
-    fn right_grip(&self, mesh: &Mesh) -> MovingSupport {
-        let unknowns = unknowns(mesh, Side::Right);
-        let length = self.problem.size[0];
-        let along = |unknown: &usize| {
-            if unknown.is_multiple_of(2) {
-                length
-            } else {
-                0.0
-            }
+    /// Whether a support is one that lets go.
+    fn is_released(&self, group: &str) -> bool {
+        self.drive.release.is_some() && group == self.specimen.group
+    }
+
+    /// The supports on a mesh, in the order of the study. A node that several hold belongs to one that never lets go, if there is one.
+    fn supports(&self, mesh: &Mesh) -> Result<Vec<MovingSupport>, Error> {
+        let problem = &self.specimen.problem;
+        let mut order: Vec<usize> = (0..problem.supports.len()).collect();
+        order.sort_by_key(|number| self.is_released(&problem.supports[*number].0));
+        let sorted = BoundaryProblem {
+            supports: order
+                .iter()
+                .map(|number| problem.supports[*number].clone())
+                .collect(),
+            ..problem.clone()
         };
-        MovingSupport {
-            displacement: unknowns.iter().map(along).collect(),
-            unknowns,
-            time: self.grip.clone(),
-            until: self.release,
+        let moving = problem.supports.iter().map(|(group, _)| MovingSupport {
+            unknowns: Vec::new(),
+            displacement: Vec::new(),
+            time: self.drive.factor.clone(),
+            until: self.drive.release.filter(|_| self.is_released(group)),
+        });
+        let mut moving: Vec<MovingSupport> = moving.collect();
+        for (unknown, by) in sorted.held_by(mesh).map_err(input)? {
+            let number = order[by];
+            let (node, axis) = (unknown / 2, unknown % 2);
+            let (_, support) = &problem.supports[number];
+            let displacement = support.displacement(mesh.nodes[node], axis, 1.0);
+            moving[number].unknowns.push(unknown);
+            moving[number]
+                .displacement
+                .push(displacement.unwrap_or(0.0));
         }
+        Ok(moving)
+    }
+
+    /// The force in N of the supports of the measured group, of those of all supports; `None` where no support holds it.
+    pub(super) fn measured_force(&self, forces: &[[f64; 2]]) -> Option<[f64; 2]> {
+        let supports = self.specimen.problem.supports.iter().zip(forces);
+        let own = supports.filter(|((group, _), _)| *group == self.specimen.group);
+        own.map(|(_, force)| *force)
+            .reduce(|sum, force| [sum[0] + force[0], sum[1] + force[1]])
+    }
+
+    /// The measured group in words.
+    pub(super) fn measured_name(&self) -> String {
+        match self.specimen.grids() {
+            Some(_) => "right grip".into(),
+            None => format!("group `{}`", self.specimen.group),
+        }
+    }
+
+    /// The axis along which the measured group has the larger force in a motion, x for a plate; `None` where no support holds it.
+    pub(super) fn measured_axis(&self, model: &ModelMotion) -> Option<usize> {
+        let forces = self.measured_forces(model);
+        let largest = |axis: usize| {
+            let forces = forces.iter().map(|force| force[axis].abs());
+            forces.fold(0.0, f64::max)
+        };
+        let is_across = self.specimen.grids().is_none() && largest(1) > largest(0);
+        (!forces.is_empty()).then_some(usize::from(is_across))
+    }
+
+    /// The axis along which the measured group moves more in a motion, x for a plate.
+    pub(super) fn moved_axis(&self, model: &ModelMotion) -> usize {
+        let group = &self.specimen.group;
+        let instants = model.instants().iter();
+        let largest = instants.fold([0.0_f64; 2], |most, now| {
+            let moved = model.displacement_of(group, now);
+            [most[0].max(moved[0].abs()), most[1].max(moved[1].abs())]
+        });
+        usize::from(self.specimen.grids().is_none() && largest[1] > largest[0])
+    }
+
+    /// Whether the measured group has a force that is worth a picture: it is held, and does not let go at once.
+    pub(super) fn has_force(&self) -> bool {
+        let mut supports = self.specimen.problem.supports.iter();
+        self.drive.release != Some(0.0) && supports.any(|(group, _)| *group == self.specimen.group)
     }
 }
 
-/// The unknowns of the nodes on a side.
-fn unknowns(mesh: &Mesh, side: Side) -> Vec<usize> {
-    let nodes = (0..mesh.nodes.len()).filter(|node| mesh.on(side, *node));
-    nodes.flat_map(|node| [2 * node, 2 * node + 1]).collect()
+/// A fault of supports or loads on a mesh.
+fn input(fault: Diagnostic) -> Error {
+    Error::Input(vec![fault])
+}
+
+/// How large a mesh is.
+#[derive(Default)]
+struct Extent {
+    cells: f64,
+    unknowns: f64,
+    /// The side in mm of a square as large as the smallest cell.
+    side: f64,
+}
+
+impl Extent {
+    fn of(mesh: &Mesh) -> Self {
+        let areas = (0..mesh.cell_count()).map(|cell| mesh.cell_area(cell));
+        Self {
+            cells: mesh.cell_count() as f64,
+            unknowns: 2.0 * mesh.nodes.len() as f64,
+            side: areas.fold(f64::INFINITY, f64::min).sqrt(),
+        }
+    }
 }
 
 /// A force in N on a point, shared by the nodes of its cell as the shape functions say.

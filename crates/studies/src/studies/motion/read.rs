@@ -1,14 +1,13 @@
-//! The study file of a motion.
+//! The study file of a motion: of a plate, or of a specimen of any shape.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use super::functions::{
-    GripMotion, STRETCHES, rates, reached_stretches, read_damping, read_grip, read_stiffness,
-};
-use super::problem::{MovingPlate, PointForce, Probe, Tolerances};
-use super::timing::check_times;
+use super::functions::{STRETCHES, rates, reached, read_damping, read_drive, read_stiffness};
+use super::problem::{Drive, MovingSheet, PointForce, Probe, Tolerances};
+use super::timing::{check_times, drive_section};
 use crate::budget::Need;
+use crate::corrector::{CorrectorSettings, DifferenceScheme};
 use crate::document::{Bound, Section};
 use crate::dynamics::{Integrator, Step, TimeFunction, TimeSettings};
 use crate::finite_element::Element;
@@ -18,21 +17,25 @@ use crate::material::card::read_viscosity;
 use crate::material::registry::SWELLING;
 use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
+use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
+use crate::studies::specimen::{
+    self, Along, GridCorrection, GridElements, Outline, PlateGrids, Specimen,
+};
 use crate::units::Dimension;
 use crate::units::number;
 
-/// The plate's material in motion.
+/// The sheet's material in motion.
 struct Material {
     card: Option<Card>,
     density: f64,
     viscosity: ViscousMaterial,
 }
 
-/// The lattice, its springs and dashpots.
+/// The springs and dashpots of the lattice, and its option for plates.
 struct Lattice {
     settings: LatticeSettings,
     springs: Option<SpringLaw>,
@@ -40,64 +43,123 @@ struct Lattice {
 }
 
 /// Reads a study; `None` where it has faults, which are recorded.
-pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
+pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     let section = root.section("material");
     let material = read_material(&section.requiring(&["card", "density"]), folder);
-    let plate = root
-        .section("plate")
-        .requiring(&["length", "width", "thickness"]);
-    let (problem, cells) = sections::read_plate(&plate, material.card.as_ref());
-    plate.unknown_keys();
-    let (start, grip) = read_stretches(root, material.card.as_ref());
+    let along = if root.is_of("specimen") {
+        Along::LoadFactor
+    } else {
+        Along::Stretch
+    };
+    let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity, along);
+    let card = material.card.as_ref();
+    let start = read_start(root, card, along);
+    let course = root
+        .section(drive_section(along))
+        .requiring(&["motion", "time", "measured_group"]);
+    let drive = read_drive(&course, start, along);
+    let specimen = match along {
+        Along::Stretch => {
+            check_reached(&course, start, card.zip(drive.as_ref()));
+            read_plate(root, card, lattice.settings)
+        }
+        Along::LoadFactor => specimen::read_moving(root, folder, card, &course),
+    };
+    course.unknown_keys();
+    let mesh = specimen.as_ref().map(|own| own.outline.lattice());
     let gravity = read_gravity(&root.section("gravity"));
-    let forces = tables(root, "force", |one| read_force(one, &problem));
-    warn_of_rest(root, start, grip.as_ref(), gravity, &forces);
+    let forces = tables(root, "force", |one| read_force(one, mesh.as_ref()));
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
-    let motion = time.as_ref().zip(grip.as_ref());
-    check_times(root, &in_time, motion, &material.viscosity, &forces);
-    let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
+    let motion = time.as_ref().zip(drive.as_ref());
+    check_times(root, &in_time, (motion, along), &material.viscosity, &forces);
     let section = root.section("corrector");
     let is_corrected = section.flag("enabled");
     section.unknown_keys();
-    let element = read_element(&root.section("finite_element"));
-    let probes = read_probes(root, &problem);
-    let tolerances = read_tolerances(&root.section("tolerances"), grip.as_ref());
+    let probes = read_probes(root, mesh.as_ref());
+    let tolerances = read_tolerances(&root.section("tolerances"), drive.as_ref());
     let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
-    let (grip, card) = (grip?, material.card?);
-    let plate = MovingPlate {
-        problem: ClampedPlate {
-            law: Arc::clone(&card.law),
-            stretches: (start != 0.0).then_some(start).into_iter().collect(),
-            ..problem
+    let sheet = MovingSheet {
+        specimen: Specimen {
+            along,
+            factors: (start != 0.0).then_some(start).into_iter().collect(),
+            pictures,
+            ..specimen?
         },
-        card,
         density: material.density,
         viscosity: material.viscosity,
-        grip: grip.stretch,
-        release: grip.release,
+        drive: drive?,
         gravity,
         forces,
         time: time?,
-        cells,
-        lattice: lattice.settings,
         springs: lattice.springs?,
         dashpots: lattice.dashpots?,
         is_corrected,
-        element: element?,
         probes,
         tolerances,
-        pictures,
     };
-    let need = plate.need();
+    warn_of_rest(root, start, &sheet);
+    affords(&in_time, &sheet).then_some(sheet)
+}
+
+/// Whether a motion is not too large; that it is, is recorded.
+fn affords(in_time: &Section, sheet: &MovingSheet) -> bool {
+    let need = sheet.need();
     let of_steps = Need {
         steps: need.steps,
         ..Need::default()
     };
     let others = Need { steps: 0.0, ..need };
-    let affords = in_time.affords("step", of_steps, FEWER_STEPS)
-        && in_time.affords("interval", others, SMALLER);
-    affords.then_some(plate)
+    in_time.affords("step", of_steps, FEWER_STEPS) && in_time.affords("interval", others, SMALLER)
+}
+
+/// A plate between two grips, on grids of lines.
+fn read_plate(root: &Section, card: Option<&Card>, lattice: LatticeSettings) -> Option<Specimen> {
+    let plate = root
+        .section("plate")
+        .requiring(&["length", "width", "thickness"]);
+    let (problem, cells) = sections::read_plate(&plate, card);
+    plate.unknown_keys();
+    let (element, of_elements) = read_element(&root.section("finite_element"))?;
+    let card = card?.clone();
+    let problem = ClampedPlate {
+        law: Arc::clone(&card.law),
+        ..problem
+    };
+    if problem.size.iter().any(|side| !side.is_finite()) {
+        return None; // told already
+    }
+    // Differences of second order where the numbers of cells allow them.
+    let pairs = DifferenceScheme::Biquadratic.side();
+    let scheme = if cells.iter().all(|count| count.is_multiple_of(pairs)) {
+        DifferenceScheme::Biquadratic
+    } else {
+        DifferenceScheme::Gauss
+    };
+    let grids = PlateGrids {
+        size: problem.size,
+        cells,
+        lattice,
+        correction: GridCorrection {
+            scheme,
+            grading: 1.0,
+            climb: None,
+            direct: CorrectorSettings::default(),
+        },
+        elements: GridElements {
+            element,
+            cells: of_elements,
+            grading: 1.0,
+        },
+    };
+    let outline = Outline::Grid(grids);
+    Some(Specimen::of(
+        "plate",
+        card,
+        problem.boundary_problem(),
+        outline,
+        "right",
+    ))
 }
 
 /// What makes a motion smaller.
@@ -173,41 +235,53 @@ fn read_material(section: &Section, folder: &Path) -> Material {
     }
 }
 
-/// The stretch at the start, and the motion of the right grip from there.
-fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotion>) {
-    let section = root.section("start").requiring(&["stretch"]);
-    let start = section.stretch("stretch", STRETCHES);
-    if let Some(card) = card.filter(|_| start != 0.0) {
+/// The load factor, or stretch, at the start.
+fn read_start(root: &Section, card: Option<&Card>, along: Along) -> f64 {
+    let section = root.section("start").requiring(&["stretch", "factor"]);
+    let start = match along {
+        Along::Stretch => section.stretch("stretch", STRETCHES),
+        Along::LoadFactor => section.quantity("factor", Dimension::Ratio, Bound::Any),
+    };
+    if let Some(card) = card.filter(|_| along == Along::Stretch && start != 0.0) {
         sections::check_range(&section, "stretch", &[start], card);
     }
     section.unknown_keys();
-    let section = root.section("grip").requiring(&["motion", "time"]);
-    let grip = read_grip(&section, start);
-    let reached = grip.as_ref().map(|grip| reached_stretches(&grip.stretch));
-    if let Some((card, [least, most])) = card.zip(reached) {
-        let beyond: Vec<f64> = [least.min(start), most.max(start)].into();
-        let beyond: Vec<f64> = beyond.into_iter().filter(|end| *end != start).collect();
-        sections::check_range(&section, "motion", &beyond, card);
-    }
-    section.unknown_keys();
-    (start, grip)
+    start
 }
 
-/// Warns of a plate that rests between its grips.
-fn warn_of_rest(
-    root: &Section,
-    start: f64,
-    grip: Option<&GripMotion>,
-    gravity: [f64; 2],
-    forces: &[PointForce],
-) {
-    let rests = |grip: &GripMotion| reached_stretches(&grip.stretch) == [0.0; 2];
-    let is_loaded = gravity != [0.0; 2] || forces.iter().any(|own| own.force != [0.0; 2]);
-    if start == 0.0 && !is_loaded && grip.is_some_and(rests) {
-        let message = "no grip moves and no force or gravity acts: the plate stays at rest";
-        let hint = "give the [start] a stretch, the [grip] a motion, or the plate a [[force]] or [gravity]";
-        root.warning("grip", message, hint);
+/// Warns of stretches of a plate outside the range of its card, or beyond the stability of its law.
+fn check_reached(course: &Section, start: f64, driven: Option<(&Card, &Drive)>) {
+    let Some((card, drive)) = driven else {
+        return;
+    };
+    let [least, most] = reached(&drive.factor);
+    let beyond: Vec<f64> = [least.min(start), most.max(start)].into();
+    let beyond: Vec<f64> = beyond.into_iter().filter(|end| *end != start).collect();
+    sections::check_range(course, "motion", &beyond, card);
+}
+
+/// Warns of a sheet that rests between its supports.
+fn warn_of_rest(root: &Section, start: f64, sheet: &MovingSheet) {
+    let problem = &sheet.specimen.problem;
+    let is_driven = problem.supports.iter().any(|(_, support)| !support.rests())
+        || !problem.loads.is_empty();
+    let stays = start == 0.0 && reached(&sheet.drive.factor) == [0.0; 2];
+    let is_loaded =
+        sheet.gravity != [0.0; 2] || sheet.forces.iter().any(|own| own.force != [0.0; 2]);
+    if is_loaded || is_driven && !stays {
+        return;
     }
+    let (message, hint) = match sheet.specimen.along {
+        Along::Stretch => (
+            "no grip moves and no force or gravity acts: the plate stays at rest",
+            "give the [start] a stretch, the [grip] a motion, or the plate a [[force]] or [gravity]",
+        ),
+        Along::LoadFactor => (
+            "no support moves and no load, force or gravity acts: the sheet stays at rest",
+            "give the [start] a factor, the [path] a motion, or the sheet a [[load]], a [[force]] or [gravity]",
+        ),
+    };
+    root.warning(drive_section(sheet.specimen.along), message, hint);
 }
 
 fn read_gravity(section: &Section) -> [f64; 2] {
@@ -217,10 +291,11 @@ fn read_gravity(section: &Section) -> [f64; 2] {
     gravity
 }
 
-fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
+fn read_lattice(section: &Section, viscosity: &ViscousMaterial, along: Along) -> Lattice {
     let lattice = Lattice {
         settings: LatticeSettings {
-            area_term: section.flag("area_term"),
+            // Only cells of a plate have area terms.
+            area_term: along == Along::Stretch && section.flag("area_term"),
         },
         springs: if section.has("stiffness") {
             read_stiffness(&section.section("stiffness"))
@@ -237,14 +312,14 @@ fn read_lattice(section: &Section, viscosity: &ViscousMaterial) -> Lattice {
     lattice
 }
 
-/// What a driven motion has to reach where the study does not state it, in %: a grip that is driven imposes most of the displacement and of the
+/// What a driven motion has to reach where the study does not state it, in %: a support that is driven imposes most of the displacement and of the
 /// force, so that what would be good for a free vibration says nothing.
 const DRIVEN_PERCENT: f64 = 5.0;
 
-/// The tolerances of a study; where the grip is driven, the force is judged too.
-fn read_tolerances(section: &Section, grip: Option<&GripMotion>) -> Tolerances {
+/// The tolerances of a study; where supports are driven, the force is judged too.
+fn read_tolerances(section: &Section, drive: Option<&Drive>) -> Tolerances {
     let is_driven =
-        grip.is_some_and(|grip| grip.release.is_none() && rates(&grip.stretch).is_some());
+        drive.is_some_and(|drive| drive.release.is_none() && rates(&drive.factor).is_some());
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
     let of_driven = |key| {
         if is_driven && !section.has(key) {
@@ -262,19 +337,28 @@ fn read_tolerances(section: &Section, grip: Option<&GripMotion>) -> Tolerances {
     tolerances
 }
 
-/// A point of the plate in mm.
-fn read_point(section: &Section, problem: &ClampedPlate) -> [f64; 2] {
-    let at = section.quantities("at", Dimension::Length, Bound::NonNegative);
-    let inside = |at: &[f64; 2]| at.iter().zip(problem.size).all(|(x, size)| *x <= size);
-    match <[f64; 2]>::try_from(at) {
-        Ok(at) if inside(&at) || at.iter().chain(&problem.size).any(|x| x.is_nan()) => at,
-        _ => {
-            let [length, width] = problem.size;
-            let hint = format!("two lengths up to [\"{length} mm\", \"{width} mm\"]");
-            section.fault("at", "must be a point of the plate", &hint);
-            [0.0; 2]
-        }
+/// A point of the sheet in mm.
+fn read_point(section: &Section, mesh: Option<&Mesh>) -> [f64; 2] {
+    /// Of a cell's size: curved sides of a lattice lie inside of the outline.
+    const BEYOND: f64 = 0.1;
+    let at = section.quantities("at", Dimension::Length, Bound::Any);
+    let Ok(at) = <[f64; 2]>::try_from(at) else {
+        let hint = "such as [\"15 mm\", \"5 mm\"]";
+        section.fault("at", "must be two lengths, x and y", hint);
+        return [0.0; 2];
+    };
+    let Some(mesh) = mesh.filter(|_| at.iter().all(|x| x.is_finite())) else {
+        return at;
+    };
+    let [[left, bottom], [right, top]] = mesh.bounding_box();
+    let in_box = (left..=right).contains(&at[0]) && (bottom..=top).contains(&at[1]);
+    if !in_box || mesh.outside(at) > BEYOND {
+        let hint = format!(
+            "the sheet lies from [\"{left} mm\", \"{bottom} mm\"] to [\"{right} mm\", \"{top} mm\"]"
+        );
+        section.fault("at", "must be a point of the sheet", &hint);
     }
+    at
 }
 
 /// The finite element, and how many.
@@ -286,10 +370,10 @@ fn read_element(section: &Section) -> Option<(Element, [usize; 2])> {
 }
 
 /// All probes; tables have columns of their names.
-fn read_probes(root: &Section, problem: &ClampedPlate) -> Vec<Probe> {
+fn read_probes(root: &Section, mesh: Option<&Mesh>) -> Vec<Probe> {
     let mut names = Vec::new();
     tables(root, "probe", |section| {
-        let probe = read_probe(section, problem);
+        let probe = read_probe(section, mesh);
         if names.contains(&probe.name) {
             let hint = "table columns carry this name: give each probe a name of its own";
             section.fault("name", "is the name of another probe", hint);
@@ -299,16 +383,16 @@ fn read_probes(root: &Section, problem: &ClampedPlate) -> Vec<Probe> {
     })
 }
 
-fn read_probe(section: &Section, problem: &ClampedPlate) -> Probe {
+fn read_probe(section: &Section, mesh: Option<&Mesh>) -> Probe {
     let probe = Probe {
         name: section.heading("name"),
-        at: read_point(section, problem),
+        at: read_point(section, mesh),
     };
     section.unknown_keys();
     probe
 }
 
-fn read_force(section: &Section, problem: &ClampedPlate) -> PointForce {
+fn read_force(section: &Section, mesh: Option<&Mesh>) -> PointForce {
     let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let time = if section.has("begin") || section.has("end") {
@@ -326,7 +410,7 @@ fn read_force(section: &Section, problem: &ClampedPlate) -> PointForce {
         TimeFunction::Constant(1.0)
     };
     let force = PointForce {
-        at: read_point(section, problem),
+        at: read_point(section, mesh),
         force,
         time,
     };

@@ -1,35 +1,89 @@
-//! The motion of one model.
+//! The motions of the models of a sheet.
 
 use web_time::Instant as Clock;
 
-use super::problem::MovingPlate;
+use super::problem::MovingSheet;
 use crate::dynamics::frequency::principal;
-use crate::dynamics::{History, TimeSettings, Viscosity, follow};
+use crate::dynamics::{History, Instant, TimeSettings, Viscosity, follow};
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::problem::Model;
+use crate::problem::{Model, mean_displacement};
 use crate::results::models::ModelStyle;
 
 /// One model's motion.
 pub struct ModelMotion {
     /// Its name.
-    pub name: &'static str,
-    /// Its name in names of files.
-    pub file: &'static str,
+    pub style: ModelStyle,
     /// Its mesh.
     pub mesh: Mesh,
-    /// Its instants.
+    /// Its instants; those of a corrected motion have no energies.
     pub history: History,
     /// Why it ended before its time, where it did.
     pub end: Option<Error>,
-    /// The first longitudinal vibration about the undeformed plate, with the right grip as at the end, in Hz; `None` where bending and
-    /// other vibrations hide it.
+    /// The first longitudinal vibration about the undeformed sheet, with the supports as at the end, in Hz; `None` where bending and
+    /// other vibrations hide it, or where the sheet can move freely.
     pub frequency: Option<f64>,
     /// Computing time in s.
     pub seconds: f64,
 }
 
-impl MovingPlate {
+/// The correction of the springs' motion.
+pub struct Correction {
+    /// The corrected motion at the instants that are written; `None` where there is none.
+    pub motion: Option<ModelMotion>,
+    /// What was done, or why nothing was.
+    pub note: String,
+    /// Why it ended before the springs' motion did, where it did.
+    pub end: Option<Error>,
+}
+
+/// The motions of all models.
+pub struct Motions {
+    /// Of the springs.
+    pub springs: ModelMotion,
+    /// Of the finite elements, with which the others are compared.
+    pub elements: ModelMotion,
+    /// Of the springs, corrected.
+    pub correction: Correction,
+}
+
+impl Motions {
+    /// Both models.
+    pub fn models(&self) -> [&ModelMotion; 2] {
+        [&self.springs, &self.elements]
+    }
+
+    /// All motions, the finite elements last.
+    pub fn all(&self) -> Vec<&ModelMotion> {
+        let corrected = self.correction.motion.as_ref();
+        let springs = std::iter::once(&self.springs);
+        springs.chain(corrected).chain([&self.elements]).collect()
+    }
+
+    /// The instants of the model that has more of them: all, unless both ended before.
+    pub fn times(&self) -> Vec<f64> {
+        let [springs, elements] = self.models().map(|model| model.history.times());
+        if springs.len() < elements.len() {
+            elements
+        } else {
+            springs
+        }
+    }
+}
+
+impl ModelMotion {
+    /// Its instants.
+    pub fn instants(&self) -> &[Instant] {
+        &self.history.instants
+    }
+
+    /// The mean displacement of a group in mm.
+    pub fn displacement_of(&self, group: &str, now: &Instant) -> [f64; 2] {
+        mean_displacement(&self.mesh, group, &now.displacement)
+    }
+}
+
+impl MovingSheet {
     /// Computes the motion of one model; `progress` is told the instants that are reached.
     pub fn moved(
         &self,
@@ -41,19 +95,18 @@ impl MovingPlate {
     ) -> Result<ModelMotion, Error> {
         let start = Clock::now();
         let motion = self.motion(model, viscosity)?;
-        let fault = |time: String, fault| Error::Solve {
-            model: model.name.clone(),
-            step: time,
-            fault,
-        };
         let held = motion.held(time.duration);
         let rest = vec![0.0; motion.mass.len()];
-        let longitudinal = principal(&motion, &held, &rest, 0);
-        let longitudinal = longitudinal.map_err(|found| fault("rest".into(), found))?;
+        // A sheet that can move freely has no slowest vibration.
+        let longitudinal = principal(&motion, &held, &rest, 0).ok().flatten();
         let (history, end) = match follow(&motion, time, progress) {
             Ok(history) => (history, None),
             Err(end) => {
-                let error = fault(end.describe(), end.fault);
+                let error = Error::Solve {
+                    model: model.name.clone(),
+                    step: end.describe(),
+                    fault: end.fault,
+                };
                 // The start alone is no motion.
                 if end.history.instants.len() < 2 {
                     return Err(error);
@@ -62,8 +115,7 @@ impl MovingPlate {
             }
         };
         Ok(ModelMotion {
-            name: style.name,
-            file: style.key,
+            style,
             mesh: model.mesh.clone(),
             history,
             end,

@@ -1,36 +1,39 @@
-//! What a study says, in the report's words and for machines: plate, grips, loads, material.
+//! What a study says, in the report's words and for machines: sheet, supports, loads, material.
 
 use serde_json::{Map, Value, json};
 
 use super::deviations::OwnError;
-use super::problem::{MovingPlate, PointForce};
+use super::problem::{Drive, MovingSheet, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
 use crate::results::Block;
+use crate::studies::specimen::{Along, load_words, support_words};
 use crate::units::number;
 
-/// The plate, what moves and loads it, what springs and dashpots follow.
-pub fn blocks(plate: &MovingPlate) -> Vec<Block> {
-    let row = |(what, says): (&'static str, String)| vec![what.to_owned(), says];
+/// The sheet, what moves and loads it, what springs and dashpots follow.
+pub fn blocks(sheet: &MovingSheet) -> Vec<Block> {
+    let rows = sentences(sheet).into_iter();
     vec![
-        Block::Heading(2, "Plate, supports and loads".into()),
+        Block::Heading(2, "Sheet, supports and loads".into()),
         Block::table(
             &["what", "as in the study"],
-            sentences(plate).into_iter().map(row),
+            rows.map(|(what, words)| vec![what, words]),
         ),
     ]
 }
 
 /// The same for machines.
-pub fn json(plate: &MovingPlate, own_error: Option<&OwnError>) -> Map<String, Value> {
-    let sentences = sentences(plate).into_iter();
+pub fn json(sheet: &MovingSheet, own_error: Option<&OwnError>) -> Map<String, Value> {
+    let sentences = sentences(sheet).into_iter();
     let says: Map<_, _> = sentences
-        .map(|(what, says)| (what.to_owned(), json!(says)))
+        .map(|(what, words)| (what, json!(words)))
         .collect();
+    let [low, high] = sheet.specimen.outline.coarse().bounding_box();
+    let size = [0, 1].map(|axis| high[axis] - low[axis]);
     let all = json!({
-        "size_mm": plate.problem.size,
-        "thickness_mm": plate.problem.thickness,
-        "density_kg_per_m3": 1e12 * plate.density,
+        "size_mm": size,
+        "thickness_mm": sheet.specimen.problem.thickness,
+        "density_kg_per_m3": 1e12 * sheet.density,
         "says": says,
         "finite_element_own_error": own_error.map(|own| json!({
             "displacement_percent": own.displacement,
@@ -40,30 +43,44 @@ pub fn json(plate: &MovingPlate, own_error: Option<&OwnError>) -> Map<String, Va
     all.as_object().cloned().unwrap_or_default()
 }
 
-fn sentences(plate: &MovingPlate) -> Vec<(&'static str, String)> {
-    let [length, width] = plate.problem.size;
-    let thickness = plate.problem.thickness;
-    vec![
+fn sentences(sheet: &MovingSheet) -> Vec<(String, String)> {
+    let specimen = &sheet.specimen;
+    let problem = &specimen.problem;
+    let mut all = vec![
         (
-            "plate",
+            "sheet".to_owned(),
             format!(
-                "{length} × {width} × {thickness} mm at rest, of {}",
-                plate.card.describe_sheet()
+                "{}, {} mm thick at rest, of {}",
+                specimen.outline.describe(),
+                problem.thickness,
+                specimen.card.describe_sheet()
             ),
         ),
-        ("density", format!("{} kg/m³", number(1e12 * plate.density))),
-        ("viscosity", viscosity(plate)),
-        ("left side", "clamped: ux = uy = 0".into()),
-        ("right side", right_side(plate)),
-        ("gravity", gravity(plate)),
-        ("point forces", forces(plate)),
-        ("springs", springs(plate)),
-        ("dashpots", dashpots(plate)),
-    ]
+        (
+            "density".into(),
+            format!("{} kg/m³", number(1e12 * sheet.density)),
+        ),
+        ("viscosity".into(), viscosity(sheet)),
+    ];
+    let supports = problem.supports.iter();
+    all.extend(supports.map(|(group, own)| (format!("support {group}"), support_words(own))));
+    let loads = problem.loads.iter();
+    all.extend(loads.map(|(group, own)| (format!("load {group}"), load_words(own))));
+    all.extend([
+        (
+            format!("{} in time", specimen.along.name()),
+            in_time(&sheet.drive, specimen.along, &specimen.group),
+        ),
+        ("gravity".into(), gravity(sheet)),
+        ("point forces".into(), forces(sheet)),
+        ("springs".into(), springs(sheet)),
+        ("dashpots".into(), dashpots(sheet)),
+    ]);
+    all
 }
 
-fn viscosity(plate: &MovingPlate) -> String {
-    let material = &plate.viscosity;
+fn viscosity(sheet: &MovingSheet) -> String {
+    let material = &sheet.viscosity;
     if material.is_none() {
         return "none".into();
     }
@@ -77,50 +94,47 @@ fn viscosity(plate: &MovingPlate) -> String {
     all.join("; ")
 }
 
-/// How the grip on the right moves, in % of the plate's length.
-fn right_side(plate: &MovingPlate) -> String {
-    let motion = match &plate.grip {
-        TimeFunction::Constant(stretch) => format!("held at {:.4} % stretch", 100.0 * stretch),
+/// The load factor in time; motions of supports and loads above are those at 1.
+fn in_time(drive: &Drive, along: Along, group: &str) -> String {
+    let at = |factor: f64| along.describe(factor);
+    let motion = match &drive.factor {
+        TimeFunction::Constant(factor) => format!("held at {}", at(*factor)),
         TimeFunction::Ramp { begin, end } => {
-            format!("from rest at {begin} s to 100 % stretch at {end} s")
+            format!("from rest at {begin} s to {} at {end} s", at(1.0))
         }
         TimeFunction::Sine {
             mean,
             amplitude,
             frequency,
         } => format!(
-            "oscillating about {:.4} % stretch with an amplitude of {:.4} % at {frequency} Hz",
-            100.0 * mean,
-            100.0 * amplitude
+            "oscillating about {} with an amplitude of {} at {frequency} Hz",
+            at(*mean),
+            at(*amplitude)
         ),
         TimeFunction::Table(points) => {
             let points = points.iter();
-            let points =
-                points.map(|[time, stretch]| format!("{:.4} % at {time} s", 100.0 * stretch));
-            format!(
-                "moved linearly between {}",
-                points.collect::<Vec<_>>().join(", ")
-            )
+            let points = points.map(|[time, factor]| format!("{} at {time} s", at(*factor)));
+            format!("linear between {}", points.collect::<Vec<_>>().join(", "))
         }
     };
-    match plate.release {
-        Some(time) => format!("in a rigid grip, {motion}; released at {time} s"),
-        None => format!("in a rigid grip, {motion}"),
+    match drive.release {
+        Some(time) => format!("{motion}; the supports of `{group}` let go at {time} s"),
+        None => motion,
     }
 }
 
-fn gravity(plate: &MovingPlate) -> String {
-    match plate.gravity {
+fn gravity(sheet: &MovingSheet) -> String {
+    match sheet.gravity {
         [0.0, 0.0] => "none".into(),
         [x, y] => format!(
-            "({}, {}) m/s² in the plane of the plate",
+            "({}, {}) m/s² in the plane of the sheet",
             1e-3 * x,
             1e-3 * y
         ),
     }
 }
 
-fn forces(plate: &MovingPlate) -> String {
+fn forces(sheet: &MovingSheet) -> String {
     let force = |own: &PointForce| {
         let ([x, y], [fx, fy]) = (own.at, own.force);
         let time = match &own.time {
@@ -129,10 +143,10 @@ fn forces(plate: &MovingPlate) -> String {
         };
         format!("({fx}, {fy}) N at ({x}, {y}) mm, {time}")
     };
-    if plate.forces.is_empty() {
+    if sheet.forces.is_empty() {
         "none".into()
     } else {
-        plate
+        sheet
             .forces
             .iter()
             .map(force)
@@ -141,8 +155,8 @@ fn forces(plate: &MovingPlate) -> String {
     }
 }
 
-fn springs(plate: &MovingPlate) -> String {
-    match &plate.springs {
+fn springs(sheet: &MovingSheet) -> String {
+    match &sheet.springs {
         SpringLaw::Material => "follow the material's curve".into(),
         SpringLaw::SecantModulus(function) => {
             format!("K(·) = a E/x₀ with a function E of λ − 1 of the study: {function}, in MPa")
@@ -150,8 +164,8 @@ fn springs(plate: &MovingPlate) -> String {
     }
 }
 
-fn dashpots(plate: &MovingPlate) -> String {
-    match &plate.dashpots {
+fn dashpots(sheet: &MovingSheet) -> String {
+    match &sheet.dashpots {
         DashpotLaw::Material(material) if material.is_none() => "none".into(),
         DashpotLaw::Material(_) => "follow the material's viscosity".into(),
         DashpotLaw::Viscosity {

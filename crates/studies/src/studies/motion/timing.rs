@@ -1,10 +1,19 @@
 //! Whether the times of a motion suit what moves.
 
-use super::functions::{GripMotion, rates};
-use super::problem::PointForce;
+use super::functions::rates;
+use super::problem::{Drive, PointForce};
 use crate::document::Section;
 use crate::dynamics::{Step, TimeFunction, TimeSettings};
 use crate::material::viscosity::{Covered, ViscousMaterial};
+use crate::studies::specimen::Along;
+
+/// The section of the load factor in time.
+pub fn drive_section(along: Along) -> &'static str {
+    match along {
+        Along::Stretch => "grip",
+        Along::LoadFactor => "path",
+    }
+}
 
 /// Warns where stresses that are made of the instants miss what relaxes between them.
 fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMaterial) {
@@ -24,12 +33,12 @@ fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMat
     }
 }
 
-/// Whether steps and instants follow a grip that swings; steps that do not would make another motion of it.
-fn check_swing(section: &Section, time: &TimeSettings, grip: &GripMotion) {
+/// Whether steps and instants follow a load factor that oscillates; steps that do not would make another motion of it.
+fn check_swing(section: &Section, time: &TimeSettings, drive: &Drive) {
     /// Steps in a period below which it is another motion, and those below which it is a rough one.
     const FEWEST: f64 = 8.0;
     const FEW: f64 = 20.0;
-    let Some(period) = grip.stretch.period() else {
+    let Some(period) = drive.factor.period() else {
         return;
     };
     let told = |key: &str, length: f64| {
@@ -62,15 +71,21 @@ fn check_swing(section: &Section, time: &TimeSettings, grip: &GripMotion) {
     }
 }
 
-/// Warns where a grip or a force does nothing in the time that is computed.
-fn check_idle(root: &Section, time: &TimeSettings, grip: &GripMotion, forces: &[PointForce]) {
+/// Warns where a support or a force does nothing in the time that is computed.
+fn check_idle(
+    root: &Section,
+    time: &TimeSettings,
+    (drive, along): (&Drive, Along),
+    forces: &[PointForce],
+) {
     let late = |begin: f64| begin >= time.duration;
     let hint = "take a longer `time.duration`, or an earlier time";
-    let kinks = grip.stretch.kinks().into_iter().take(1);
-    let begins = kinks.chain(grip.release).reduce(f64::min);
+    let kinks = drive.factor.kinks().into_iter().take(1);
+    let begins = kinks.chain(drive.release).reduce(f64::min);
     if begins.is_some_and(late) {
         let message = "does not begin within the computed time: nothing moves";
-        root.section("grip").warning("motion", message, hint);
+        root.section(drive_section(along))
+            .warning("motion", message, hint);
     }
     let forces = forces.iter().filter(|force| match force.time {
         TimeFunction::Ramp { begin, .. } => late(begin),
@@ -86,17 +101,17 @@ fn check_idle(root: &Section, time: &TimeSettings, grip: &GripMotion, forces: &[
 pub fn check_times(
     root: &Section,
     in_time: &Section,
-    motion: Option<(&TimeSettings, &GripMotion)>,
+    (motion, along): (Option<(&TimeSettings, &Drive)>, Along),
     viscosity: &ViscousMaterial,
     forces: &[PointForce],
 ) {
-    let Some((time, grip)) = motion else {
+    let Some((time, drive)) = motion else {
         return;
     };
     check_interval(in_time, time, viscosity);
-    check_covered(root, in_time, time, grip, &viscosity.covered);
-    check_swing(in_time, time, grip);
-    check_idle(root, time, grip, forces);
+    check_covered(root, in_time, time, (drive, along), &viscosity.covered);
+    check_swing(in_time, time, drive);
+    check_idle(root, time, (drive, along), forces);
 }
 
 /// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.
@@ -104,7 +119,7 @@ fn check_covered(
     root: &Section,
     in_time: &Section,
     time: &TimeSettings,
-    grip: &GripMotion,
+    (drive, along): (&Drive, Along),
     covered: &Covered,
 ) {
     if let Some([_, longest]) = covered.times
@@ -115,7 +130,9 @@ fn check_covered(
         let hint = "relaxation that is slower than the tests is not in the card: find it from a longer test";
         in_time.warning("duration", &message, hint);
     }
-    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, rates(&grip.stretch))
+    // The rate of a load factor is no rate of stretch.
+    let stretch_rates = rates(&drive.factor).filter(|_| along == Along::Stretch);
+    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, stretch_rates)
     else {
         return;
     };
@@ -128,5 +145,6 @@ fn check_covered(
         "the stretch rate of the grip is {outside:.4} 1/s, and the relaxation was measured at {low:.4} to {high:.4} 1/s"
     );
     let hint = "the material may be stiffer at rates that were not tested than the card states: find it from tests at this rate";
-    root.section("grip").warning("motion", &message, hint);
+    root.section(drive_section(along))
+        .warning("motion", &message, hint);
 }

@@ -1,53 +1,62 @@
 //! What a reader of a motion's figures must know about them.
 
-use super::plates::PlateMotion;
-use super::problem::MovingPlate;
-use crate::finite_element::Element;
+use super::problem::MovingSheet;
+use super::shown::ShownSheet;
+use crate::corrector::DifferenceScheme;
 use crate::mass_spring::{self, SpringLaw};
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS};
+use crate::results::models::CORRECTED;
 use crate::results::strained::{self, StrainedSheet};
 use crate::results::{Sheet, locking};
 use crate::units::number;
 
-/// The warnings about plates that move, at the given instants in s: a lattice of another ν, compression, a law of small strains, locking, and a
+/// The warnings about sheets that move, at the given instants in s: a lattice of another ν, compression, a law of small strains, locking, and a
 /// material beyond the range of its card or not stable.
-pub fn warnings(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -> Vec<String> {
-    let law = &*plate.problem.law;
-    let follows_card = matches!(plate.springs, SpringLaw::Material);
-    let is_alike = plate.lattice.area_term || !follows_card;
+pub fn warnings(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> Vec<String> {
+    let law = &*sheet.specimen.problem.law;
+    let follows_card = matches!(sheet.springs, SpringLaw::Material);
+    let grids = sheet.specimen.grids();
     let mut all = Vec::new();
-    if !is_alike {
-        all.extend(mass_spring::warning_of_plate(law));
+    if follows_card {
+        all.extend(match grids {
+            Some(grids) if grids.lattice.area_term => None,
+            Some(_) => mass_spring::warning_of_plate(law),
+            None => mass_spring::warning(law),
+        });
     }
-    all.extend(locking(plate, plates));
-    let Some(own) = plates.iter().find(|own| own.is_reference) else {
+    all.extend(locking(sheet, shown));
+    let Some(own) = shown.iter().find(|own| own.is_reference()) else {
         return all;
     };
     let states = own.motion.iter().zip(&own.viscous).zip(times);
     let states = states.map(|(([displacement, _], viscous), time)| StrainedSheet {
         load: format!("{} s", number(*time)),
         sheet: Sheet {
-            law,
-            thickness: plate.problem.thickness,
-            past: &[],
             viscous: Some(viscous),
+            ..sheet.specimen.sheet()
         },
         displacement,
     });
     let states: Vec<_> = states.collect();
-    all.extend(strained::warnings(&plate.card, own.name, own.mesh, &states));
+    all.extend(strained::warnings(
+        &sheet.specimen.card,
+        own.style.name,
+        own.mesh,
+        &states,
+    ));
     all
 }
 
-/// The warning about bilinear cells that lock.
-fn locking(plate: &MovingPlate, plates: &[PlateMotion]) -> Option<String> {
-    let corrected = plates.iter().any(|own| own.name == CORRECTED.name);
-    let corrected = corrected.then_some((
-        CORRECTED.name,
-        "The corrected motion has bilinear cells alone: rely on the finite elements",
-    ));
-    let elements =
-        (plate.element.0 == Element::Q1).then_some((FINITE_ELEMENTS.name, locking::SECOND_DEGREE));
-    let found: Vec<_> = corrected.into_iter().chain(elements).collect();
-    locking::warning(&*plate.problem.law, &found)
+/// The warning about cells of the first degree that lock.
+fn locking(sheet: &MovingSheet, shown: &[ShownSheet]) -> Option<String> {
+    let second_degree = sheet
+        .specimen
+        .grids()
+        .is_some_and(|grids| grids.correction.scheme == DifferenceScheme::Biquadratic);
+    let found: Vec<_> = shown
+        .iter()
+        .filter(|own| own.is_reference() || own.style == CORRECTED && !second_degree)
+        .filter(|own| locking::locks(own.mesh))
+        .map(|own| (own.style.name, locking::SECOND_DEGREE))
+        .collect();
+    locking::warning(&*sheet.specimen.problem.law, &found)
 }

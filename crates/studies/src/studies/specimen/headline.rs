@@ -47,7 +47,7 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
 }
 
 /// The gauge section of a strip or a dog-bone.
-fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
+pub fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
     let shape = match outline {
         Outline::Shape { shape, .. } => *shape,
         Outline::Grid(grids) => Shape::Strip { size: grids.size },

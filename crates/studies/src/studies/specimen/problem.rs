@@ -111,16 +111,16 @@ impl Specimen {
         self
     }
 
-    /// A specimen on a mesh, as if it had been read from a file, with all loads at once.
-    pub fn of_mesh(
+    /// A specimen with all loads at once and the usual settings.
+    pub fn of(
+        name: &str,
         card: Card,
         problem: BoundaryProblem,
-        mesh: Mesh,
-        element: CellShape,
+        outline: Outline,
         group: &str,
     ) -> Self {
         Self {
-            name: MESH.into(),
+            name: name.into(),
             problem,
             card,
             along: Along::LoadFactor,
@@ -139,13 +139,25 @@ impl Specimen {
             correction: Method::Automatic,
             linear_solver: LinearSolver::Automatic,
             pictures: Pictures::default(),
-            outline: Outline::File {
-                mesh: Box::new(mesh),
-                element,
-                polygons: false,
-                halvings: HALVINGS,
-            },
+            outline,
         }
+    }
+
+    /// A specimen on a mesh, as if it had been read from a file.
+    pub fn of_mesh(
+        card: Card,
+        problem: BoundaryProblem,
+        mesh: Mesh,
+        element: CellShape,
+        group: &str,
+    ) -> Self {
+        let outline = Outline::File {
+            mesh: Box::new(mesh),
+            element,
+            polygons: false,
+            halvings: HALVINGS,
+        };
+        Self::of(MESH, card, problem, outline, group)
     }
 
     /// Whether a corrected field with so many unknowns comes from nested meshes.

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::along::Along;
-use super::problem::{Method, NEWTON, Outline, Refinement, Specimen};
+use super::problem::{Method, Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
 use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
+use crate::material::Card;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{Tolerances, check_thickness, read_models, refuse_memory};
@@ -51,14 +51,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let refinement = read_refinement(&section, element);
     section.unknown_keys();
     let correction = read_correction(&root.section("corrector"));
-    let specimen = root.section("specimen").requiring(MEASURES);
-    let section = &specimen;
-    let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
-    let thickness = section.quantity("thickness", Dimension::Length, Bound::SIZE);
-    let element = element.unwrap_or(CellShape::Quad9);
-    let outline = name.and_then(|name| read_outline(section, name, import, element));
-    section.unknown_keys();
-    let given = SupportsAndLoads::read(root);
+    let sheet = StatedSheet::read(root, import, element);
 
     let remembers = card
         .as_ref()
@@ -75,44 +68,112 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         Dimension::Ratio,
         &factors,
     );
-    let (card, name, mut outline) = (card?, name?, outline?);
-    if !fits(section, &outline) || !affords(section, &mut outline, factors.len(), refinement) {
-        return None;
-    }
-    let mesh = outline.coarse();
-    check_elements(root, &outline, &mesh);
-    given.check_groups(&mesh);
-    check_measured(&path, &group, &mesh);
+    let states = (factors.len(), refinement);
+    let specimen = sheet.specimen(root, card?, (&path, &group), states)?;
     let specimen = Specimen {
-        name: name.replace('-', "_"),
-        problem: BoundaryProblem {
-            thickness,
-            law: Arc::clone(&card.law),
-            supports: given.supports(),
-            loads: given.loads(),
-        },
-        card,
-        along: Along::LoadFactor,
         factors,
         models,
-        springs_newton: NEWTON,
-        elements_newton: NEWTON,
-        group,
         tolerances,
         refinement,
         correction: correction?,
         linear_solver: linear_solver?,
-        outline,
         pictures,
+        ..specimen
     };
-    let [low, high] = mesh.bounding_box();
-    let size = [0, 1].map(|axis| high[axis] - low[axis]);
-    check_thickness(section, thickness, size, Some(&specimen.card));
-    given.check(root, &specimen.problem, &mesh);
-    warn_of_parts(section, &specimen, &mesh);
+    let mesh = specimen.outline.coarse();
     check_refinement(root, &specimen, &mesh);
     check_nested(root, &specimen);
     Some(specimen)
+}
+
+/// Reads the sheet of a motion in time, whose supports and loads follow the load factor of a section `path`; `None` where it has faults, which
+/// are recorded.
+pub fn read_moving(
+    root: &Section,
+    folder: &Path,
+    card: Option<&Card>,
+    path: &Section,
+) -> Option<Specimen> {
+    let of_file = |file: &str, reading| import(&folder.join(file), reading);
+    let section = root.section("finite_element");
+    let element = section.choice("element", &CellShape::NAMES);
+    section.unknown_keys();
+    let sheet = StatedSheet::read(root, &of_file, element);
+    let group = path.text("measured_group");
+    sheet.given.check_in_time();
+    let specimen = sheet.specimen(root, card?.clone(), (path, &group), (1, None))?;
+    let ties = specimen.problem.ties(&specimen.outline.coarse());
+    if ties.is_ok_and(|ties| !ties.is_empty()) {
+        let message = "a line that is parallel to no axis holds the sheet, and in a motion rollers slide along x or y";
+        let hint = "turn the specimen so that the line is parallel to an axis";
+        root.fault("support", message, hint);
+    }
+    Some(specimen)
+}
+
+/// What a study says of a sheet of any shape: its outline, its supports and loads.
+struct StatedSheet<'a> {
+    section: Section<'a>,
+    name: Option<&'static str>,
+    thickness: f64,
+    outline: Option<Outline>,
+    given: SupportsAndLoads<'a>,
+}
+
+impl<'a> StatedSheet<'a> {
+    fn read(root: &Section<'a>, import: &Import, element: Option<CellShape>) -> Self {
+        let section = root.section("specimen").requiring(MEASURES);
+        let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
+        let thickness = section.quantity("thickness", Dimension::Length, Bound::SIZE);
+        let element = element.unwrap_or(CellShape::Quad9);
+        let outline = name.and_then(|name| read_outline(&section, name, import, element));
+        section.unknown_keys();
+        Self {
+            name,
+            thickness,
+            outline,
+            given: SupportsAndLoads::read(root),
+            section,
+        }
+    }
+
+    /// The specimen of a card with a measured group of a section, for so many states, or local refinement.
+    fn specimen(
+        self,
+        root: &Section,
+        card: Card,
+        (path, group): (&Section, &str),
+        (states, refinement): (usize, Option<Refinement>),
+    ) -> Option<Specimen> {
+        let Self {
+            section,
+            thickness,
+            given,
+            ..
+        } = self;
+        let (name, mut outline) = (self.name?, self.outline?);
+        if !fits(&section, &outline) || !affords(&section, &mut outline, states, refinement) {
+            return None;
+        }
+        let mesh = outline.coarse();
+        check_elements(root, &outline, &mesh);
+        given.check_groups(&mesh);
+        check_measured(path, group, &mesh);
+        let problem = BoundaryProblem {
+            thickness,
+            law: Arc::clone(&card.law),
+            supports: given.supports(),
+            loads: given.loads(),
+        };
+        let name = name.replace('-', "_");
+        let specimen = Specimen::of(&name, card, problem, outline, group);
+        let [low, high] = mesh.bounding_box();
+        let size = [0, 1].map(|axis| high[axis] - low[axis]);
+        check_thickness(&section, thickness, size, Some(&specimen.card));
+        given.check(root, &specimen.problem, &mesh);
+        warn_of_parts(&section, &specimen, &mesh);
+        Some(specimen)
+    }
 }
 
 /// The load factors and the measured group.

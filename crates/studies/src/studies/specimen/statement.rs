@@ -12,9 +12,9 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let problem = &specimen.problem;
     let row = |group: &String, text: String| vec![format!("`{group}`"), text];
     let supports = problem.supports.iter();
-    let supports = supports.map(|(group, own)| row(group, support(own)));
+    let supports = supports.map(|(group, own)| row(group, support_words(own)));
     let loads = problem.loads.iter();
-    let loads: Vec<_> = loads.map(|(group, own)| row(group, load(own))).collect();
+    let loads: Vec<_> = loads.map(|(group, own)| row(group, load_words(own))).collect();
     let text = format!(
         "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. Displacements, rotations, forces, tractions and pressures below are those at \
          {} and are proportional to it; the path is {}.",
@@ -44,9 +44,9 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
 pub fn json(specimen: &Specimen) -> Map<String, Value> {
     let problem = &specimen.problem;
     let supports = problem.supports.iter();
-    let supports = supports.map(|(group, own)| json!({ "group": group, "says": support(own) }));
+    let supports = supports.map(|(group, own)| json!({ "group": group, "says": support_words(own) }));
     let loads = problem.loads.iter();
-    let loads = loads.map(|(group, own)| json!({ "group": group, "says": load(own) }));
+    let loads = loads.map(|(group, own)| json!({ "group": group, "says": load_words(own) }));
     let all = json!({
         "specimen": specimen.outline.describe(),
         "thickness_mm": problem.thickness,
@@ -75,7 +75,7 @@ fn grids_json(grids: &PlateGrids) -> Map<String, Value> {
 }
 
 /// A support in words.
-fn support(support: &Support) -> String {
+pub fn support_words(support: &Support) -> String {
     match *support {
         Support::Displacement([Some(0.0), Some(0.0)]) => "clamped: ux = uy = 0".into(),
         Support::Displacement(displacement) => {
@@ -130,7 +130,7 @@ fn support(support: &Support) -> String {
 }
 
 /// A load in words.
-fn load(load: &Load) -> String {
+pub fn load_words(load: &Load) -> String {
     match *load {
         Load::Traction([x, y]) => {
             format!("a traction of ({x}, {y}) MPa on the area at rest, of constant direction")

@@ -59,6 +59,25 @@ impl GridElements {
     /// The mesh of a level: 2 is the finest of a study, each has cells of half the size of those of the one before.
     pub fn mesh(&self, size: [f64; 2], level: usize) -> Mesh {
         let cells = self.cells.map(|cells| (cells << level) >> HALVINGS);
+        self.mesh_of(size, cells)
+    }
+
+    /// The finest mesh, or one whose cells are twice as large, or four times where both numbers of cells can be halved twice; `None` where
+    /// there is none.
+    pub fn coarser_mesh(&self, size: [f64; 2], halvings: usize) -> Option<Mesh> {
+        let twice = self.cells.map(|cells| cells.div_ceil(2));
+        let cells = match halvings {
+            0 => self.cells,
+            1 if twice != self.cells => twice,
+            2 if self.cells.iter().all(|cells| cells.is_multiple_of(4)) => {
+                twice.map(|cells| cells / 2)
+            }
+            _ => return None,
+        };
+        Some(self.mesh_of(size, cells))
+    }
+
+    fn mesh_of(&self, size: [f64; 2], cells: [usize; 2]) -> Mesh {
         Mesh::of_grid(Grid::new(size, cells, self.grading), self.element.shape())
     }
 }

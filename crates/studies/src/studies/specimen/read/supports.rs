@@ -65,6 +65,33 @@ impl<'a> SupportsAndLoads<'a> {
         }
     }
 
+    /// Records supports and loads that a motion in time does not have.
+    pub fn check_in_time(&self) {
+        for Entry {
+            section, condition, ..
+        } in &self.supports
+        {
+            let is_pulled = matches!(condition, Support::Grip(drives)
+                if drives.iter().any(|drive| matches!(drive, Drive::Force(_))));
+            if is_pulled {
+                let message = "a rigid grip that is pulled by a force has no equation of motion";
+                let hint = "move the grip with x and y, or put a [[load]] of kind \"force\" on a free group";
+                section.fault("kind", message, hint);
+            }
+            if matches!(condition, Support::Rotation { .. }) {
+                let message = "a rotation in time is not computed";
+                let hint = "for small turns take kind = \"displacement\" with x and y linear in X and Y";
+                section.fault("kind", message, hint);
+            }
+        }
+        let pressures = self.loads.iter();
+        for entry in pressures.filter(|entry| matches!(entry.condition, Load::Pressure(_))) {
+            let message = "a pressure that follows the edges is not computed in time";
+            let hint = "take a traction, which keeps its direction";
+            entry.section.fault("kind", message, hint);
+        }
+    }
+
     /// Records what keeps the problem from being solved on a mesh, at the entry that each fault names.
     pub fn check(&self, root: &Section, problem: &BoundaryProblem, mesh: &Mesh) {
         let known = |group: &str| mesh.groups().contains_key(group);
