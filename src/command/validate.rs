@@ -74,7 +74,7 @@ fn validation_time(cases: &[&Kind]) -> Option<Diagnostic> {
     let slow = cases.iter().filter(|case| case.slow).count();
     (slow > 1).then(|| {
         let message = format!(
-            "{slow} of these {} cases take minutes, all of them together over half an hour on two processors; after an interrupt, the \
+            "{slow} of these {} cases take minutes, all of them together about three quarters of an hour on two processors; after an interrupt, the \
              same command continues with the next case",
             cases.len()
         );

@@ -25,7 +25,7 @@ const NOT_RUN: &[(&str, &str)] = &[
     ),
     (
         "gelbench validate",
-        "redoes all claims in over half an hour; tests/all/validation.rs runs the cases",
+        "redoes all claims in three quarters of an hour; tests/all/validation.rs runs the cases",
     ),
 ];
 

@@ -9,7 +9,14 @@ use tempfile::TempDir;
 use crate::common::schema::faults;
 use crate::common::{gelbench, root, words};
 
-const KINDS: [&str; 5] = ["plate", "specimen", "motion", "markers", "card"];
+const KINDS: [&str; 6] = [
+    "plate",
+    "specimen",
+    "motion",
+    "moving-specimen",
+    "markers",
+    "card",
+];
 
 fn printed(arguments: &[&str]) -> String {
     words(&gelbench(root(), arguments).code(0).get_output().stdout)
@@ -103,6 +110,7 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
         ("specimen", "examples/dog_bone.toml"),
         ("motion", "examples/released_plate.toml"),
         ("motion", "examples/relaxing_plate.toml"),
+        ("moving-specimen", "examples/vibrating_strip.toml"),
         ("markers", "examples/measured_plate.toml"),
         ("markers", "crates/studies/src/studies/markers/default.toml"),
         ("card", "materials/pva-10.toml"),

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+mod shapes;
 mod viscous;
 
 use crate::common::{folder_with, gelbench, machine_report, words};
@@ -97,7 +98,7 @@ fn every_fault_of_a_motion_is_told_with_its_remedy() {
         "must ascend",
         "longer than the duration",
         "\"velocity-verlet\"",
-        "must be a point of the plate",
+        "must be a point of the sheet",
         "two points",
     ] {
         assert!(told.contains(fault), "{fault}: {told}");
@@ -134,8 +135,8 @@ fn the_report_of_a_motion_says_plate_material_and_grips() {
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let (report, json) = (read("report.md"), read("report.json"));
     for said in [
-        "30 × 10 × 1 mm at rest",
-        "held at 10.0000 % stretch; released at 0 s",
+        "a plate of 30 × 10 mm, 1 mm thick at rest",
+        "held at 10 % stretch; the supports of `right` let go at 0 s",
         "1020.0 kg/m³",
         "marlow-exponential",
         "0.0611 MPa",

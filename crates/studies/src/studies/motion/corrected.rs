@@ -7,6 +7,7 @@ use super::solution::{Correction, ModelMotion};
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{EnergyBalance, History, Instant, Motion, SheetViscosity, Viscosity};
 use crate::error::{Error, SolveFault};
+use crate::mesh::Mesh;
 use crate::results::models::CORRECTED;
 use crate::studies::Progress;
 use crate::units::number;
@@ -69,8 +70,8 @@ impl MovingSheet {
             ));
         }
         let clock = Clock::now();
-        let mesh = self.specimen.outline.corrected_mesh();
-        let energy = self.specimen.corrected_energy(&mesh);
+        let mesh = self.corrected_mesh();
+        let energy = self.specimen.problem.finite_elements(&mesh);
         let viscosity = SheetViscosity::new(&energy, &self.viscosity);
         let viscosity = (!self.viscosity.is_none()).then_some(&viscosity as &dyn Viscosity);
         let model = self.specimen.on(&mesh, &energy)?.named("corrector");
@@ -126,6 +127,16 @@ impl MovingSheet {
             }),
             end,
         })
+    }
+
+    /// The mesh of the corrected motion: elements of the second degree on about as many nodes as the lattice, where a plate has even numbers of
+    /// cells; else of the first.
+    fn corrected_mesh(&self) -> Mesh {
+        let mesh = self.specimen.outline.corrected_mesh();
+        match self.specimen.grids() {
+            Some(grids) => grids.correction.scheme.mesh(&mesh),
+            None => mesh,
+        }
     }
 
     /// How the motion is corrected.

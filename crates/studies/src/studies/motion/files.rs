@@ -115,7 +115,8 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
     };
     let group = &sheet.specimen.group;
     let moved_by = |model: &ModelMotion, now: &Instant| model.displacement_of(group, now)[moved];
-    let chart_of = |label: &str, lines| chart(&format!("Force of the {name}"), label, "force [N]", lines);
+    let title = format!("Force of the {}", name.replace('`', ""));
+    let chart_of = |label: &str, lines| chart(&title, label, "force [N]", lines);
     let models = motions.models();
     let mut over_time = lines(models, |_, now| [now.time, force(now)]);
     over_time.extend(motions.correction.motion.as_ref().map(|corrected| {

@@ -2,7 +2,6 @@
 
 use super::problem::MovingSheet;
 use super::shown::ShownSheet;
-use crate::corrector::DifferenceScheme;
 use crate::mass_spring::{self, SpringLaw};
 use crate::results::models::CORRECTED;
 use crate::results::strained::{self, StrainedSheet};
@@ -48,13 +47,9 @@ pub fn warnings(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> Vec
 
 /// The warning about cells of the first degree that lock.
 fn locking(sheet: &MovingSheet, shown: &[ShownSheet]) -> Option<String> {
-    let second_degree = sheet
-        .specimen
-        .grids()
-        .is_some_and(|grids| grids.correction.scheme == DifferenceScheme::Biquadratic);
     let found: Vec<_> = shown
         .iter()
-        .filter(|own| own.is_reference() || own.style == CORRECTED && !second_degree)
+        .filter(|own| own.is_reference() || own.style == CORRECTED)
         .filter(|own| locking::locks(own.mesh))
         .map(|own| (own.style.name, locking::SECOND_DEGREE))
         .collect();
