@@ -53,7 +53,13 @@ impl FileKind {
     /// The file that comes along, with remarks.
     pub fn template(self) -> &'static str {
         match (self, self.case()) {
-            (Self::MovingSpecimen, Some(Kind { of_shape: Some((_, study)), .. })) => study,
+            (
+                Self::MovingSpecimen,
+                Some(Kind {
+                    of_shape: Some((_, study)),
+                    ..
+                }),
+            ) => study,
             (_, Some(case)) => case.study,
             (Self::Markers, _) => markers::TEMPLATE,
             (Self::Card, _) => include_str!("new_card.toml"),

@@ -17,8 +17,8 @@ fn lines(report: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Runs `gelbench validate` and looks for everything that it says in the committed report.
-fn compare(arguments: &[&str]) -> usize {
+/// Runs `gelbench validate`, which ends with one of some codes, and looks for everything that it says in the committed report.
+fn compare(arguments: &[&str], codes: &'static [i32]) -> usize {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = TempDir::new().unwrap();
     let mut command = Command::cargo_bin("gelbench").unwrap();
@@ -28,7 +28,7 @@ fn compare(arguments: &[&str]) -> usize {
         .args(arguments)
         .arg("--output")
         .arg(folder.path());
-    command.assert().code(0);
+    command.assert().code(codes);
     let read = |path: &Path| fs::read_to_string(path).unwrap();
     assert!(read(&folder.path().join("TIMES.md")).contains("time [s]"));
     let committed = read(&root.join("validation/REPORT.md"));
@@ -56,16 +56,16 @@ fn compare(arguments: &[&str]) -> usize {
 
 #[test]
 fn the_committed_report_shows_what_the_quick_cases_compute() {
-    assert!(compare(&["--quick"]) > 60);
+    assert!(compare(&["--quick"], &[0]) > 60);
 }
 
-/// All cases, slow ones too: called by `.ci/run`.
+/// All cases, slow ones too, once a week; some of their requirements are not met, which the committed report says.
 #[test]
 #[ignore = "takes a minute"]
 fn the_committed_report_shows_what_all_cases_compute() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let committed = fs::read_to_string(root.join("validation/REPORT.md")).unwrap();
-    assert_eq!(compare(&[]), lines(&committed).len());
+    assert_eq!(compare(&[], &[0, 1]), lines(&committed).len());
 }
 
 #[test]

@@ -8,6 +8,8 @@ use vtkio::model::{
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
+use vtkio::xml::Compressor;
+
 use crate::mesh::CellShape;
 use crate::results::{Array, Components, Grid, GridCell, GridSeries};
 
@@ -50,10 +52,28 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
         data: DataSet::inline(piece),
         file_path: None,
     };
+    let level = if fills_blocks(grid) { 0 } else { COMPRESSION };
     let mut bytes = Vec::new();
-    file.write_xml(&mut bytes)
+    let file = file.try_into_xml_format(Compressor::ZLib, level);
+    file.and_then(|file| file.write(&mut bytes))
         .expect("a grid with matching arrays can be written to memory");
     finished(&bytes, grid)
+}
+
+/// The level of zlib's compression: that of ParaView.
+const COMPRESSION: u32 = 5;
+
+/// Whether an array fills its blocks to the end, or is empty: vtkio ends such an array with an empty block, which VTK does not read.
+fn fills_blocks(grid: &Grid) -> bool {
+    const BLOCK: usize = 32768;
+    let arrays = grid.at_points.iter().chain(&grid.in_cells);
+    let sizes = arrays.map(|array| match attribute(array) {
+        Attribute::DataArray(DataArray { data, .. }) => data.num_bytes(),
+        Attribute::Field { .. } => 0,
+    });
+    let (points, cells) = (grid.points.len(), grid.cells.len());
+    let of_mesh = [24 * points, 8 * grid.connectivity.len(), 8 * cells, cells];
+    sizes.chain(of_mesh).any(|size| size.is_multiple_of(BLOCK))
 }
 
 /// The file with the names of the components, which vtkio does not write, and with numbers of points that have a sign, as VTK and meshio
@@ -153,10 +173,16 @@ fn attribute(array: &Array) -> Attribute {
             (ElementType::Generic(6), whole.collect())
         }
     };
+    // Displacements are read again with all digits; what follows from them is looked at.
+    let data = if array.name.ends_with("displacement_mm") {
+        IOBuffer::F64(data)
+    } else {
+        IOBuffer::F32(data.into_iter().map(|value| value as f32).collect())
+    };
     Attribute::DataArray(DataArray {
         name: array.name.to_owned(),
         elem,
-        data: IOBuffer::F64(data),
+        data,
     })
 }
 
@@ -229,8 +255,22 @@ mod tests {
             );
         }
         assert!(stress.contains("NumberOfComponents=\"6\""), "{stress}");
+        assert!(text.contains("vtkZLibDataCompressor"), "{text}");
         let vtk = Vtk::parse_xml(text.as_bytes()).unwrap();
         assert!(matches!(vtk.data, DataSet::UnstructuredGrid { .. }));
+    }
+
+    /// 4096 cells have an array of whole blocks.
+    #[test]
+    fn arrays_of_whole_blocks_are_read_again() {
+        for count in [4095, 4096, 4097] {
+            let points: Vec<[f64; 2]> = (0..count).map(|i| [f64::from(i), 0.0]).collect();
+            let field: Vec<f64> = (0..2 * count).map(|i| f64::from(i).sin()).collect();
+            let file = super::grid(&Grid::scattered(&points, &field));
+            let compressed = String::from_utf8_lossy(&file).contains("vtkZLibDataCompressor");
+            assert_eq!(compressed, count != 4096);
+            assert!(Vtk::parse_xml(&file[..]).is_ok());
+        }
     }
 
     #[test]

@@ -30,11 +30,11 @@ pub use headline::gauge;
 pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };
+pub(crate) use read::read_moving;
 use results::end::{End, tell};
 use results::models::Models;
 use results::verdict;
 pub use results::{finest_mesh, force_with_error, one_model};
-pub(crate) use read::read_moving;
 pub use statement::{load_words, support_words};
 
 /// The `kind` of these studies.

@@ -55,6 +55,21 @@ fn none(note: String) -> Correction {
     }
 }
 
+/// The corrected motion on its mesh, since a time.
+fn corrected(mesh: &Mesh, instants: Vec<Instant>, clock: Clock) -> ModelMotion {
+    ModelMotion {
+        style: CORRECTED,
+        mesh: mesh.clone(),
+        history: History {
+            instants,
+            ..History::default()
+        },
+        end: None,
+        frequency: None,
+        seconds: clock.elapsed().as_secs_f64(),
+    }
+}
+
 /// Steps in a period of the first longitudinal vibration at least.
 const STEPS: f64 = 200.0;
 /// β of Newmark's average acceleration.
@@ -105,7 +120,8 @@ impl MovingSheet {
             fault,
         };
         let instants = instants(&motion, &found.displacement, within, step);
-        let instants = instants.map_err(|fault| error("the force of the supports".into(), fault))?;
+        let instants =
+            instants.map_err(|fault| error("the force of the supports".into(), fault))?;
         let end = fault.map(|fault| error(format!("time {} s", number(reached)), fault));
         Ok(Correction {
             note: format!(
@@ -114,17 +130,7 @@ impl MovingSheet {
                  does not depend on the springs.",
                 found.iterations, found.factorisations
             ),
-            motion: (!instants.is_empty()).then(|| ModelMotion {
-                style: CORRECTED,
-                mesh: mesh.clone(),
-                history: History {
-                    instants,
-                    ..History::default()
-                },
-                end: None,
-                frequency: None,
-                seconds: clock.elapsed().as_secs_f64(),
-            }),
+            motion: (!instants.is_empty()).then(|| corrected(&mesh, instants, clock)),
             end,
         })
     }

@@ -39,9 +39,12 @@ impl Deviations {
         let [all, size] =
             [&errors, &sizes[..errors.len()]].map(|values| values.iter().sum::<f64>());
         let [forces, expected_forces] = [model, expected].map(|model| sheet.measured_forces(model));
-        let pairs = forces.iter().zip(&expected_forces).flat_map(|(now, expected)| {
-            [0, 1].map(|axis| ((now[axis] - expected[axis]).powi(2), expected[axis].powi(2)))
-        });
+        let pairs = forces
+            .iter()
+            .zip(&expected_forces)
+            .flat_map(|(now, expected)| {
+                [0, 1].map(|axis| ((now[axis] - expected[axis]).powi(2), expected[axis].powi(2)))
+            });
         let (wrong, force) = pairs.fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
         Self {
             displacement: displacement.collect(),
@@ -148,14 +151,6 @@ impl OwnError {
 const BY_HALVED_STEPS: f64 = 4.0 / 3.0;
 
 impl MovingSheet {
-    /// The force in N of the measured group at all instants; none where no support holds it.
-    pub(super) fn measured_forces(&self, model: &ModelMotion) -> Vec<[f64; 2]> {
-        let instants = model.instants().iter();
-        instants
-            .filter_map(|now| self.measured_force(&now.support_forces))
-            .collect()
-    }
-
     /// The same time with twice as many steps as a motion took; `None` where the smallest cell's vibration limits them: they are far shorter
     /// then than what is seen of the motion needs.
     fn halved_steps(&self, history: &History) -> Option<TimeSettings> {

@@ -129,8 +129,7 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
         chart_of("time [s]", over_time),
         chart_of(&label, over_displacement),
     );
-    let caption =
-        format!("Force of the {name} along {along} over its displacement and over time.");
+    let caption = format!("Force of the {name} along {along} over its displacement and over time.");
     Some(Figure::new("motion_force.png", &caption, charts))
 }
 

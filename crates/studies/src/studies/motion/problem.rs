@@ -1,6 +1,5 @@
 //! A sheet that moves: supports, loads, start, and what is computed.
 
-use super::solution::ModelMotion;
 use crate::budget::Need;
 use crate::dynamics::{
     Integrator, Motion, MovingForce, MovingSupport, Start, Step, TimeFunction, TimeSettings,
@@ -159,9 +158,7 @@ impl MovingSheet {
         let speed = (4.0 * law.shear_modulus() / self.density).sqrt();
         let step = match (step, integrator) {
             (Step::AtMost(step), _) => step.min(interval),
-            (Step::Automatic, Integrator::VelocityVerlet) => {
-                side / (2.0 * speed)
-            }
+            (Step::Automatic, Integrator::VelocityVerlet) => side / (2.0 * speed),
             (Step::Automatic, Integrator::GeneralisedAlpha { .. }) => interval,
         };
         Need {
@@ -294,28 +291,6 @@ impl MovingSheet {
             Some(_) => "right grip".into(),
             None => format!("group `{}`", self.specimen.group),
         }
-    }
-
-    /// The axis along which the measured group has the larger force in a motion, x for a plate; `None` where no support holds it.
-    pub(super) fn measured_axis(&self, model: &ModelMotion) -> Option<usize> {
-        let forces = self.measured_forces(model);
-        let largest = |axis: usize| {
-            let forces = forces.iter().map(|force| force[axis].abs());
-            forces.fold(0.0, f64::max)
-        };
-        let is_across = self.specimen.grids().is_none() && largest(1) > largest(0);
-        (!forces.is_empty()).then_some(usize::from(is_across))
-    }
-
-    /// The axis along which the measured group moves more in a motion, x for a plate.
-    pub(super) fn moved_axis(&self, model: &ModelMotion) -> usize {
-        let group = &self.specimen.group;
-        let instants = model.instants().iter();
-        let largest = instants.fold([0.0_f64; 2], |most, now| {
-            let moved = model.displacement_of(group, now);
-            [most[0].max(moved[0].abs()), most[1].max(moved[1].abs())]
-        });
-        usize::from(self.specimen.grids().is_none() && largest[1] > largest[0])
     }
 
     /// Whether the measured group has a force that is worth a picture: it is held, and does not let go at once.

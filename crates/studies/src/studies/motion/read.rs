@@ -1,32 +1,31 @@
 //! The study file of a motion: of a plate, or of a specimen of any shape.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::functions::{STRETCHES, rates, reached, read_damping, read_drive, read_stiffness};
-use super::problem::{Drive, MovingSheet, PointForce, Probe, Tolerances};
+use super::problem::{Drive, MovingSheet, Tolerances};
 use super::timing::{check_times, drive_section};
 use crate::budget::Need;
-use crate::corrector::{CorrectorSettings, DifferenceScheme};
 use crate::document::{Bound, Section};
-use crate::dynamics::{Integrator, Step, TimeFunction, TimeSettings};
-use crate::finite_element::Element;
+use crate::dynamics::{Integrator, Step, TimeSettings};
 use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::registry::SWELLING;
 use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
-use crate::mesh::Mesh;
-use crate::problem::ClampedPlate;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
-use crate::studies::specimen::{
-    self, Along, GridCorrection, GridElements, Outline, PlateGrids, Specimen,
-};
+use crate::studies::specimen::{self, Along, Specimen};
 use crate::units::Dimension;
 use crate::units::number;
+
+mod plate;
+mod points;
+
+use plate::read_plate;
+use points::{read_forces, read_probes};
 
 /// The sheet's material in motion.
 struct Material {
@@ -54,9 +53,9 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity, along);
     let card = material.card.as_ref();
     let start = read_start(root, card, along);
-    let course = root
-        .section(drive_section(along))
-        .requiring(&["motion", "time", "measured_group"]);
+    let course =
+        root.section(drive_section(along))
+            .requiring(&["motion", "time", "measured_group"]);
     let drive = read_drive(&course, start, along);
     let specimen = match along {
         Along::Stretch => {
@@ -68,14 +67,18 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     course.unknown_keys();
     let mesh = specimen.as_ref().map(|own| own.outline.lattice());
     let gravity = read_gravity(&root.section("gravity"));
-    let forces = tables(root, "force", |one| read_force(one, mesh.as_ref()));
+    let forces = read_forces(root, mesh.as_ref());
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(drive.as_ref());
-    check_times(root, &in_time, (motion, along), &material.viscosity, &forces);
-    let section = root.section("corrector");
-    let is_corrected = section.flag("enabled");
-    section.unknown_keys();
+    check_times(
+        root,
+        &in_time,
+        (motion, along),
+        &material.viscosity,
+        &forces,
+    );
+    let is_corrected = read_corrector(&root.section("corrector"));
     let probes = read_probes(root, mesh.as_ref());
     let tolerances = read_tolerances(&root.section("tolerances"), drive.as_ref());
     let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
@@ -102,6 +105,13 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     affords(&in_time, &sheet).then_some(sheet)
 }
 
+/// Whether the springs' motion is corrected.
+fn read_corrector(section: &Section) -> bool {
+    let is_corrected = section.flag("enabled");
+    section.unknown_keys();
+    is_corrected
+}
+
 /// Whether a motion is not too large; that it is, is recorded.
 fn affords(in_time: &Section, sheet: &MovingSheet) -> bool {
     let need = sheet.need();
@@ -113,68 +123,10 @@ fn affords(in_time: &Section, sheet: &MovingSheet) -> bool {
     in_time.affords("step", of_steps, FEWER_STEPS) && in_time.affords("interval", others, SMALLER)
 }
 
-/// A plate between two grips, on grids of lines.
-fn read_plate(root: &Section, card: Option<&Card>, lattice: LatticeSettings) -> Option<Specimen> {
-    let plate = root
-        .section("plate")
-        .requiring(&["length", "width", "thickness"]);
-    let (problem, cells) = sections::read_plate(&plate, card);
-    plate.unknown_keys();
-    let (element, of_elements) = read_element(&root.section("finite_element"))?;
-    let card = card?.clone();
-    let problem = ClampedPlate {
-        law: Arc::clone(&card.law),
-        ..problem
-    };
-    if problem.size.iter().any(|side| !side.is_finite()) {
-        return None; // told already
-    }
-    // Differences of second order where the numbers of cells allow them.
-    let pairs = DifferenceScheme::Biquadratic.side();
-    let scheme = if cells.iter().all(|count| count.is_multiple_of(pairs)) {
-        DifferenceScheme::Biquadratic
-    } else {
-        DifferenceScheme::Gauss
-    };
-    let grids = PlateGrids {
-        size: problem.size,
-        cells,
-        lattice,
-        correction: GridCorrection {
-            scheme,
-            grading: 1.0,
-            climb: None,
-            direct: CorrectorSettings::default(),
-        },
-        elements: GridElements {
-            element,
-            cells: of_elements,
-            grading: 1.0,
-        },
-    };
-    let outline = Outline::Grid(grids);
-    Some(Specimen::of(
-        "plate",
-        card,
-        problem.boundary_problem(),
-        outline,
-        "right",
-    ))
-}
-
 /// What makes a motion smaller.
 const FEWER_STEPS: &str = "take a shorter duration, longer steps, or generalised-α; a short automatic step comes from small \
                            cells, little density or a stiff material";
 const SMALLER: &str = "take a shorter duration, longer intervals or fewer cells";
-
-/// All tables of a kind; none where the study has none.
-fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T) -> Vec<T> {
-    if root.has(key) {
-        root.tables(key).iter().map(read).collect()
-    } else {
-        Vec::new()
-    }
-}
 
 /// Densities in t/mm³ that soft materials have.
 const LIKELY_DENSITY: std::ops::RangeInclusive<f64> = 1e-10..=1e-8;
@@ -263,8 +215,8 @@ fn check_reached(course: &Section, start: f64, driven: Option<(&Card, &Drive)>) 
 /// Warns of a sheet that rests between its supports.
 fn warn_of_rest(root: &Section, start: f64, sheet: &MovingSheet) {
     let problem = &sheet.specimen.problem;
-    let is_driven = problem.supports.iter().any(|(_, support)| !support.rests())
-        || !problem.loads.is_empty();
+    let is_driven =
+        problem.supports.iter().any(|(_, support)| !support.rests()) || !problem.loads.is_empty();
     let stays = start == 0.0 && reached(&sheet.drive.factor) == [0.0; 2];
     let is_loaded =
         sheet.gravity != [0.0; 2] || sheet.forces.iter().any(|own| own.force != [0.0; 2]);
@@ -335,87 +287,6 @@ fn read_tolerances(section: &Section, drive: Option<&Drive>) -> Tolerances {
     };
     section.unknown_keys();
     tolerances
-}
-
-/// A point of the sheet in mm.
-fn read_point(section: &Section, mesh: Option<&Mesh>) -> [f64; 2] {
-    /// Of a cell's size: curved sides of a lattice lie inside of the outline.
-    const BEYOND: f64 = 0.1;
-    let at = section.quantities("at", Dimension::Length, Bound::Any);
-    let Ok(at) = <[f64; 2]>::try_from(at) else {
-        let hint = "such as [\"15 mm\", \"5 mm\"]";
-        section.fault("at", "must be two lengths, x and y", hint);
-        return [0.0; 2];
-    };
-    let Some(mesh) = mesh.filter(|_| at.iter().all(|x| x.is_finite())) else {
-        return at;
-    };
-    let [[left, bottom], [right, top]] = mesh.bounding_box();
-    let in_box = (left..=right).contains(&at[0]) && (bottom..=top).contains(&at[1]);
-    if !in_box || mesh.outside(at) > BEYOND {
-        let hint = format!(
-            "the sheet lies from [\"{left} mm\", \"{bottom} mm\"] to [\"{right} mm\", \"{top} mm\"]"
-        );
-        section.fault("at", "must be a point of the sheet", &hint);
-    }
-    at
-}
-
-/// The finite element, and how many.
-fn read_element(section: &Section) -> Option<(Element, [usize; 2])> {
-    let element = section.choice("element", &Element::NAMES);
-    let cells = section.count_pair("cells", 1, sections::MOST_CELLS);
-    section.unknown_keys();
-    element.zip(cells)
-}
-
-/// All probes; tables have columns of their names.
-fn read_probes(root: &Section, mesh: Option<&Mesh>) -> Vec<Probe> {
-    let mut names = Vec::new();
-    tables(root, "probe", |section| {
-        let probe = read_probe(section, mesh);
-        if names.contains(&probe.name) {
-            let hint = "table columns carry this name: give each probe a name of its own";
-            section.fault("name", "is the name of another probe", hint);
-        }
-        names.push(probe.name.clone());
-        probe
-    })
-}
-
-fn read_probe(section: &Section, mesh: Option<&Mesh>) -> Probe {
-    let probe = Probe {
-        name: section.heading("name"),
-        at: read_point(section, mesh),
-    };
-    section.unknown_keys();
-    probe
-}
-
-fn read_force(section: &Section, mesh: Option<&Mesh>) -> PointForce {
-    let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
-    let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
-    let time = if section.has("begin") || section.has("end") {
-        let begin = if section.has("begin") {
-            instant("begin")
-        } else {
-            0.0
-        };
-        let end = instant("end");
-        if end <= begin {
-            section.fault("end", "must be after the begin", "give a later time");
-        }
-        TimeFunction::Ramp { begin, end }
-    } else {
-        TimeFunction::Constant(1.0)
-    };
-    let force = PointForce {
-        at: read_point(section, mesh),
-        force,
-        time,
-    };
-    section.unknown_keys();
-    force
 }
 
 fn read_time(section: &Section) -> Option<TimeSettings> {

@@ -123,4 +123,34 @@ impl MovingSheet {
             seconds: start.elapsed().as_secs_f64(),
         })
     }
+
+    /// The force in N of the measured group at all instants; none where no support holds it.
+    pub(super) fn measured_forces(&self, model: &ModelMotion) -> Vec<[f64; 2]> {
+        let instants = model.instants().iter();
+        instants
+            .filter_map(|now| self.measured_force(&now.support_forces))
+            .collect()
+    }
+
+    /// The axis along which the measured group has the larger force in a motion, x for a plate; `None` where no support holds it.
+    pub(super) fn measured_axis(&self, model: &ModelMotion) -> Option<usize> {
+        let forces = self.measured_forces(model);
+        let largest = |axis: usize| {
+            let forces = forces.iter().map(|force| force[axis].abs());
+            forces.fold(0.0, f64::max)
+        };
+        let is_across = self.specimen.grids().is_none() && largest(1) > largest(0);
+        (!forces.is_empty()).then_some(usize::from(is_across))
+    }
+
+    /// The axis along which the measured group moves more in a motion, x for a plate.
+    pub(super) fn moved_axis(&self, model: &ModelMotion) -> usize {
+        let group = &self.specimen.group;
+        let instants = model.instants().iter();
+        let largest = instants.fold([0.0_f64; 2], |most, now| {
+            let moved = model.displacement_of(group, now);
+            [most[0].max(moved[0].abs()), most[1].max(moved[1].abs())]
+        });
+        usize::from(self.specimen.grids().is_none() && largest[1] > largest[0])
+    }
 }

@@ -132,8 +132,7 @@ fn check_covered(
     }
     // The rate of a load factor is no rate of stretch.
     let stretch_rates = rates(&drive.factor).filter(|_| along == Along::Stretch);
-    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, stretch_rates)
-    else {
+    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, stretch_rates) else {
         return;
     };
     let outside = match (fastest > high * (1.0 + 1e-9), slowest < low * (1.0 - 1e-9)) {

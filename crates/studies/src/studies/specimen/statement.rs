@@ -14,7 +14,9 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let supports = problem.supports.iter();
     let supports = supports.map(|(group, own)| row(group, support_words(own)));
     let loads = problem.loads.iter();
-    let loads: Vec<_> = loads.map(|(group, own)| row(group, load_words(own))).collect();
+    let loads: Vec<_> = loads
+        .map(|(group, own)| row(group, load_words(own)))
+        .collect();
     let text = format!(
         "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. Displacements, rotations, forces, tractions and pressures below are those at \
          {} and are proportional to it; the path is {}.",
@@ -44,7 +46,8 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
 pub fn json(specimen: &Specimen) -> Map<String, Value> {
     let problem = &specimen.problem;
     let supports = problem.supports.iter();
-    let supports = supports.map(|(group, own)| json!({ "group": group, "says": support_words(own) }));
+    let supports =
+        supports.map(|(group, own)| json!({ "group": group, "says": support_words(own) }));
     let loads = problem.loads.iter();
     let loads = loads.map(|(group, own)| json!({ "group": group, "says": load_words(own) }));
     let all = json!({

@@ -80,7 +80,8 @@ impl<'a> SupportsAndLoads<'a> {
             }
             if matches!(condition, Support::Rotation { .. }) {
                 let message = "a rotation in time is not computed";
-                let hint = "for small turns take kind = \"displacement\" with x and y linear in X and Y";
+                let hint =
+                    "for small turns take kind = \"displacement\" with x and y linear in X and Y";
                 section.fault("kind", message, hint);
             }
         }
