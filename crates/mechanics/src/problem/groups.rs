@@ -56,7 +56,7 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// The mean displacement of a group in mm; see [`shares`].
+/// The mean displacement of a group in mm: over the length of its edges at rest, else over its cells, lines or nodes.
 ///
 /// # Panics
 /// When the mesh has no such group.

@@ -85,9 +85,9 @@ fn telling(states: &[GroupState]) -> BTreeSet<usize> {
     BTreeSet::from([
         0,
         states.len() - 1,
-        extreme(states, &displacement),
+        extreme(states, displacement),
         extreme(states, |state| -displacement(state)),
-        extreme(states, &force),
+        extreme(states, force),
         extreme(states, |state| -force(state)),
     ])
 }
