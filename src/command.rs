@@ -18,6 +18,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::budget::Budget;
 use crate::document::inputs;
+use crate::error::Error;
 use crate::kinds;
 use crate::output;
 use crate::output::ResultFolder;
@@ -89,12 +90,13 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Compute a study and write VTK files, pictures and reports
+    /// Compute studies and write VTK files, pictures and reports
     #[command(after_help = "Sample: gelbench run examples/pva_plate.toml --output /tmp/plate")]
     Run {
-        /// The study file
-        study: PathBuf,
-        /// Write into this folder instead of the one that the study names
+        /// The study files, computed one after the other
+        #[arg(required = true, value_name = "STUDY")]
+        studies: Vec<PathBuf>,
+        /// Write into this folder instead of the one that the study names; of several studies, into a folder of it for each
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -102,11 +104,12 @@ enum Command {
         #[command(flatten)]
         printed: Printed,
     },
-    /// Read a study and its card and report every fault, without computing
+    /// Read studies and their cards and report every fault, without computing
     #[command(after_help = "Sample: gelbench check examples/pva_plate.toml")]
     Check {
-        /// The study file
-        study: PathBuf,
+        /// The study files
+        #[arg(required = true, value_name = "STUDY")]
+        studies: Vec<PathBuf>,
         #[command(flatten)]
         large: Large,
     },
@@ -230,15 +233,15 @@ pub fn main() -> ExitCode {
 fn perform(command: Command) -> u8 {
     let outcome = match command {
         Command::Run {
-            study,
+            studies,
             output,
             large,
             printed,
         } => {
             printed.choose();
-            run_study(&study, output, large.budget())
+            run_studies(&studies, output.as_deref(), large.budget())
         }
-        Command::Check { study, large } => check(&study, large.budget()),
+        Command::Check { studies, large } => each(&studies, |study| check(study, large.budget())),
         Command::Compare(options) => compare::run(options),
         Command::Correct(options) => correct::run(*options),
         Command::Export(options) => export::run(&options),
@@ -266,6 +269,39 @@ fn perform(command: Command) -> u8 {
     outcome.unwrap_or_else(|error| {
         complain(&error);
         error.exit_code()
+    })
+}
+
+/// Performs a command on each of some studies, whatever the others are; the exit code is the largest of theirs.
+fn each(studies: &[PathBuf], perform: impl Fn(&Path) -> Outcome) -> Outcome {
+    let code = |study: &PathBuf| {
+        perform(study).unwrap_or_else(|error| {
+            complain(&error);
+            error.exit_code()
+        })
+    };
+    Ok(studies.iter().map(code).max().unwrap_or_default())
+}
+
+/// Computes studies one after the other; several need folders of their own.
+fn run_studies(studies: &[PathBuf], folder: Option<&Path>, budget: Budget) -> Outcome {
+    let [_, _, ..] = studies else {
+        return each(studies, |study| {
+            run_study(study, folder.map(Path::to_owned), budget)
+        });
+    };
+    let mut names: Vec<String> = studies.iter().map(|study| name(study)).collect();
+    names.sort_unstable();
+    if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        let message = format!("two studies have the name `{}` and one folder", pair[0]);
+        return Err(Error::input(
+            message,
+            "run them by themselves, each with --output",
+        ));
+    }
+    each(studies, |study| {
+        print(&format!("\n{}:\n", study.display()))?;
+        run_study(study, folder.map(|folder| folder.join(name(study))), budget)
     })
 }
 

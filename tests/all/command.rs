@@ -417,3 +417,34 @@ fn a_reader_that_has_gone_away_is_no_error() {
     drop(child.stdout.take());
     assert!(child.wait().unwrap().success());
 }
+
+/// One with a fault keeps the others from nothing; the exit code is the largest.
+#[test]
+fn several_studies_are_checked_and_run_one_after_the_other() {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let spring = "kind = \"nonlinear-spring\"\n[spring]\nstiffness = 2\n";
+    write("a.toml", spring);
+    write("b.toml", &spring.replace("stiffness", "stifness"));
+    write("c.toml", spring);
+    let files = ["a.toml", "b.toml", "c.toml"];
+    let checked = gelbench(folder.path(), &[&["check"], &files[..]].concat()).code(2);
+    let printed = words(&checked.get_output().stdout);
+    assert!(
+        printed.contains("a.toml: no faults") && printed.contains("c.toml: no faults"),
+        "{printed}"
+    );
+    let run = [&["run"], &files[..], &["--output", "all"]].concat();
+    gelbench(folder.path(), &run).code(2);
+    for name in ["a", "c"] {
+        assert!(
+            folder
+                .path()
+                .join(format!("all/{name}/report.html"))
+                .exists()
+        );
+    }
+    let twice = gelbench(folder.path(), &["run", "a.toml", "./a.toml"]).code(2);
+    let told = words(&twice.get_output().stderr);
+    assert!(told.contains("two studies have the name `a`"), "{told}");
+}

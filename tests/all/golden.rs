@@ -61,7 +61,7 @@ examples! {
     strip_with_hole: "run" "examples/strip_with_hole.toml";
     softening_strip: "run" "examples/softening_strip.toml";
     relaxing_plate: "run" "examples/relaxing_plate.toml";
-    released_plate: "run" "examples/released_plate.toml";
+    vibrating_strip: "run" "examples/vibrating_strip.toml";
     measured_plate: "correct" "examples/measured_plate.csv" "--material" "pva-10" "--thickness" "2 mm" "--edge-gap" "0 mm";
     spring_dashpot: "identify" "examples/spring_dashpot.csv";
 }
