@@ -14,6 +14,7 @@ use crate::compare::judgement::{judge_by_margin, percent};
 use crate::dynamics::Instant;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted};
+use crate::studies::specimen::Outline;
 use crate::units::number;
 
 /// Instants in the table of deviations.
@@ -256,7 +257,14 @@ fn in_time(sheet: &MovingSheet, motions: &Motions, deviations: &[Option<Deviatio
 }
 
 /// How the reference becomes a better one.
-const REMEDY: &str = "take more `finite_element.cells`, or a shorter `time.step`";
+fn remedy(sheet: &MovingSheet) -> String {
+    let cells = match sheet.specimen.outline {
+        Outline::Grid(_) => "more `finite_element.cells`",
+        Outline::Shape { .. } => "more `specimen.cells`",
+        Outline::File { .. } => "a finer mesh",
+    };
+    format!("take {cells}, or a shorter `time.step`")
+}
 
 fn checks(
     sheet: &MovingSheet,
@@ -293,7 +301,7 @@ fn checks(
     let deviation = |quantity: &str, limit: f64, value: f64, own: Option<f64>| {
         let own = own.unwrap_or(f64::NAN);
         let check = check(format!("{name}: {quantity} {over}"), limit, value);
-        check.judged(judge_by_margin(value, own, limit, REMEDY), own)
+        check.judged(judge_by_margin(value, own, limit, &remedy(sheet)), own)
     };
     let own = own_error.map(|own| own.displacement);
     let displacement = deviation("displacement", limits.deviation_percent, last.whole, own);

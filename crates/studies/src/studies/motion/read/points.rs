@@ -31,6 +31,9 @@ fn read_point(section: &Section, mesh: Option<&Mesh>) -> [f64; 2] {
     let [[left, bottom], [right, top]] = mesh.bounding_box();
     let in_box = (left..=right).contains(&at[0]) && (bottom..=top).contains(&at[1]);
     if !in_box || mesh.outside(at) > BEYOND {
+        // Without rounding.
+        let [left, bottom, right, top] =
+            [left, bottom, right, top].map(|place| (1e6 * place).round() * 1e-6);
         let hint = format!(
             "the sheet lies from [\"{left} mm\", \"{bottom} mm\"] to [\"{right} mm\", \"{top} mm\"]"
         );
