@@ -62,11 +62,15 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
 /// When the mesh has no such group.
 pub fn mean_displacement(mesh: &Mesh, group: &str, displacement: &[f64]) -> [f64; 2] {
     let shares = shares(mesh, &mesh.groups()[group]);
+    mean(&shares, &|node, axis| displacement[2 * node + axis])
+}
+
+/// The mean of a vector at the nodes, by its components, over a group with these shares.
+pub fn mean(shares: &[(usize, f64)], of_node: &dyn Fn(usize, usize) -> f64) -> [f64; 2] {
     [0, 1].map(|axis| {
         let parts = shares.iter();
-        parts
-            .map(|(node, share)| share * displacement[2 * node + axis])
-            .sum()
+        let parts = parts.map(|(node, share)| share * of_node(*node, axis));
+        parts.fold(0.0, |sum, part| sum + part)
     })
 }
 

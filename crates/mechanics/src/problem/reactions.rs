@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::balance::{Balance, Body, Resultant};
 use super::constraints::Constraints;
-use super::groups::shares;
+use super::groups::{mean, shares};
 use super::model::Model;
 use crate::solve::{Assembly, State};
 
@@ -106,15 +106,7 @@ impl Reactions<'_> {
         let arm = |node: usize, axis: usize| mesh.nodes[node][axis] + turning * u[2 * node + axis];
         let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
         let shares = shares(mesh, group);
-        let mean = |of_node: &dyn Fn(usize, usize) -> f64| {
-            [0, 1].map(|axis| {
-                let parts = shares
-                    .iter()
-                    .map(|(node, share)| share * of_node(*node, axis));
-                parts.fold(0.0, |sum, part| sum + part)
-            })
-        };
-        let (middle, about) = (mean(&place), mean(&arm));
+        let (middle, about) = (mean(&shares, &place), mean(&shares, &arm));
         let moment = |(node, force): (&usize, &[f64; 2])| {
             let [x, y] = [0, 1].map(|axis| arm(*node, axis) - about[axis]);
             x * force[1] - y * force[0]
@@ -125,7 +117,7 @@ impl Reactions<'_> {
             force: [0, 1].map(|axis| forces.values().map(|force| force[axis]).sum()),
             moment: forces.iter().map(moment).sum(),
             place: middle,
-            displacement: mean(&|node, axis| u[2 * node + axis]),
+            displacement: mean(&shares, &|node, axis| u[2 * node + axis]),
         }
     }
 

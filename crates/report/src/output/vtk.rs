@@ -7,7 +7,6 @@ use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
-
 use vtkio::xml::Compressor;
 
 use crate::mesh::CellShape;
@@ -45,6 +44,7 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
             cell: grid.in_cells.iter().map(attribute).collect(),
         },
     };
+    let level = if fills_blocks(&piece) { 0 } else { COMPRESSION };
     let file = Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
@@ -52,7 +52,6 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
         data: DataSet::inline(piece),
         file_path: None,
     };
-    let level = if fills_blocks(grid) { 0 } else { COMPRESSION };
     let mut bytes = Vec::new();
     let file = file.try_into_xml_format(Compressor::ZLib, level);
     file.and_then(|file| file.write(&mut bytes))
@@ -64,16 +63,23 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
 const COMPRESSION: u32 = 5;
 
 /// Whether an array fills its blocks to the end, or is empty: vtkio ends such an array with an empty block, which VTK does not read.
-fn fills_blocks(grid: &Grid) -> bool {
+fn fills_blocks(piece: &UnstructuredGridPiece) -> bool {
     const BLOCK: usize = 32768;
-    let arrays = grid.at_points.iter().chain(&grid.in_cells);
-    let sizes = arrays.map(|array| match attribute(array) {
+    let arrays = piece.data.point.iter().chain(&piece.data.cell);
+    let sizes = arrays.map(|array| match array {
         Attribute::DataArray(DataArray { data, .. }) => data.num_bytes(),
         Attribute::Field { .. } => 0,
     });
-    let (points, cells) = (grid.points.len(), grid.cells.len());
-    let of_mesh = [24 * points, 8 * grid.connectivity.len(), 8 * cells, cells];
-    sizes.chain(of_mesh).any(|size| size.is_multiple_of(BLOCK))
+    let numbers = match &piece.cells.cell_verts {
+        VertexNumbers::XML {
+            connectivity,
+            offsets,
+        } => [8 * connectivity.len(), 8 * offsets.len()],
+        VertexNumbers::Legacy { vertices, .. } => [4 * vertices.len(); 2],
+    };
+    let of_mesh = [piece.points.num_bytes(), piece.cells.types.len()];
+    let mut sizes = sizes.chain(of_mesh).chain(numbers);
+    sizes.any(|size| size.is_multiple_of(BLOCK))
 }
 
 /// The file with the names of the components, which vtkio does not write, and with numbers of points that have a sign, as VTK and meshio

@@ -147,12 +147,12 @@ impl MovingSheet {
 
     /// How the motion is corrected.
     fn windows(&self) -> WindowSettings {
-        let [low, high] = self.specimen.outline.coarse().bounding_box();
+        let [length, width] = self.specimen.outline.size();
         WindowSettings {
             steps: 20,
             tolerance: 1e-9,
             max_iterations: 20,
-            size: (high[0] - low[0]).max(high[1] - low[1]),
+            size: length.max(width),
         }
     }
 }

@@ -54,14 +54,14 @@ impl Deviations {
     }
 
     /// Of the springs and of the corrected motion, where there is one, from the finite elements at the nodes of the lattice.
-    pub fn all(sheet: &MovingSheet, motions: &Motions) -> [Option<Self>; 2] {
+    pub fn all(sheet: &MovingSheet, motions: &Motions) -> (Self, Option<Self>) {
         let of = |model: &ModelMotion| {
             Self::between(sheet, &motions.springs.mesh, [model, &motions.elements])
         };
-        [
-            Some(of(&motions.springs)),
+        (
+            of(&motions.springs),
             motions.correction.motion.as_ref().map(of),
-        ]
+        )
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::problem::MovingSheet;
 use super::shown::ShownSheet;
-use super::solution::Motions;
+use super::solution::{Motions, larger_axis};
 use crate::problem::GroupState;
 use crate::results::{Block, Deformed, Headline, LoadedSheet};
 use crate::studies::specimen::gauge;
@@ -71,13 +71,8 @@ pub fn headline(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) ->
 /// and smallest.
 fn telling(states: &[GroupState]) -> BTreeSet<usize> {
     let larger = |value: fn(&GroupState) -> [f64; 2]| {
-        let most = |axis: usize| {
-            states
-                .iter()
-                .map(move |state| value(state)[axis].abs())
-                .fold(0.0, f64::max)
-        };
-        let axis = usize::from(most(1) > most(0));
+        let vectors: Vec<_> = states.iter().map(value).collect();
+        let axis = larger_axis(&vectors);
         move |state: &GroupState| value(state)[axis]
     };
     let displacement = larger(|state| state.displacement);

@@ -74,12 +74,8 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
 fn steps(
     sheet: &MovingSheet,
     motions: &Motions,
-    [of_springs, of_corrected]: &[Option<Deviations>; 2],
+    (of_springs, of_corrected): &(Deviations, Option<Deviations>),
 ) -> Vec<Step> {
-    let percent = |own: &Option<Deviations>, instant: usize| {
-        let own = own.as_ref()?;
-        own.displacement.get(instant).copied()
-    };
     let quantities = |now: &Instant, percent: Option<f64>| {
         json!({
             "displacement_percent": percent,
@@ -90,27 +86,29 @@ fn steps(
             "external_work_mJ": now.energy.external_work,
         })
     };
-    let of_both = |own: &Option<Deviations>, now: &Instant, instant: usize| {
-        percent(own, instant).map(|percent| {
-            json!({
-                "displacement_percent": percent,
-                "grip_force_N": sheet.measured_force(&now.support_forces),
-            })
-        })
-    };
-    let corrected = motions.correction.motion.as_ref();
+    let corrected = motions
+        .correction
+        .motion
+        .as_ref()
+        .zip(of_corrected.as_ref());
     let pairs = motions
         .springs
         .instants()
         .iter()
         .zip(motions.elements.instants());
     let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| {
-        let corrected = corrected.and_then(|own| own.instants().get(instant));
-        let corrected = corrected.and_then(|now| of_both(of_corrected, now, instant));
+        let corrected = corrected.and_then(|(own, deviations)| {
+            let (now, percent) = own
+                .instants()
+                .get(instant)
+                .zip(deviations.displacement.get(instant))?;
+            let force = sheet.measured_force(&now.support_forces);
+            Some(json!({ "displacement_percent": percent, "grip_force_N": force }))
+        });
         let models = [
             (
                 MASS_SPRING.key,
-                quantities(springs, percent(of_springs, instant)),
+                quantities(springs, of_springs.displacement.get(instant).copied()),
             ),
             (CORRECTED.key, json!(corrected)),
             (FINITE_ELEMENTS.key, quantities(elements, None)),
@@ -187,12 +185,12 @@ fn summary(models: &[&ModelMotion; 2]) -> Block {
 /// Deviations over all instants in a sentence, beside the finite elements' own error.
 fn compared(
     sheet: &MovingSheet,
-    deviations: &[Option<Deviations>; 2],
+    (of_springs, of_corrected): &(Deviations, Option<Deviations>),
     own_error: Option<&OwnError>,
 ) -> String {
     let mut text = String::new();
-    let named = ["springs", "corrected motion"].into_iter().zip(deviations);
-    for (name, own) in named.filter_map(|(name, own)| Some((name, own.as_ref()?))) {
+    let of_corrected = of_corrected.as_ref().map(|own| ("corrected motion", own));
+    for (name, own) in std::iter::once(("springs", of_springs)).chain(of_corrected) {
         let force = own.force.map_or_else(String::new, |force| {
             format!(
                 ", and the force of the {} by {} %",
@@ -214,7 +212,11 @@ fn compared(
     )
 }
 
-fn in_time(sheet: &MovingSheet, motions: &Motions, deviations: &[Option<Deviations>; 2]) -> Block {
+fn in_time(
+    sheet: &MovingSheet,
+    motions: &Motions,
+    (of_springs, of_corrected): &(Deviations, Option<Deviations>),
+) -> Block {
     let mut head = vec![
         "time [s]".to_owned(),
         "mass-spring: displacement [%]".into(),
@@ -227,14 +229,12 @@ fn in_time(sheet: &MovingSheet, motions: &Motions, deviations: &[Option<Deviatio
         let names = ["mass-spring", "corrected", "finite elements"];
         head.extend(names.map(|name| format!("{name}: force [N]")));
     }
-    let count = deviations[0]
-        .as_ref()
-        .map_or(0, |own| own.displacement.len());
+    let count = of_springs.displacement.len();
     let every = count.div_ceil(ROWS).max(1);
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".into());
     let row = |instant: usize| {
-        let percents = deviations.iter().map(|own| {
-            let value = own.as_ref()?.displacement.get(instant)?;
+        let percents = [Some(of_springs), of_corrected.as_ref()].map(|own| {
+            let value = own?.displacement.get(instant)?;
             Some(format!("{value:.3}"))
         });
         let forces = models.iter().filter_map(|model| {
@@ -269,7 +269,7 @@ fn remedy(sheet: &MovingSheet) -> String {
 fn checks(
     sheet: &MovingSheet,
     motions: &Motions,
-    [of_springs, of_corrected]: &[Option<Deviations>; 2],
+    (of_springs, of_corrected): &(Deviations, Option<Deviations>),
     own_error: Option<&OwnError>,
 ) -> Vec<Check> {
     let limits = sheet.tolerances;
@@ -287,10 +287,7 @@ fn checks(
     };
     let energies = motions.models().map(energy).into_iter();
     let corrected = of_corrected.as_ref().map(|own| (CORRECTED.name, own));
-    let springs = of_springs.as_ref().map(|own| (MASS_SPRING.name, own));
-    let Some((name, last)) = corrected.or(springs) else {
-        return energies.collect();
-    };
+    let (name, last) = corrected.unwrap_or((MASS_SPRING.name, of_springs));
     let until = motions.times()[..last.displacement.len()].last().copied();
     let until = until.unwrap_or_default();
     let over = if until < sheet.time.duration * (1.0 - 1e-9) {

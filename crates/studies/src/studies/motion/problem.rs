@@ -97,13 +97,7 @@ impl MovingSheet {
     /// The first longitudinal vibration of a bar of the sheet's length in Hz.
     pub(super) fn bar_frequency(&self) -> f64 {
         let speed = (self.specimen.problem.law.youngs_modulus() / self.density).sqrt();
-        speed / (f64::from(self.bar_waves()) * self.length())
-    }
-
-    /// The extent of the sheet along x in mm.
-    pub(super) fn length(&self) -> f64 {
-        let [low, high] = self.specimen.outline.coarse().bounding_box();
-        high[0] - low[0]
+        speed / (f64::from(self.bar_waves()) * self.specimen.outline.size()[0])
     }
 
     /// The sheet of another material, such as one made by [`Card::of_law`]; density and viscosity stay those of the study.

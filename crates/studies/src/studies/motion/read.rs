@@ -65,9 +65,12 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
         Along::LoadFactor => specimen::read_moving(root, folder, card, &course),
     };
     course.unknown_keys();
-    let mesh = specimen.as_ref().map(|own| own.outline.lattice());
+    let region = specimen.as_ref().map(|own| {
+        let outline = &own.outline;
+        (outline.lattice(), outline.bounding_box())
+    });
     let gravity = read_gravity(&root.section("gravity"));
-    let forces = read_forces(root, mesh.as_ref());
+    let forces = read_forces(root, region.as_ref());
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(drive.as_ref());
@@ -79,7 +82,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
         &forces,
     );
     let is_corrected = read_corrector(&root.section("corrector"));
-    let probes = read_probes(root, mesh.as_ref());
+    let probes = read_probes(root, region.as_ref());
     let tolerances = read_tolerances(&root.section("tolerances"), drive.as_ref());
     let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
     let sheet = MovingSheet {

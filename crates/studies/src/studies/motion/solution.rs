@@ -135,11 +135,7 @@ impl MovingSheet {
     /// The axis along which the measured group has the larger force in a motion, x for a plate; `None` where no support holds it.
     pub(super) fn measured_axis(&self, model: &ModelMotion) -> Option<usize> {
         let forces = self.measured_forces(model);
-        let largest = |axis: usize| {
-            let forces = forces.iter().map(|force| force[axis].abs());
-            forces.fold(0.0, f64::max)
-        };
-        let is_across = self.specimen.grids().is_none() && largest(1) > largest(0);
+        let is_across = self.specimen.grids().is_none() && larger_axis(&forces) == 1;
         (!forces.is_empty()).then_some(usize::from(is_across))
     }
 
@@ -147,10 +143,18 @@ impl MovingSheet {
     pub(super) fn moved_axis(&self, model: &ModelMotion) -> usize {
         let group = &self.specimen.group;
         let instants = model.instants().iter();
-        let largest = instants.fold([0.0_f64; 2], |most, now| {
-            let moved = model.displacement_of(group, now);
-            [most[0].max(moved[0].abs()), most[1].max(moved[1].abs())]
-        });
-        usize::from(self.specimen.grids().is_none() && largest[1] > largest[0])
+        let moved: Vec<_> = instants
+            .map(|now| model.displacement_of(group, now))
+            .collect();
+        usize::from(self.specimen.grids().is_none() && larger_axis(&moved) == 1)
     }
+}
+
+/// The axis along which some vectors have the largest component.
+pub fn larger_axis(vectors: &[[f64; 2]]) -> usize {
+    let largest = |axis: usize| {
+        let sizes = vectors.iter().map(|vector| vector[axis].abs());
+        sizes.fold(0.0, f64::max)
+    };
+    usize::from(largest(1) > largest(0))
 }

@@ -28,10 +28,8 @@ pub fn json(sheet: &MovingSheet, own_error: Option<&OwnError>) -> Map<String, Va
     let says: Map<_, _> = sentences
         .map(|(what, words)| (what, json!(words)))
         .collect();
-    let [low, high] = sheet.specimen.outline.coarse().bounding_box();
-    let size = [0, 1].map(|axis| high[axis] - low[axis]);
     let all = json!({
-        "size_mm": size,
+        "size_mm": sheet.specimen.outline.size(),
         "thickness_mm": sheet.specimen.problem.thickness,
         "density_kg_per_m3": 1e12 * sheet.density,
         "says": says,

@@ -6,6 +6,9 @@ use crate::mesh::Mesh;
 use crate::studies::motion::problem::{PointForce, Probe};
 use crate::units::Dimension;
 
+/// The mesh of a sheet's outline, and its box.
+pub type Region = (Mesh, [[f64; 2]; 2]);
+
 /// All tables of a kind; none where the study has none.
 fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T) -> Vec<T> {
     if root.has(key) {
@@ -16,7 +19,7 @@ fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T)
 }
 
 /// A point of the sheet in mm.
-fn read_point(section: &Section, mesh: Option<&Mesh>) -> [f64; 2] {
+fn read_point(section: &Section, region: Option<&Region>) -> [f64; 2] {
     /// Of a cell's size: curved sides of a lattice lie inside of the outline.
     const BEYOND: f64 = 0.1;
     let at = section.quantities("at", Dimension::Length, Bound::Any);
@@ -25,15 +28,12 @@ fn read_point(section: &Section, mesh: Option<&Mesh>) -> [f64; 2] {
         section.fault("at", "must be two lengths, x and y", hint);
         return [0.0; 2];
     };
-    let Some(mesh) = mesh.filter(|_| at.iter().all(|x| x.is_finite())) else {
+    let region = region.filter(|_| at.iter().all(|x| x.is_finite()));
+    let Some((mesh, [[left, bottom], [right, top]])) = region else {
         return at;
     };
-    let [[left, bottom], [right, top]] = mesh.bounding_box();
-    let in_box = (left..=right).contains(&at[0]) && (bottom..=top).contains(&at[1]);
+    let in_box = (left..=right).contains(&&at[0]) && (bottom..=top).contains(&&at[1]);
     if !in_box || mesh.outside(at) > BEYOND {
-        // Without rounding.
-        let [left, bottom, right, top] =
-            [left, bottom, right, top].map(|place| (1e6 * place).round() * 1e-6);
         let hint = format!(
             "the sheet lies from [\"{left} mm\", \"{bottom} mm\"] to [\"{right} mm\", \"{top} mm\"]"
         );
@@ -43,10 +43,10 @@ fn read_point(section: &Section, mesh: Option<&Mesh>) -> [f64; 2] {
 }
 
 /// All probes; tables have columns of their names.
-pub fn read_probes(root: &Section, mesh: Option<&Mesh>) -> Vec<Probe> {
+pub fn read_probes(root: &Section, region: Option<&Region>) -> Vec<Probe> {
     let mut names = Vec::new();
     tables(root, "probe", |section| {
-        let probe = read_probe(section, mesh);
+        let probe = read_probe(section, region);
         if names.contains(&probe.name) {
             let hint = "table columns carry this name: give each probe a name of its own";
             section.fault("name", "is the name of another probe", hint);
@@ -56,16 +56,16 @@ pub fn read_probes(root: &Section, mesh: Option<&Mesh>) -> Vec<Probe> {
     })
 }
 
-fn read_probe(section: &Section, mesh: Option<&Mesh>) -> Probe {
+fn read_probe(section: &Section, region: Option<&Region>) -> Probe {
     let probe = Probe {
         name: section.heading("name"),
-        at: read_point(section, mesh),
+        at: read_point(section, region),
     };
     section.unknown_keys();
     probe
 }
 
-fn read_force(section: &Section, mesh: Option<&Mesh>) -> PointForce {
+fn read_force(section: &Section, region: Option<&Region>) -> PointForce {
     let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let time = if section.has("begin") || section.has("end") {
@@ -83,7 +83,7 @@ fn read_force(section: &Section, mesh: Option<&Mesh>) -> PointForce {
         TimeFunction::Constant(1.0)
     };
     let force = PointForce {
-        at: read_point(section, mesh),
+        at: read_point(section, region),
         force,
         time,
     };
@@ -92,6 +92,6 @@ fn read_force(section: &Section, mesh: Option<&Mesh>) -> PointForce {
 }
 
 /// All point forces.
-pub fn read_forces(root: &Section, mesh: Option<&Mesh>) -> Vec<PointForce> {
-    tables(root, "force", |one| read_force(one, mesh))
+pub fn read_forces(root: &Section, region: Option<&Region>) -> Vec<PointForce> {
+    tables(root, "force", |one| read_force(one, region))
 }

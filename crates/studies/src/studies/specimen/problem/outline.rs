@@ -56,6 +56,19 @@ impl Outline {
         }
     }
 
+    /// The least and the largest coordinates in mm, without rounding.
+    pub fn bounding_box(&self) -> [[f64; 2]; 2] {
+        let [low, high] = self.coarse().bounding_box();
+        let size = (high[0] - low[0]).max(high[1] - low[1]);
+        [low, high].map(|corner| corner.map(|place| without_rounding(place, size)))
+    }
+
+    /// The extent along both axes in mm.
+    pub fn size(&self) -> [f64; 2] {
+        let [low, high] = self.bounding_box();
+        [0, 1].map(|axis| high[axis] - low[axis])
+    }
+
     /// What so many states on the finest of the finite elements' meshes will use.
     pub fn need(&self, states: usize, refinement: Option<Refinement>) -> Need {
         let cells = match self {
@@ -126,11 +139,8 @@ impl Outline {
                 size: [length, width],
                 ..
             }) => format!("a plate of {length} × {width} mm"),
-            Self::File { mesh, .. } => {
-                let [low, high] = mesh.bounding_box();
-                let size = (high[0] - low[0]).max(high[1] - low[1]);
-                let [[left, bottom], [right, top]] =
-                    [low, high].map(|corner| corner.map(|place| without_rounding(place, size)));
+            Self::File { .. } => {
+                let [[left, bottom], [right, top]] = self.bounding_box();
                 format!(
                     "the sheet of a mesh file, x from {left} to {right} mm and y from {bottom} to {top} mm"
                 )
