@@ -234,6 +234,10 @@ impl<'a> March<'a> {
         let mut at = motion.begin()?;
         self.history.instants.push(motion.instant(&at));
         self.stepper.prepare(motion, &self.held)?;
+        // Supports that begin at once to move are met by viscous forces from the first step on.
+        motion.enter(&mut at);
+        motion.evaluate_viscous(&mut at, 0.0)?;
+        motion.accelerate(&mut at, &self.held)?;
         self.pace.from = at.energy;
         for stop in stops(motion, self.settings) {
             let now = motion.held(at.time);
