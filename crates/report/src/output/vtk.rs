@@ -240,7 +240,7 @@ mod tests {
             panic!("an array");
         };
         let expected = vec![1.0, 2.0, 0.0, 3.0, 4.0, 0.0, 0.0, 0.0, 5.0];
-        assert_eq!(data.into_vec::<f64>(), Some(expected));
+        assert_eq!(data.into_vec::<f32>(), Some(expected));
     }
 
     #[test]
