@@ -1,8 +1,9 @@
 //! The verdict on an estimate: whether its residuals are white, correlated as noise is, or no noise.
 //!
 //! Correlated noise is found by restricted likelihood twice: with the equations as they are, for the intervals, and with every
-//! alternative of [`alternatives`] and all edges released, where the residuals are noise more surely. The data, made white by the
-//! latter, determine which alternative reduces the misfit more than noise would (F test, in one linearised step).
+//! alternative of [`alternatives`] and all edges released, where the residuals are noise more surely. An alternative contradicts the
+//! equations where it is likelier than noise would make it, each under the likelier of the two noises ([`Reference`], in one
+//! linearised step).
 
 use super::equations::Equations;
 use super::input::{Edge, EdgeCondition};
@@ -25,6 +26,10 @@ pub use rows::{Rows, soundness};
 
 /// Probability under noise below which an alternative contradicts the equations. Nine are tried, and smoothness is chosen by the data.
 const LEVEL: f64 = 1e-5;
+
+/// The same where few values are independent and the correlation is uncertain: right equations have come to 1e-8 with noise correlated
+/// over six spacings, a wrong law to 1e-35 (`gelbench validate interval-coverage`).
+const STRICT: f64 = 1e-12;
 
 /// An alternative explains something where it leaves less than this share of the misfit.
 const EXPLAINS: f64 = 0.98;
@@ -89,12 +94,13 @@ pub fn judge(
         .as_ref()
         .map(|model| basis.try_out(found, Alternative::Edges, model));
     let correlation = noise.map(|noise| rows.correlation(noise));
-    let against = improvement(trials.iter().chain(&together));
     let few = few(correlation, found);
+    let level = if few.is_some() { STRICT } else { LEVEL };
+    let against = improvement(trials.iter().chain(&together), level);
     let mut contradiction = None;
     if against.is_some() {
         let each = basis.edge_by_edge(found, edges, &granted);
-        contradiction = contradicted(together.as_ref(), &each);
+        contradiction = contradicted(together.as_ref(), &each, level);
         trials.extend(together.filter(|_| each.len() > 1));
         trials.extend(each);
         let moved = found.moved_edges(edges)?.into_iter();
@@ -169,9 +175,9 @@ impl Basis<'_> {
 }
 
 /// The alternative that contradicts the equations, if one does.
-fn improvement<'a>(trials: impl Iterator<Item = &'a Trial>) -> Option<Reason> {
+fn improvement<'a>(trials: impl Iterator<Item = &'a Trial>, level: f64) -> Option<Reason> {
     let probability = trials.map(|trial| trial.probability).fold(1.0, f64::min);
-    (probability < LEVEL).then_some(Reason::Alternative(probability))
+    (probability < level).then_some(Reason::Alternative(probability))
 }
 
 /// Noise with too few independent values, which is no evidence against the equations.
@@ -213,7 +219,7 @@ fn released(found: &NearestField, edges: &[Edge], goes: &dyn Fn(&str) -> bool) -
     search.score(found).ok()
 }
 
-fn contradicted(together: Option<&Trial>, each: &[Trial]) -> Option<Contradiction> {
+fn contradicted(together: Option<&Trial>, each: &[Trial], level: f64) -> Option<Contradiction> {
     let probability = together.map_or(1.0, |trial| trial.probability);
     let named = |trial: &Trial| match &trial.alternative {
         Alternative::Edge(name) => Some((name.clone(), trial.probability)),
@@ -221,11 +227,11 @@ fn contradicted(together: Option<&Trial>, each: &[Trial]) -> Option<Contradictio
     };
     let mut edges: Vec<(String, f64)> = each
         .iter()
-        .filter(|trial| trial.probability < LEVEL)
+        .filter(|trial| trial.probability < level)
         .filter_map(named)
         .collect();
     edges.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
-    (probability < LEVEL).then_some(Contradiction { probability, edges })
+    (probability < level).then_some(Contradiction { probability, edges })
 }
 
 impl Verdict {

@@ -25,14 +25,34 @@ pub struct Model {
     slope: DVector<f64>,
 }
 
-/// The noise by which alternatives are tested.
+/// The noises under which alternatives are compared with the equations: each model has the likelier of them.
+///
+/// ```text
+/// −2 ln L = n ln(zᵀR⁻¹z/n) + 2 ln det R₁,   Λ = −2 ln L(equations) + 2 ln L(alternative)
+/// F = (e^(Λ/n) − 1) (n − p)/(p − p₀)        p₀, p: parameters without and with the alternative; white noise: the usual F
+/// ```
+///
+/// Correlated noise of the equations' own residuals, which may be a misfit, and that which remains with all alternatives, which may
+/// be too short: an alternative counts where it is likelier than both let the equations be.
 pub struct Reference {
-    whitening: Option<Whitening>,
-    variance: f64,
-    /// Independent values.
-    values: f64,
+    noises: Vec<Noise>,
     /// Variance due to the mesh's own error.
     mesh: f64,
+}
+
+struct Noise {
+    whitening: Option<Whitening>,
+    variance: f64,
+}
+
+/// A model under the noise that suits it best.
+struct Likelihood {
+    /// −2 ln L.
+    surprise: f64,
+    /// zᵀR⁻¹z.
+    square: f64,
+    /// Parameters that were fitted.
+    effective: f64,
 }
 
 impl Model {
@@ -141,7 +161,7 @@ impl Model {
 }
 
 impl Reference {
-    /// The noise that remains with all alternatives in the equations.
+    /// The noise of the equations, and what remains of it with all alternatives in them.
     pub fn new(
         rows: &Rows,
         noise: Option<&CorrelatedNoise>,
@@ -152,29 +172,25 @@ impl Reference {
     ) -> Self {
         let most = all.unwrap_or(base);
         let flexible = || most.with(rows, columns.iter().map(|(_, design)| design));
-        let noise = noise.and_then(|_| flexible().noises(rows).into_iter().next());
-        let correlation = noise.as_ref().map(|noise| noise.correlation);
-        let count = rows.chosen.len() as f64;
+        let remaining = noise.and_then(|_| flexible().noises(rows).into_iter().next());
+        let mut noises = vec![Noise::new(rows, remaining.as_ref())];
+        noises.extend(noise.map(|noise| Noise::new(rows, Some(noise))));
         let mesh = own.map_or(0.0, |own| {
             let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
-            MESH * rows.scaled(&error).norm_squared() / (2.0 * count)
+            MESH * rows.scaled(&error).norm_squared() / (2.0 * rows.chosen.len() as f64)
         });
-        Self {
-            whitening: correlation
-                .as_ref()
-                .map(|one| Whitening::new(&rows.sites, one)),
-            variance: noise.as_ref().map_or(1.0, |noise| noise.variance),
-            values: 2.0 * correlation.map_or(count, |one| one.independent(rows.sites.places())),
-            mesh,
-        }
+        Self { noises, mesh }
     }
 
     /// The factor of one further column that fits best beside the equations.
     pub fn factor(&self, rows: &Rows, base: &Model, design: &DMatrix<f64>) -> Option<f64> {
         let model = base.with(rows, [design]);
         let last = model.design.ncols().checked_sub(1)?;
-        let white = WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
-        let best = white.best(&model.held, &model.slope, self.variance)?;
+        let remaining = self.noises.first()?;
+        let best =
+            remaining
+                .regression(&model)
+                .best(&model.held, &model.slope, remaining.variance)?;
         // Columns are added with a length of their own.
         let own = rows.scaled(design);
         Some(best[last] * model.design.column(last).norm() / own.norm())
@@ -182,23 +198,59 @@ impl Reference {
 
     /// The reduction of the misfit of the equations by a model.
     pub fn test(&self, alternative: Alternative, base: &Model, model: &Model) -> Trial {
-        let left = |model: &Model| {
-            let white =
-                WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
-            white.left(&model.held, &model.slope, self.variance)
-        };
-        let (Some((before, few)), Some((after, many))) = (left(base), left(model)) else {
+        let (Some(before), Some(after)) = (self.likelihood(base), self.likelihood(model)) else {
             return Trial::nothing(alternative);
         };
         let count = model.residual.len() as f64;
-        let more = (many - few).max(1.0);
-        let variance = after / (count - many).max(1.0) + self.mesh;
-        let gain = (before - after).max(0.0) / variance;
+        let more = (after.effective - before.effective).max(1.0);
+        let freedom = (count - after.effective).max(1.0);
+        let variance = after.square / freedom;
+        let reduction = ((before.surprise - after.surprise) / count).exp_m1();
+        let gain = reduction.max(0.0) * freedom * variance / (variance + self.mesh);
         Trial {
-            probability: f_tail([more, (self.values - many).max(3.0)], gain / more),
+            probability: f_tail([more, freedom], gain / more),
             gain: gain - 2.0 * more,
             ..Trial::nothing(alternative)
         }
+    }
+
+    /// That of a model under the noise which makes it likeliest; `None` where its parameters are not determined.
+    fn likelihood(&self, model: &Model) -> Option<Likelihood> {
+        let all = self
+            .noises
+            .iter()
+            .filter_map(|noise| noise.likelihood(model));
+        all.min_by(|a, b| a.surprise.total_cmp(&b.surprise))
+    }
+}
+
+impl Noise {
+    /// Correlated noise, or white.
+    fn new(rows: &Rows, noise: Option<&CorrelatedNoise>) -> Self {
+        Self {
+            whitening: noise.map(|noise| Whitening::new(&rows.sites, &noise.correlation)),
+            variance: noise.map_or(1.0, |noise| noise.variance),
+        }
+    }
+
+    fn regression(&self, model: &Model) -> WhiteRegression {
+        WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref())
+    }
+
+    fn likelihood(&self, model: &Model) -> Option<Likelihood> {
+        let (square, effective) =
+            self.regression(model)
+                .left(&model.held, &model.slope, self.variance)?;
+        let count = model.residual.len() as f64;
+        let log_determinant = self
+            .whitening
+            .as_ref()
+            .map_or(0.0, Whitening::log_determinant);
+        Some(Likelihood {
+            surprise: count * (square / count).ln() + 2.0 * log_determinant,
+            square,
+            effective,
+        })
     }
 }
 

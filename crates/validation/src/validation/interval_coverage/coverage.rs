@@ -119,8 +119,9 @@ const EXPLANATION: &str = "Marker displacements from converged finite elements o
     of the hole's centre, the force and the law's first parameter, which is estimated in a second correction with the force \
     measured to 1 %. The wrong law is neo-Hookean, with its parameter fitted to the force; the wrong thickness is combined \
     with the right law and a measured force; the wrong edge is a rigid grip stated at 70 % of the plate. Noise correlated \
-    over three spacings or more leaves so few independent values of these 209 markers that it cannot be distinguished from a \
-    misfit: with fewer than a hundred of them the data cannot judge, and intervals include the widest correlation that they allow.";
+    over three spacings or more leaves few independent values of these 209 markers: with fewer than a hundred of them the data \
+    refute the equations only where an alternative is likelier by far, else they cannot judge, and intervals include the widest \
+    correlation that they allow.";
 
 fn row(name: &str, shares: &Shares) -> Vec<String> {
     let answers = shares.answers.map(number);
