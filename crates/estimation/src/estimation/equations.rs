@@ -23,10 +23,10 @@ pub use approach::approach;
 pub use body_force::{BodyForce, nodal_areas};
 pub use linearise::{Grip, Linear};
 
-/// How equilibria on the way and at the end are solved.
+/// How equilibria on the way and at the end are solved: what is near an equilibrium takes at most twenty steps.
 pub const ON_THE_WAY: NewtonSettings = NewtonSettings {
     tolerance: 1e-3,
-    max_iterations: 60,
+    max_iterations: 30,
 };
 pub const AT_THE_END: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,

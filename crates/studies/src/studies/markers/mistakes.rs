@@ -4,8 +4,8 @@
 //! AIC = 2 n ln r + 2 p        r of n values, p parameters: by less than this the markers would not choose
 //! ```
 //!
-//! Only fields that are not explained, or in which no edge is free where the data may choose, are tried, in the one frame that moves most:
-//! a mistake is that of a file.
+//! Only fields whose misfit is more than their noise, or in which no edge is free where the data may choose, are tried, in the one frame
+//! that moves most: a mistake is that of a file.
 
 use nalgebra::Matrix2;
 
@@ -34,6 +34,9 @@ const SURE: f64 = 30.0;
 
 /// How much nearer to the markers a field must be that is not explained either.
 const NEARER: f64 = 3.0;
+
+/// The share of the residuals' variance that correlates, from which on a misfit may be that of a mistake.
+const MUCH: f64 = 0.5;
 
 /// Principal stretches of specimens, on the mean.
 const STRETCHES: std::ops::Range<f64> = 0.2..5.0;
@@ -106,7 +109,7 @@ impl MarkerStudy {
     /// The mistake that a file seems to hold, if there is one.
     pub(super) fn mistake(&self, estimates: &[FieldEstimate]) -> Option<Diagnostic> {
         let frames = self.frames_with(estimates);
-        let doubtful = frames.filter(|(_, estimate)| !is_natural(estimate));
+        let doubtful = frames.filter(|(_, estimate)| may_be_mistaken(estimate));
         let (frame, estimate) =
             doubtful.max_by(|(a, _), (b, _)| a.motion().total_cmp(&b.motion()))?;
         let (mistake, meant) = self.likeliest(frame, Some(estimate))?;
@@ -154,15 +157,27 @@ impl MarkerStudy {
     }
 }
 
+/// Whether the misfit of a field is more than its noise, or none of its edges is free where the data may choose.
+fn may_be_mistaken(estimate: &FieldEstimate) -> bool {
+    let correlation = estimate.verdict.correlation;
+    let is_far = correlation.is_some_and(|correlation| correlation.share > MUCH);
+    !has_free_edge(estimate) || (!estimate.is_explained() && is_far)
+}
+
 /// Whether a field is explained, with a free edge where the data may choose.
 fn is_natural(estimate: &FieldEstimate) -> bool {
+    estimate.is_explained() && has_free_edge(estimate)
+}
+
+/// Whether one of the edges is free where the data may choose; true where they may not.
+fn has_free_edge(estimate: &FieldEstimate) -> bool {
     let mut chosen = estimate
         .edges
         .iter()
         .filter(|edge| edge.probability.is_some())
         .map(|edge| edge.condition == EdgeCondition::Free)
         .peekable();
-    estimate.is_explained() && (chosen.peek().is_none() || chosen.any(|is_free| is_free))
+    chosen.peek().is_none() || chosen.any(|is_free| is_free)
 }
 
 /// Whether the field that may have been meant is far more probable than the one that was written.
