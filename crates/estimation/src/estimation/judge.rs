@@ -198,9 +198,11 @@ fn stated(edges: &[Edge]) -> Vec<&str> {
     names
 }
 
+/// Whether the condition of an edge is stated, or is that of a hole: free.
 fn is_stated(edge: &Edge) -> bool {
-    let named = edge.segment.condition.is_some() && !edge.segment.inside;
-    named && edge.condition != EdgeCondition::Unknown
+    let segment = &edge.segment;
+    let stated = segment.condition.is_some() || !segment.outer;
+    stated && !segment.inside && edge.condition != EdgeCondition::Unknown
 }
 
 /// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
@@ -227,7 +229,7 @@ fn contradicted(together: Option<&Trial>, each: &[Trial], level: f64) -> Option<
     };
     let mut edges: Vec<(String, f64)> = each
         .iter()
-        .filter(|trial| trial.probability < level)
+        .filter(|trial| trial.probability < LEVEL)
         .filter_map(named)
         .collect();
     edges.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
