@@ -24,7 +24,7 @@ use crate::output;
 use crate::output::ResultFolder;
 use crate::studies::{self, name};
 use crate::validation;
-use conclusion::conclude;
+use conclusion::{conclude, printed};
 use journal::FolderJournal;
 use large::Large;
 use progress::{Progress, Shown, tell_files};
@@ -337,17 +337,13 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let files = results_folder.finish()?;
     tell_files(&files);
     print_report(|| results.json())?;
-    let page = folder.join("report.html");
-    let page = with_report.then(|| format!("open {}\n", page.display()));
-    let written = format!("{} files in {}\n", files.len(), folder.display());
-    let parts = [
-        results.headline(),
-        page.unwrap_or_default(),
-        results.agreement(),
-        written,
-    ];
-    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    conclude(&[results], &parts.join("\n"))
+    let text = printed(
+        &results,
+        with_report.then_some("report.html"),
+        files.len(),
+        &folder,
+    );
+    conclude(&[results], &text)
 }
 
 fn check(path: &Path, budget: Budget) -> Outcome {

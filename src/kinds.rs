@@ -138,6 +138,13 @@ pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
     let found = {
         let document = Document::parse(file, text, &faults);
         let root = document.root(None, &faults);
+        if text
+            .lines()
+            .all(|line| line.trim().is_empty() || line.trim_start().starts_with('#'))
+        {
+            let hint = "`gelbench new` writes a study of each kind, with every key in it";
+            return Err(Error::input(format!("{file} states nothing"), hint));
+        }
         if !root.has("kind") {
             return match other_files::recognised(&root, file) {
                 Some((what, hint)) => Err(Error::input(format!("{file} {what}"), hint)),

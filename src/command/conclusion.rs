@@ -1,5 +1,7 @@
 //! What a command ends with: its words, the warnings about its results, and the exit code.
 
+use std::path::Path;
+
 use super::terminal::{Outcome, complain_of_end, print, warn};
 use crate::error::Diagnostic;
 use crate::results::{Check, End, Results};
@@ -24,4 +26,17 @@ pub fn conclude(results: &[Results], words: &str) -> Outcome {
         return Ok(NO_SOLUTION);
     }
     Ok(u8::from(!results.iter().all(Results::passed)))
+}
+
+/// The results for a terminal: the headline, where the page is, how far all agree, and where the files are.
+pub fn printed(results: &Results, page: Option<&str>, files: usize, folder: &Path) -> String {
+    let page = page.map(|page| format!("open {}\n", folder.join(page).display()));
+    let parts = [
+        results.headline(),
+        page.unwrap_or_default(),
+        results.agreement(),
+        format!("{files} files in {}\n", folder.display()),
+    ];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    parts.join("\n")
 }

@@ -70,7 +70,7 @@ pub struct FitArguments {
 /// A card by its name or path.
 pub fn load(name: &str) -> Result<Card, Error> {
     let card = Card::load(name, Path::new("."))?;
-    warn(card.changed_since_fit().as_slice());
+    warn(&card.warnings());
     Ok(card)
 }
 
@@ -242,19 +242,21 @@ impl Written<'_> {
     /// Writes card, figures and picture, all of them or none; returns a warning where the picture cannot be drawn.
     fn into_folder(self, folder: &Path, stem: &str) -> Result<Option<Diagnostic>, Error> {
         let [card, json, png] = ["toml", "json", "png"].map(|ending| format!("{stem}.{ending}"));
+        let files: Vec<String> = self
+            .data
+            .iter()
+            .map(|path| output::relative(path, folder))
+            .collect();
         guard(
             &folder.join(&card),
+            &files,
             &[&png, &json].map(|name| folder.join(name)),
         )?;
         let inputs: Vec<&Path> = self.data.iter().map(PathBuf::as_path).collect();
         let mut results = ResultFolder::open(folder, &format!("materials fit {stem}"), &inputs)?;
         interrupt::guard(&results);
         let provenance = Provenance {
-            files: self
-                .data
-                .iter()
-                .map(|path| output::relative(path, folder))
-                .collect(),
+            files,
             reading: self.reading,
             base_card: self.base.map(|card| {
                 if shipped(card) {
@@ -286,22 +288,27 @@ pub fn add_law(
     Ok(output::write_picture(results, &format!("{stem}.png"), picture)?.err())
 }
 
-/// What was not written by a fit is never replaced by one.
-fn guard(card: &Path, others: &[PathBuf]) -> Result<(), Error> {
-    let refuse = |path: &Path| {
-        let cause =
-            "a file of this name exists that was not written by a fit; choose another --name";
+/// What was not written by a fit to the same data, or was changed since, is never replaced by one.
+fn guard(card: &Path, data: &[String], others: &[PathBuf]) -> Result<(), Error> {
+    let refuse = |path: &Path, why: &str| {
+        let cause = format!("a file of this name exists that was {why}; choose another --name");
         Err(Error::write(path, cause))
     };
-    if card.exists() {
-        let text = std::fs::read_to_string(card).unwrap_or_default();
-        let ours = text.lines().any(|line| line.trim() == "[fit]");
-        return if ours { Ok(()) } else { refuse(card) };
+    // Not read as an input, which nothing may replace.
+    if let Ok(text) = std::fs::read_to_string(card) {
+        let there = Card::parse("", "", &text).ok();
+        let changed = there.as_ref().and_then(Card::changed_since_fit);
+        return match there.and_then(|there| there.fit) {
+            Some(fit) if fit.data != data => {
+                refuse(card, &format!("fitted to {}", fit.data.join(", ")))
+            }
+            Some(_) if changed.is_some() => refuse(card, "changed since its fit"),
+            Some(_) => Ok(()),
+            None => refuse(card, "not written by a fit"),
+        };
     }
-    others
-        .iter()
-        .find(|path| path.exists())
-        .map_or(Ok(()), |path| refuse(path))
+    let other = others.iter().find(|path| path.exists());
+    other.map_or(Ok(()), |path| refuse(path, "not written by a fit"))
 }
 
 fn a_law() -> impl TypedValueParser<Value = &'static Law> {

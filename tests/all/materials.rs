@@ -42,6 +42,21 @@ fn a_law_is_fitted_and_its_card_is_used() {
     let card = fs::read(folder.path().join("pva.toml")).unwrap();
     gelbench(folder.path(), &fit).code(0);
     assert_eq!(fs::read(folder.path().join("pva.toml")).unwrap(), card);
+    let text = words(&card);
+    let other = [
+        text.replace("pva_10_uniaxial.csv", "other.csv"),
+        text.replace("c10 = \"", "c10 = \"1"),
+    ];
+    for (text, why) in other.iter().zip(["fitted to", "changed since its fit"]) {
+        fs::write(folder.path().join("pva.toml"), text).unwrap();
+        let refused = gelbench(folder.path(), &fit).code(4);
+        assert!(words(&refused.get_output().stderr).contains(why));
+        assert_eq!(
+            words(&fs::read(folder.path().join("pva.toml")).unwrap()),
+            *text
+        );
+    }
+    fs::write(folder.path().join("pva.toml"), &card).unwrap();
     fs::write(folder.path().join("pva.toml"), "mine").unwrap();
     let refused = gelbench(folder.path(), &fit).code(4);
     assert!(words(&refused.get_output().stderr).contains("choose another --name"));

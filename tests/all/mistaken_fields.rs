@@ -37,12 +37,11 @@ fn reversed([_, _, ux, uy]: [f64; 4]) -> [f64; 2] {
     [-ux, -uy]
 }
 
-/// The first doubt that a correction prints.
+/// The first line that a correction prints, with a doubt.
 fn first_doubt(printed: &str) -> &str {
-    let mut doubts = printed
-        .lines()
-        .filter(|line| line.starts_with("doubtful: "));
-    doubts.next().unwrap_or_default()
+    let first = printed.lines().next().unwrap_or_default();
+    assert!(first.starts_with("Doubtful: "), "{printed}");
+    first
 }
 
 #[test]

@@ -34,6 +34,7 @@ pub use model::Model;
 pub use plate::{ClampedPlate, Measures};
 pub use reactions::{GroupState, Reactions};
 pub use rigid_motion::RigidMotion;
+pub use singular::singular_points;
 pub use solution::Solution;
 pub use work::Work;
 

@@ -221,8 +221,11 @@ impl Results {
     pub fn agreement(&self) -> String {
         let outcome = &self.outcome;
         let mut text = outcome.summary.clone();
-        if outcome.summary.is_empty() || !outcome.headline.is_empty() {
+        let judged = !outcome.checks.is_empty();
+        if judged && (text.is_empty() || !outcome.headline.is_empty()) {
             text += &check_lines(outcome.checks.iter().map(|check| (None, check)));
+        } else if text.is_empty() {
+            text += "nothing was judged: there is no requirement on what was computed\n";
         }
         text
     }

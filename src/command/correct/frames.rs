@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::job::Job;
+use crate::command::conclusion::printed;
 use crate::command::identity;
 use crate::command::interrupt;
 use crate::command::progress::{Progress, tell_files};
@@ -25,8 +26,8 @@ pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>,
     warn(folder.replaces().as_slice());
     let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();
-    let (estimates, failed) = estimates(field, &mut folder, &progress)?;
-    field.leave_out(failed)?;
+    let (mut estimates, failed) = estimates(field, &mut folder, &progress)?;
+    field.conclude(&mut estimates, failed)?;
     for series in SERIES {
         let collection = output::vtk::collection(&played(field, series));
         folder.add(&format!("vtk/{series}.pvd"), &collection)?;
@@ -53,8 +54,7 @@ pub fn finish(mut folder: ResultFolder, results: &Results) -> Result<(), Error> 
     let path = folder.path().to_owned();
     let files = folder.finish()?;
     tell_files(&files);
-    let (summary, count) = (&results.outcome.summary, files.len());
-    print(&format!("{summary}{count} files in {}\n", path.display()))
+    print(&printed(results, Some("report.html"), files.len(), &path))
 }
 
 /// The estimates of frames, and the numbers of those that could not be corrected with the reasons.

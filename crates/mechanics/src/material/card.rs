@@ -1,6 +1,6 @@
 //! Material cards: a law, its parameters with units, and where they come from.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::law::HyperelasticLaw;
@@ -71,6 +71,17 @@ pub struct Card {
     pub fit: Option<FitRecord>,
     /// The card's text as it was read.
     pub text: String,
+    /// A file of this shipped card's name with another text, which was not read.
+    pub overlooked: Option<PathBuf>,
+}
+
+/// A file of a shipped card's name, beside a study or in its or this folder's `materials`, whose text is not the shipped one.
+fn overlooked(name: &str, folder: &Path, shipped: &str) -> Option<PathBuf> {
+    let file = format!("{name}.toml");
+    let beside = [folder.join(&file), folder.join("materials").join(&file)];
+    let here = Path::new("materials").join(&file);
+    let mut all = beside.into_iter().chain([here]);
+    all.find(|path| std::fs::read_to_string(path).is_ok_and(|text| text != shipped))
 }
 
 /// What is needed to fit a card again.
@@ -106,7 +117,9 @@ impl Card {
     /// [`Error::Input`] with every fault of the card.
     pub fn load(name: &str, folder: &Path) -> Result<Self, Error> {
         if let Some((_, text)) = CARDS.iter().find(|(known, _)| *known == name) {
-            return Self::parse(name, &format!("materials/{name}.toml"), text);
+            let mut card = Self::parse(name, &format!("materials/{name}.toml"), text)?;
+            card.overlooked = overlooked(name, folder, text);
+            return Ok(card);
         }
         if Path::new(name)
             .extension()
@@ -207,6 +220,7 @@ impl Card {
             note: String::new(),
             fit: None,
             text: String::new(),
+            overlooked: None,
         }
     }
 

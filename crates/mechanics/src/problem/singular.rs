@@ -13,20 +13,7 @@ impl BoundaryProblem {
     /// # Errors
     /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
     pub fn singular_points(&self, mesh: &Mesh) -> Result<Vec<[f64; 2]>, Diagnostic> {
-        let fixed = self.fixed_nodes(mesh)?;
-        let boundary: BTreeSet<usize> = mesh.boundary().iter().flatten().copied().collect();
-        let is_free = |side: &&Vec<usize>| side.iter().any(|node| !fixed.contains(node));
-        let free_sides = mesh.boundary().iter().filter(is_free);
-        let ends = free_sides.flatten().filter(|node| fixed.contains(node));
-        let cells = (0..mesh.cell_count()).map(|cell| mesh.cell(cell));
-        let inside = cells
-            .filter(|cell| cell.iter().any(|node| !fixed.contains(node)))
-            .flatten()
-            .filter(|node| fixed.contains(node) && !boundary.contains(node));
-        let corners = mesh.boundary_angles().into_iter();
-        let corners = corners.filter_map(|(node, angle)| (angle > REENTRANT).then_some(node));
-        let nodes: BTreeSet<usize> = ends.chain(inside).copied().chain(corners).collect();
-        Ok(nodes.into_iter().map(|node| mesh.nodes[node]).collect())
+        Ok(singular_points(mesh, &self.fixed_nodes(mesh)?))
     }
 
     /// The nodes that one support, or a grip with a given force, holds along both axes. Two symmetry lines that cross do not bound the sheet.
@@ -43,6 +30,23 @@ impl BoundaryProblem {
         };
         Ok((0..mesh.nodes.len()).filter(is_fixed).collect())
     }
+}
+
+/// The points at rest in mm at which the stress of a sheet with these fixed nodes has no bound.
+pub fn singular_points(mesh: &Mesh, fixed: &BTreeSet<usize>) -> Vec<[f64; 2]> {
+    let boundary: BTreeSet<usize> = mesh.boundary().iter().flatten().copied().collect();
+    let is_free = |side: &&Vec<usize>| side.iter().any(|node| !fixed.contains(node));
+    let free_sides = mesh.boundary().iter().filter(is_free);
+    let ends = free_sides.flatten().filter(|node| fixed.contains(node));
+    let cells = (0..mesh.cell_count()).map(|cell| mesh.cell(cell));
+    let inside = cells
+        .filter(|cell| cell.iter().any(|node| !fixed.contains(node)))
+        .flatten()
+        .filter(|node| fixed.contains(node) && !boundary.contains(node));
+    let corners = mesh.boundary_angles().into_iter();
+    let corners = corners.filter_map(|(node, angle)| (angle > REENTRANT).then_some(node));
+    let nodes: BTreeSet<usize> = ends.chain(inside).copied().chain(corners).collect();
+    nodes.into_iter().map(|node| mesh.nodes[node]).collect()
 }
 
 #[cfg(test)]

@@ -112,12 +112,7 @@ impl Headline<'_> {
         if shown < self.steps.len() {
             note += &format!(" {shown} of {} steps are listed.", self.steps.len());
         }
-        if !self.state.singular.is_empty() {
-            note += &format!(
-                " Largest values: farther than {} mm from ends of supports and re-entrant corners, where stress has no bound.",
-                (1e4 * self.state.distance()).round() / 1e4
-            );
-        }
+        note.extend(self.state.note().map(|words| format!(" {words}")));
         if let Some(gauge) = &self.state.gauge {
             note += &format!(" Gauge section: {}.", gauge.words);
         }
@@ -221,17 +216,47 @@ impl Headline<'_> {
     }
 }
 
-/// A quantity of [`LocalState`] with its name.
-type Quantity = (&'static str, fn(&LocalState) -> f64);
+/// A quantity of [`LocalState`] with its name, and whether its least value counts.
+struct Quantity {
+    name: &'static str,
+    value: fn(&LocalState) -> f64,
+    is_least: bool,
+}
 
-const STRETCH: &str = "principal stretch [–]";
-const QUANTITIES: [Quantity; 3] = [
-    ("principal Cauchy stress [MPa]", |state| {
-        state.principal_cauchy()[0]
-    }),
-    (STRETCH, |state| state.stretches[0]),
-    ("von Mises stress [MPa]", LocalState::von_mises),
-];
+const STRETCHES: [&str; 2] = ["principal stretch [–]", "smallest principal stretch [–]"];
+
+/// The quantities of a sheet that is pulled, or of one that is pressed more than it is pulled.
+fn quantities(is_pressed: bool) -> [Quantity; 3] {
+    let of = |name, value: fn(&LocalState) -> f64, is_least| Quantity {
+        name,
+        value,
+        is_least,
+    };
+    let von_mises = of("von Mises stress [MPa]", LocalState::von_mises, false);
+    if is_pressed {
+        let stress = "smallest principal Cauchy stress [MPa]";
+        return [
+            of(stress, |state| state.principal_cauchy()[1], true),
+            of(STRETCHES[1], |state| state.stretches[1], true),
+            von_mises,
+        ];
+    }
+    let stress = "principal Cauchy stress [MPa]";
+    [
+        of(stress, |state| state.principal_cauchy()[0], false),
+        of(STRETCHES[0], |state| state.stretches[0], false),
+        von_mises,
+    ]
+}
+
+/// Whether the largest compression of some states is larger than the largest tension.
+fn is_pressed<'a>(states: impl Iterator<Item = &'a LocalState>) -> bool {
+    let (mut tension, mut compression) = (0.0_f64, 0.0_f64);
+    for [most, least] in states.map(LocalState::principal_cauchy) {
+        (tension, compression) = (tension.max(most), compression.max(-least));
+    }
+    compression > tension
+}
 
 impl LoadedSheet<'_> {
     /// The distance from singular points in mm from which on values count: a fifth of the sheet's smaller side, whatever the mesh.
@@ -240,8 +265,18 @@ impl LoadedSheet<'_> {
         (high[0] - low[0]).min(high[1] - low[1]) / 5.0
     }
 
+    /// Where largest values are not looked for.
+    pub fn note(&self) -> Option<String> {
+        (!self.singular.is_empty()).then(|| {
+            format!(
+                "Largest values: farther than {} mm from ends of supports and re-entrant corners, where stress has no bound.",
+                (1e4 * self.distance()).round() / 1e4
+            )
+        })
+    }
+
     /// A table of the largest values and of those of the gauge section; `None` where no node is far enough from singular points.
-    fn largest(&self) -> Option<Block> {
+    pub fn largest(&self) -> Option<Block> {
         let Deformed {
             mesh,
             fields,
@@ -257,9 +292,15 @@ impl LoadedSheet<'_> {
                 .all(|[a, b]| (x - a).hypot(y - b) > distance)
         };
         let regular: Vec<usize> = (0..mesh.nodes.len()).filter(is_regular).collect();
-        let row = |(name, value): Quantity| {
+        let row = |quantity: Quantity| {
+            let Quantity {
+                name,
+                value,
+                is_least,
+            } = quantity;
             let value = |node: usize| value(&states[node]);
-            let node = largest_node(mesh, &regular, &value)?;
+            let sign = if is_least { -1.0 } else { 1.0 };
+            let node = largest_node(mesh, &regular, &|node| sign * value(node))?;
             let position = mesh.nodes[node]
                 .map(|along| format!("{along:.1}"))
                 .join(", ");
@@ -269,17 +310,21 @@ impl LoadedSheet<'_> {
                 format!("({position})"),
             ];
             row.extend(self.gauge.map(|gauge| {
-                let mean = match name {
-                    STRETCH => gauge.stretch(mesh, fields.last().copied().unwrap_or_default()),
-                    _ => gauge.mean(mesh, &value),
+                let mean = if STRETCHES.contains(&name) {
+                    gauge.stretch(mesh, fields.last().copied().unwrap_or_default())
+                } else {
+                    gauge.mean(mesh, &value)
                 };
                 or_dash(Some(mean), number)
             }));
             Some(row)
         };
-        let rows: Vec<Vec<String>> = QUANTITIES.into_iter().filter_map(row).collect();
+        let is_pressed = is_pressed(regular.iter().map(|node| &states[*node]));
+        let quantities = quantities(is_pressed).into_iter();
+        let rows: Vec<Vec<String>> = quantities.filter_map(row).collect();
         let at = format!("at {}", self.at);
-        let head = [&*at, "largest", "at rest at x, y [mm]", "gauge section"];
+        let most = if is_pressed { "extreme" } else { "largest" };
+        let head = [&*at, most, "at rest at x, y [mm]", "gauge section"];
         let count = head.len() - usize::from(self.gauge.is_none());
         (!rows.is_empty()).then(|| Block::table(&head[..count], rows))
     }

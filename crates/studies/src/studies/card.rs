@@ -54,7 +54,7 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
         }
         Ok(card) => {
             warn_of_volume(section, &card);
-            if let Some(warning) = card.changed_since_fit() {
+            for warning in card.warnings() {
                 section.warning(KEY, &warning.message, warning.hint.as_deref().unwrap_or(""));
             }
             in_plane(section, plane?, card)

@@ -11,7 +11,8 @@ use std::sync::Arc;
 
 use crate::error::{Diagnostic, Error};
 use crate::estimation::{
-    FieldEstimate, Knowledge, RegressedLaw, Specimen, UncertainLaw, estimate, name_parts, transfer,
+    Answer, FieldEstimate, Knowledge, Reason, RegressedLaw, Specimen, UncertainLaw, estimate,
+    name_parts, transfer,
 };
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::softened_law::check_memory;
@@ -29,6 +30,7 @@ mod findings;
 mod force_signs;
 mod forces;
 mod gross_errors;
+mod headline;
 pub mod joint;
 mod json;
 mod machine;
@@ -82,6 +84,8 @@ pub struct MarkerStudy {
     pub warnings: Vec<Diagnostic>,
     /// Doubts about the figures of all frames.
     pub doubts: Vec<Diagnostic>,
+    /// The mistake that the files seem to hold, from which all other doubts follow.
+    pub mistake: Option<Diagnostic>,
     /// Where only the markers show the specimen's edge: how far outside of them it may lie, in mm. The intervals of forces include this.
     pub unknown_gap: Option<f64>,
 }
@@ -125,7 +129,7 @@ impl MarkerStudy {
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
         field.warnings.extend(told);
-        field.warnings.extend(card.changed_since_fit());
+        field.warnings.extend(card.warnings());
         let SpecimenMesh {
             mut mesh,
             cell_size,
@@ -171,6 +175,7 @@ impl MarkerStudy {
             regressed,
             warnings: [field.warnings, warnings].concat(),
             doubts,
+            mistake: None,
             unknown_gap,
         })
     }
@@ -201,7 +206,7 @@ impl MarkerStudy {
     }
 
     /// Estimates the field of every frame, and compares the residuals of each with those of the one before. Frames
-    /// that cannot be corrected are left out as by [`Self::leave_out`]; each is reported before it begins.
+    /// that cannot be corrected are left out as by [`Self::conclude`]; each is reported before it begins.
     ///
     /// # Errors
     /// As [`estimate`], with the frame in its message, where none can be.
@@ -214,16 +219,31 @@ impl MarkerStudy {
                 Err(fault) => failed.push((frame.number, fault)),
             }
         }
-        let estimates = compared.into_estimates();
-        self.leave_out(failed)?;
+        let mut estimates = compared.into_estimates();
+        self.conclude(&mut estimates, failed)?;
         Ok(estimates)
     }
 
-    /// Leaves out the frames that could not be corrected, with a doubt for each kind of fault.
+    /// Leaves out the frames that could not be corrected, with a doubt for each kind of fault, and refutes the others where their files
+    /// seem to hold a mistake.
     ///
     /// # Errors
     /// The first fault where no frame remains, or the mistake in the file that it follows from.
-    pub fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
+    pub fn conclude(
+        &mut self,
+        estimates: &mut [FieldEstimate],
+        failed: Vec<(usize, Error)>,
+    ) -> Result<(), Error> {
+        self.leave_out(failed)?;
+        self.mistake = self.mistake(estimates);
+        for estimate in estimates.iter_mut().filter(|_| self.mistake.is_some()) {
+            estimate.verdict.answer = Answer::NotExplained;
+            estimate.verdict.reasons.insert(0, Reason::Mistaken);
+        }
+        Ok(())
+    }
+
+    fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
         if !failed.is_empty() && failed.len() == self.series.frames.len() {
             let most = self.most_moved();
             let mistake = most.and_then(|frame| self.mistake_without_solution(frame));

@@ -100,6 +100,8 @@ pub enum Reason {
     Force(f64),
     /// The residuals are correlated so strongly with those of the frame before or after.
     Alike(f64),
+    /// The file seems to hold something else than displacements along x and y.
+    Mistaken,
 }
 
 impl Reason {
@@ -129,6 +131,7 @@ impl Reason {
                 "the residuals resemble those of the previous or next frame (correlation {correlation:.2}), unlike noise of \
                  single pictures"
             ),
+            Self::Mistaken => "the file seems to hold a mistake".to_owned(),
         }
     }
 }

@@ -21,6 +21,20 @@ impl Card {
         of_law.chain(terms).chain(softening).collect()
     }
 
+    /// The warnings about values that are not those of the fit that the card records, and about a file of a shipped card's name that was
+    /// not read.
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        let overlooked = self.overlooked.as_ref().map(|path| {
+            let (name, path) = (&self.name, path.display());
+            let message = format!("`{name}` is the card that comes with gelbench; {path} has other values and is not read");
+            Diagnostic::warning("", message).hint(format!("name the file with its ending to use it: \"{path}\""))
+        });
+        overlooked
+            .into_iter()
+            .chain(self.changed_since_fit())
+            .collect()
+    }
+
     /// The warning about values that are not those of the fit that the card records.
     pub fn changed_since_fit(&self) -> Option<Diagnostic> {
         /// A share of a value that is rounding.

@@ -34,9 +34,9 @@ impl MarkerStudy {
     /// What makes the figures doubtful, the likeliest cause first: a mistake in the file, or else what concerns all frames, and each doubt
     /// of single ones once.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
-        if let Some(mistake) = self.mistake(estimates) {
+        if let Some(mistake) = &self.mistake {
             // All else follows from a field that nobody measured.
-            return [&[mistake][..], &self.doubts].concat();
+            return [std::slice::from_ref(mistake), &self.doubts].concat();
         }
         let findings = RULES.iter().flat_map(|rule| {
             let frames = self.frames_with(estimates);

@@ -6,39 +6,44 @@ use crate::estimation::{Answer, FieldEstimate};
 use crate::statistics::Estimate;
 use crate::units::{decimals, number};
 
-/// A force as `12.87 N (12.84 … 12.90 given the card; up to 15.56 N if the specimen reaches 5.00 mm farther out)`.
-pub fn newtons(study: &MarkerStudy, estimate: &FieldEstimate, force: &Estimate) -> String {
-    let value = decimals(force.value, 4);
+/// The interval of a force through the edges of the mesh; nothing of a force without uncertainty.
+pub fn interval(estimate: &FieldEstimate, force: &Estimate) -> String {
     let [low, high] = force.interval;
-    let interval = match (estimate.has_intervals(), estimate.verdict.answer) {
-        _ if low >= high => String::new(),
-        (true, _) => format!(" ({})", interval(study, estimate, force)),
-        (false, Answer::NotExplained) => " (no interval: not explained)".to_owned(),
-        (false, _) => " (no interval: the noise is that of gross errors)".to_owned(),
-    };
-    format!("{value} N{interval}")
+    if low >= high {
+        return String::new();
+    }
+    if !estimate.has_intervals() {
+        return "none".to_owned();
+    }
+    let (ends, _) = without_growth(estimate, force);
+    ends.map(|end| decimals(end, 4)).join(" … ")
 }
 
-/// The interval through the edges of the mesh, and the force with an edge farther out, where that is more.
-fn interval(study: &MarkerStudy, estimate: &FieldEstimate, force: &Estimate) -> String {
+/// The force with an edge farther out, where that is more.
+pub fn farther_out(estimate: &FieldEstimate, force: &Estimate) -> Option<f64> {
+    let is_known = estimate.has_intervals() && force.interval[0] < force.interval[1];
+    without_growth(estimate, force).1.filter(|_| is_known)
+}
+
+/// Why an estimate has no intervals.
+pub fn reason(estimate: &FieldEstimate) -> &'static str {
+    match estimate.verdict.answer {
+        Answer::NotExplained => "not explained",
+        _ => "the noise is that of gross errors",
+    }
+}
+
+/// The interval through the edges of the mesh, and the force with an edge farther out.
+fn without_growth(estimate: &FieldEstimate, force: &Estimate) -> ([f64; 2], Option<f64>) {
     let half = estimate.reach * force.standard_error;
     let [low, high] = force.interval;
     let [less, more] = [force.value - half - low, high - force.value - half];
-    let (ends, farther) = match half.max(less).max(more) {
+    match half.max(less).max(more) {
         _ if half <= 0.0 => ([low, high], None),
         most if most == less => ([low + less, high], Some(low)),
         most if most == more => ([low, high - more], Some(high)),
         _ => ([low, high], None),
-    };
-    let mut text = ends.map(|end| decimals(end, 4)).join(" … ");
-    if estimate.is_given_the_law && estimate.law_deviations.is_empty() {
-        text += " given the card";
     }
-    if let Some((gap, end)) = study.unknown_gap.zip(farther) {
-        let (gap, end) = (decimals(gap, 4), decimals(end, 4));
-        text += &format!("; up to {end} N if the specimen reaches {gap} mm farther out");
-    }
-    text
 }
 
 /// What the size of the forces rests on, where it is the card's.

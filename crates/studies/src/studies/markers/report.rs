@@ -1,7 +1,7 @@
 //! The report of a correction.
 
 use super::findings::remarks;
-use super::forces::{basis, newtons, scale_line, scale_paragraph};
+use super::forces::{scale_line, scale_paragraph};
 use super::quantities::{largest_correction, largest_error, outliers, residual_rms, used};
 use super::{MarkerStudy, reading, refined, verdict};
 use crate::error::Diagnostic;
@@ -24,36 +24,18 @@ pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagn
     )];
     lines.extend(frame_lines(study, estimates));
     lines.extend(remarks(study, estimates));
-    for (frame, estimate) in study.frames_with(estimates) {
-        lines.extend(estimate.parameters.iter().map(|(key, unit, value)| {
-            let interval = interval(value, estimate.has_intervals(), "");
-            let (number, value) = (frame.number, decimals(value.value, 6));
-            format!("{key} in frame {number}: {value} {unit}{interval}")
-        }));
-    }
     if let Some((frame, last)) = study.frames_with(estimates).next_back() {
-        lines.extend(last.forces.iter().map(|force| {
-            let [x, y] = force
-                .force
-                .each_ref()
-                .map(|force| newtons(study, last, force));
-            format!(
-                "force on {} in frame {}: x {x}, y {y}",
-                force.edge, frame.number
-            )
-        }));
-        lines.extend(basis(study, last));
         lines.extend(scale_line(
             frame.number,
             last,
             study.conditions.scale_deviation,
         ));
     }
-    // The verdict has lines of its own.
+    // The verdict has lines of its own, and a mistake stands before all figures.
     let verdict = Answer::NotExplained.words();
     for doubt in doubts
         .iter()
-        .filter(|doubt| !doubt.message.contains(verdict))
+        .filter(|doubt| !doubt.message.contains(verdict) && study.mistake.as_ref() != Some(doubt))
     {
         lines.push(format!("doubtful: {}", doubt.message));
         lines.extend(doubt.hint.iter().map(|hint| format!("  {hint}")));
@@ -132,18 +114,11 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     if study.coarse.is_none() {
         blocks.extend(verdict::blocks(study, estimates));
     }
-    blocks.push(Block::heading("Forces on the edges"));
-    blocks.push(forces(study, estimates));
     let last = estimates.last();
-    let words = last.and_then(|last| basis(study, last)).into_iter();
     let deviation = study.conditions.scale_deviation;
-    let words = words.chain(last.and_then(|last| scale_paragraph(last, deviation)));
-    let words = words.chain(unknown_edge(study, estimates));
+    let words = last.and_then(|last| scale_paragraph(last, deviation));
+    let words = words.into_iter().chain(unknown_edge(study, estimates));
     blocks.extend(words.map(Block::paragraph));
-    if study.regressed.is_some() {
-        blocks.push(Block::heading("Parameters of the law"));
-        blocks.push(parameters(study, estimates));
-    }
     if let Some(last) = last {
         blocks.push(Block::heading("Edges of the last frame"));
         blocks.extend(edges(study, last));
@@ -237,21 +212,8 @@ fn frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> [Block; 2] {
     [Block::table(&head, rows), Block::paragraph(EXPLANATION)]
 }
 
-fn forces(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
-    let rows = study.frames_with(estimates).flat_map(|(frame, estimate)| {
-        estimate.forces.iter().map(move |force| {
-            let [x, y] = force
-                .force
-                .each_ref()
-                .map(|force| newtons(study, estimate, force));
-            vec![frame.number.to_string(), force.edge.clone(), x, y]
-        })
-    });
-    Block::table(&["frame", "edge", "force along x", "force along y"], rows)
-}
-
 /// The parameters of the law that were estimated with the field.
-fn parameters(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
+pub fn parameters(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let rows = study.frames_with(estimates).flat_map(|(frame, estimate)| {
         let explained = estimate.has_intervals();
         estimate.parameters.iter().map(move |(key, unit, value)| {

@@ -20,7 +20,7 @@ use crate::studies::markers::MarkerStudy;
 use crate::studies::pictures::Pictures;
 
 use super::quantities::{Residual, misfits, nominal, residuals};
-use super::{figures, json, report, tables};
+use super::{figures, headline, json, report, tables};
 
 /// The `kind` of these results.
 pub const KIND: &str = "markers";
@@ -57,6 +57,7 @@ pub fn results_with(
             .frames_with(estimates)
             .map(|(frame, estimate)| json::step(field, frame, estimate))
             .collect(),
+        headline: headline::headline(field, estimates),
         blocks: report::blocks(field, estimates),
         figures: figures.unwrap_or_default(),
         style: pictures.style.clone(),

@@ -1,0 +1,137 @@
+//! What a correction is computed for, at a glance: forces on the edges, parameters of the law, and where stress and stretch are largest.
+
+use std::collections::BTreeSet;
+
+use super::MarkerStudy;
+use super::forces::{basis, farther_out, interval, reason};
+use super::report::parameters;
+use crate::error::Diagnostic;
+use crate::estimation::{EdgeForce, FieldEstimate};
+use crate::markers::Frame;
+use crate::problem::singular_points;
+use crate::results::{Block, Deformed, LoadedSheet};
+use crate::statistics::Estimate;
+use crate::units::{decimals, number};
+
+/// Most rows of the table of forces; of more, those of the last frames are listed.
+const MOST_ROWS: usize = 12;
+
+/// Forces below this share of a frame's largest say nothing at a glance.
+const NOTHING: f64 = 1e-4;
+
+/// Forces with their intervals, the law's parameters, and the largest stress and stretch of the last frame.
+pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
+    let Some((frame, last)) = study.frames_with(estimates).next_back() else {
+        return Vec::new();
+    };
+    let mut blocks: Vec<Block> = study.mistake.iter().map(mistaken).collect();
+    blocks.push(forces(study, estimates));
+    if study.regressed.is_some() {
+        blocks.push(parameters(study, estimates));
+    }
+    let law = study.law(last);
+    let sheet = LoadedSheet {
+        at: format!("frame {}", frame.number),
+        law: &*law,
+        deformed: Deformed::elastic("corrected", &study.mesh, vec![&last.displacement]),
+        singular: singular_points(&study.mesh, &fixed_nodes(last)),
+        gauge: None,
+    };
+    blocks.extend(sheet.largest());
+    let note = [forces_note(study, estimates), sheet.note()];
+    let note = note.into_iter().flatten().chain(basis(study, last));
+    let note = note.collect::<Vec<_>>().join(" ");
+    blocks.extend((!note.is_empty()).then_some(Block::Paragraph(note)));
+    blocks
+}
+
+/// A mistake in the files, which stands before figures that nobody measured.
+fn mistaken(mistake: &Diagnostic) -> Block {
+    let hint = mistake.hint.as_deref().unwrap_or_default();
+    Block::Paragraph(format!("Doubtful: {}. Remedy: {hint}.", mistake.message))
+}
+
+/// The nodes that are held along both axes: those with reactions.
+fn fixed_nodes(estimate: &FieldEstimate) -> BTreeSet<usize> {
+    let reactions = estimate.reactions.chunks_exact(2).enumerate();
+    let fixed = reactions.filter(|(_, reaction)| reaction.iter().all(|along| *along != 0.0));
+    fixed.map(|(node, _)| node).collect()
+}
+
+/// The forces of the frames that are listed.
+fn listed<'a>(
+    study: &'a MarkerStudy,
+    estimates: &'a [FieldEstimate],
+) -> Vec<(&'a Frame, &'a FieldEstimate, &'a EdgeForce)> {
+    let frames = study.frames_with(estimates);
+    let all = frames.flat_map(|(frame, estimate)| {
+        let forces = estimate.forces.iter();
+        forces.map(move |force| (frame, estimate, force))
+    });
+    let mut all: Vec<_> = all.collect();
+    all.split_off(all.len().saturating_sub(MOST_ROWS))
+}
+
+fn forces(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
+    let listed = listed(study, estimates);
+    let has_intervals = listed
+        .iter()
+        .any(|(_, estimate, _)| estimate.has_intervals());
+    let mut head = vec!["frame".to_owned(), "edge".to_owned()];
+    for axis in ["x", "y"] {
+        head.push(format!("force along {axis} [N]"));
+        head.extend(has_intervals.then(|| "95 % interval [N]".to_owned()));
+    }
+    let gap = study.unknown_gap.filter(|_| has_intervals);
+    head.extend(
+        gap.map(|gap| format!("up to, if the edge lies {} mm farther out [N]", number(gap))),
+    );
+    let rows = listed.iter().map(|(frame, estimate, force)| {
+        let mut row = vec![frame.number.to_string(), force.edge.clone()];
+        for along in &force.force {
+            row.push(figure(estimate, along));
+            row.extend(has_intervals.then(|| interval(estimate, along)));
+        }
+        row.extend(gap.map(|_| {
+            let ends = force
+                .force
+                .each_ref()
+                .map(|along| farther_out(estimate, along));
+            let largest = ends.into_iter().flatten();
+            let largest = largest.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            largest.map_or_else(|| "–".to_owned(), number)
+        }));
+        row
+    });
+    Block::Table(head, rows.collect())
+}
+
+/// A force, zero where it is nothing beside the frame's largest.
+fn figure(estimate: &FieldEstimate, force: &Estimate) -> String {
+    let all = estimate.forces.iter().flat_map(|edge| &edge.force);
+    let largest = all.fold(0.0_f64, |most, force| most.max(force.value.abs()));
+    match force.value {
+        small if small.abs() <= NOTHING * largest => number(0.0),
+        value => decimals(value, 4),
+    }
+}
+
+fn forces_note(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
+    let shown = listed(study, estimates);
+    let all: usize = estimates.iter().map(|estimate| estimate.forces.len()).sum();
+    let mut notes = Vec::new();
+    if shown.len() < all {
+        notes.push("Forces of the last frames; `forces.csv` has all.".to_owned());
+    }
+    let mut without = shown.iter().filter(|(_, own, _)| !own.has_intervals());
+    let count = without.clone().count();
+    notes.extend(without.next_back().map(|(frame, estimate, _)| {
+        let reason = reason(estimate);
+        if count == shown.len() {
+            format!("No force has an interval: {reason}.")
+        } else {
+            format!("Frame {} has no interval: {reason}.", frame.number)
+        }
+    }));
+    (!notes.is_empty()).then(|| notes.join(" "))
+}
