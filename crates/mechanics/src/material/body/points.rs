@@ -29,13 +29,25 @@ impl<L: BodyLaw> BodySheet<L> {
         gradients: [&[f64]; 4],
         made: [&mut [f64]; N],
     ) -> bool {
-        Arch::new().dispatch(PointLoop {
+        with_avx2(PointLoop {
             sheet: self,
             gradients,
             made,
             kind: PhantomData::<M>,
         })
     }
+}
+
+/// Runs a loop with vectors of four numbers where the machine has them. A third version with longer ones, for each of all laws, takes longer to
+/// compile than it saves.
+fn with_avx2<F: NullaryFnOnce>(work: F) -> F::Output {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    match Arch::new() {
+        Arch::V4(simd) => return (*simd).vectorize(work),
+        Arch::V3(simd) => return simd.vectorize(work),
+        _ => {}
+    }
+    work.call()
 }
 
 /// Some points of a loop; entries behind the last one are at rest.
