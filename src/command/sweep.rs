@@ -134,10 +134,14 @@ pub fn run(options: Options) -> Outcome {
             format!("{failed} of them without a solution somewhere, see the column `fault`; ")
         }
     };
-    let (count, place) = (files.len(), place.display());
+    let page = place.join("report.html");
+    let page = page.exists().then(|| format!("open {}\n", page.display()));
     print(&format!(
-        "{} runs; {failures}{count} files in {place}\n",
-        rows.len()
+        "{} runs; {failures}{} files in {}\n{}",
+        rows.len(),
+        files.len(),
+        place.display(),
+        page.unwrap_or_default()
     ))?;
     Ok(u8::from(failed > 0))
 }

@@ -113,6 +113,9 @@ impl Headline<'_> {
             note += &format!(" {shown} of {} steps are listed.", self.steps.len());
         }
         note.extend(self.state.note().map(|words| format!(" {words}")));
+        if !self.listed().into_iter().all(|group| self.is_held(group)) {
+            note += " Forces are those of supports; a dash is a group without one.";
+        }
         if let Some(gauge) = &self.state.gauge {
             note += &format!(" Gauge section: {}.", gauge.words);
         }
@@ -193,13 +196,21 @@ impl Headline<'_> {
             .collect()
     }
 
+    /// Whether a support of a group carries anything in some step.
+    fn is_held(&self, group: usize) -> bool {
+        let mut states = self.steps.iter().map(|(_, groups)| &groups[group]);
+        states.any(|state| state.size > 0.0 || state.force != [0.0; 2])
+    }
+
     fn forces(&self) -> Block {
         let (columns, listed) = (self.columns(), self.listed());
         let head = [self.along, "group"].into_iter();
         let head = head.chain(columns.iter().map(|((head, _), _)| *head));
         let row = |step: usize, group: usize| {
             let (at, groups) = &self.steps[step];
-            let figure = |((_, value), size): &(Column, f64)| match value(&groups[group]) {
+            let is_held = self.is_held(group);
+            let figure = |((head, value), size): &(Column, f64)| match value(&groups[group]) {
+                _ if !is_held && !head.starts_with("displacement") => "–".to_owned(),
                 small if small.abs() <= NOTHING * size => number(0.0),
                 value => number(value),
             };

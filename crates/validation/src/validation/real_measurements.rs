@@ -139,13 +139,13 @@ impl Estimated {
         let count = self.estimates.len() as f64;
         let told = self.estimates.iter();
         let told = told
-            .filter(|found| found.verdict.answer == expected)
+            .filter(|found| meets(found.verdict.answer, expected))
             .count() as f64;
         let imbalance = self.estimates.iter().map(|found| found.imbalance);
         let imbalance = imbalance.fold(0.0, larger);
         [
             check(
-                format!("{name}: frames that are {}", expected.words()),
+                format!("{name}: frames that are {}", required(expected)),
                 "%",
                 100.0 * told / count,
             )
@@ -157,6 +157,18 @@ impl Estimated {
             )
             .at_most(BALANCE, "equilibrium"),
         ]
+    }
+}
+
+/// Whether an answer is the expected one; where the data may be unable to judge, a refutation is as good.
+fn meets(answer: Answer, expected: Answer) -> bool {
+    answer == expected || (expected == Answer::Undecided && answer == Answer::NotExplained)
+}
+
+fn required(expected: Answer) -> &'static str {
+    match expected {
+        Answer::Undecided => "not explained or cannot be judged",
+        answer => answer.words(),
     }
 }
 

@@ -126,7 +126,7 @@ impl Layout {
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
         let warnings = [
             reversals(head, &along),
-            implausible(head, self.strain, widest[0].abs().max(widest[1].abs())),
+            implausible(head, self.strain, &observations),
             at_rest,
         ];
         Ok(TestData {

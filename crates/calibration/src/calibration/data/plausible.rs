@@ -90,22 +90,49 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
     })
 }
 
-/// Strains that are so large that they may be in percent.
-pub fn implausible(head: &Head, strain: StrainColumn, largest: f64) -> Option<Diagnostic> {
+/// Strains that are so large that they may be in percent, or that begin as stretches do.
+pub fn implausible(
+    head: &Head,
+    strain: StrainColumn,
+    observations: &[Observation],
+) -> Option<Diagnostic> {
     /// λ − 1: stretches of soft gels reach about 20.
     const MOST: f64 = 20.0;
     let about = match strain {
         StrainColumn::Stretch => "stretches",
         StrainColumn::Strain(_) => "strains",
     };
-    (largest > MOST).then(|| {
-        let message = format!(
-            "{}: the {about} reach λ = {:.4}",
-            head.table.source.name,
-            1.0 + largest
-        );
-        let hint = "if the column is in percent, write [%] after its name instead of [-]";
-        Diagnostic::warning("", message).hint(hint)
+    let name = &head.table.source.name;
+    let strains = observations.iter().flat_map(|one| one.strains);
+    let largest = strains.fold(0.0, |most: f64, x| most.max(x.abs()));
+    let (message, hint) = if largest > MOST {
+        (
+            format!("{name}: the {about} reach λ = {:.4}", 1.0 + largest),
+            "if the column is in percent, write [%] after its name instead of [-]",
+        )
+    } else if strain != StrainColumn::Stretch && begin_at_one(observations) {
+        (
+            format!(
+                "{name}: the strains begin at 1, where the stress is nearly zero, as stretches do"
+            ),
+            "if the column is a stretch, name it `stretch` instead of a strain",
+        )
+    } else {
+        return None;
+    };
+    Some(Diagnostic::warning("", message).hint(hint))
+}
+
+/// Whether the smallest strain is 1 within a tenth, with less than a twentieth of the largest stress.
+fn begin_at_one(observations: &[Observation]) -> bool {
+    let strain = |one: &Observation| one.strains[one.axis];
+    let first = observations
+        .iter()
+        .min_by(|a, b| strain(a).total_cmp(&strain(b)));
+    let stresses = observations.iter().map(|one| one.stress.abs());
+    let largest = stresses.fold(0.0, f64::max);
+    first.is_some_and(|first| {
+        (0.9..1.1).contains(&strain(first)) && first.stress.abs() < 0.05 * largest
     })
 }
 

@@ -105,15 +105,15 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         study.mesh_origin,
         study.mesh.describe()
     ))];
-    blocks.extend(reading::blocks(&study.understood));
+    if study.coarse.is_none() {
+        blocks.extend(verdict::blocks(study, estimates));
+    }
     blocks.push(Block::heading("Frames"));
     blocks.extend(frames(study, estimates));
     blocks.extend(refined::remark(study, estimates).map(Block::paragraph));
     let remarks = remarks(study, estimates).into_iter();
     blocks.extend(remarks.map(Block::paragraph));
-    if study.coarse.is_none() {
-        blocks.extend(verdict::blocks(study, estimates));
-    }
+    blocks.extend(reading::blocks(&study.understood));
     let last = estimates.last();
     let deviation = study.conditions.scale_deviation;
     let words = last.and_then(|last| scale_paragraph(last, deviation));

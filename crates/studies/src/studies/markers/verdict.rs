@@ -154,34 +154,40 @@ const EXPLANATION: &str = "Explained: the residuals of the markers are white noi
 
 /// The verdict on every frame, and what would explain the last one that is not.
 pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
+    let is_correlated = estimates
+        .iter()
+        .any(|one| one.verdict.correlation.is_some());
+    let has_reasons = estimates.iter().any(|one| !one.verdict.reasons.is_empty());
     let rows = study.frames_with(estimates).map(|(frame, estimate)| {
         let verdict = &estimate.verdict;
         let of = |words: fn(NoiseCorrelation) -> String| {
             verdict.correlation.map_or(String::new(), words)
         };
-        vec![
-            frame.number.to_string(),
-            verdict.answer.words().to_owned(),
-            of(|one| decimals(one.length, 4)),
-            of(|one| format!("{:.2}", one.share)),
-            of(|one| format!("{:.1}", one.independent)),
-            reasons(verdict).join("; "),
-        ]
+        let mut row = vec![frame.number.to_string(), verdict.answer.words().to_owned()];
+        if is_correlated {
+            row.extend([
+                of(|one| decimals(one.length, 4)),
+                of(|one| format!("{:.2}", one.share)),
+                of(|one| format!("{:.1}", one.independent)),
+            ]);
+        }
+        row.extend(has_reasons.then(|| reasons(verdict).join("; ")));
+        row
     });
-    let head = [
-        "frame",
-        "verdict",
-        "correlation length [mm]",
-        "correlated share of the variance",
-        "equivalent independent markers",
-        "reason",
-    ];
+    let mut head = vec!["frame", "verdict"];
+    if is_correlated {
+        head.extend([
+            "correlation length [mm]",
+            "correlated share of the variance",
+            "equivalent independent markers",
+        ]);
+    }
+    head.extend(has_reasons.then_some("reason"));
     let mut blocks = vec![
         Block::heading("Verdict"),
         Block::table(&head, rows),
         Block::paragraph(EXPLANATION),
     ];
-    blocks.extend(estimates.last().and_then(variogram));
     if let Some((frame, estimate)) = last_with(study, estimates, Answer::NotExplained) {
         blocks.push(Block::paragraph(format!(
             "What would improve the fit of frame {}, best first, each computed in one linearised step; the probability is that of \
@@ -199,6 +205,7 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         blocks.push(Block::table(&head, rows));
         blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));
     }
+    blocks.extend(estimates.last().and_then(variogram));
     blocks
 }
 

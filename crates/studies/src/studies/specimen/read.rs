@@ -250,7 +250,7 @@ fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
 }
 
 /// Load factors above this one are more likely percentages.
-const LARGE_FACTOR: f64 = 5.0;
+const LARGE_FACTOR: f64 = 10.0;
 
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
@@ -281,7 +281,7 @@ fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
         let hint = format!(
             "write \"{large} %\" if percent is meant; otherwise state larger loads instead"
         );
-        path.warning("factors", &message, &hint);
+        path.fault("factors", &message, &hint);
     }
     factors
 }

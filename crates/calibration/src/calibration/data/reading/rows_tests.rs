@@ -71,3 +71,22 @@ fn strains_that_may_be_in_percent_deserve_a_word() {
     let data = read(&(head.to_owned() + "1,0.1\n5,0.2\n"), &[]).unwrap();
     assert!(data.warnings.is_empty());
 }
+
+#[test]
+fn strains_that_begin_at_one_may_be_stretches() {
+    let told = |column: &str, first: &str| {
+        let text = format!(
+            "# test: uniaxial\n{column} [-],nominal_stress [MPa]\n{first}\n1.5,0.1\n2,0.2\n"
+        );
+        let warnings = read(&text, &[]).unwrap().warnings;
+        warnings
+            .iter()
+            .any(|one| one.message.contains("as stretches do"))
+    };
+    assert!(told("nominal_strain", "1,0") && told("nominal_strain", "1.02,0.003"));
+    assert!(
+        !told("stretch", "1,0")
+            && !told("nominal_strain", "1,0.05")
+            && !told("nominal_strain", "0,0")
+    );
+}
