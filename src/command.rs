@@ -337,12 +337,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let files = results_folder.finish()?;
     tell_files(&files);
     print_report(|| results.json())?;
-    let text = printed(
-        &results,
-        with_report.then_some("report.html"),
-        files.len(),
-        &folder,
-    );
+    let text = printed(&results, files.len(), &folder);
     conclude(&[results], &text)
 }
 

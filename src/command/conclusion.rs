@@ -29,14 +29,23 @@ pub fn conclude(results: &[Results], words: &str) -> Outcome {
 }
 
 /// The results for a terminal: the headline, where the page is, how far all agree, and where the files are.
-pub fn printed(results: &Results, page: Option<&str>, files: usize, folder: &Path) -> String {
-    let page = page.map(|page| format!("open {}\n", folder.join(page).display()));
+pub fn printed(results: &Results, files: usize, folder: &Path) -> String {
     let parts = [
         results.headline(),
-        page.unwrap_or_default(),
+        open_page(folder),
         results.agreement(),
         format!("{files} files in {}\n", folder.display()),
     ];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     parts.join("\n")
+}
+
+/// Where the page of a folder's results is; nothing where it has none.
+pub fn open_page(folder: &Path) -> String {
+    let page = folder.join("report.html");
+    if page.exists() {
+        format!("open {}\n", page.display())
+    } else {
+        String::new()
+    }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::conclusion::open_page;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
@@ -134,14 +135,12 @@ pub fn run(options: Options) -> Outcome {
             format!("{failed} of them without a solution somewhere, see the column `fault`; ")
         }
     };
-    let page = place.join("report.html");
-    let page = page.exists().then(|| format!("open {}\n", page.display()));
     print(&format!(
         "{} runs; {failures}{} files in {}\n{}",
         rows.len(),
         files.len(),
         place.display(),
-        page.unwrap_or_default()
+        open_page(&place)
     ))?;
     Ok(u8::from(failed > 0))
 }

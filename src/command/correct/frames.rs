@@ -54,7 +54,7 @@ pub fn finish(mut folder: ResultFolder, results: &Results) -> Result<(), Error> 
     let path = folder.path().to_owned();
     let files = folder.finish()?;
     tell_files(&files);
-    print(&printed(results, Some("report.html"), files.len(), &path))
+    print(&printed(results, files.len(), &path))
 }
 
 /// The estimates of frames, and the numbers of those that could not be corrected with the reasons.

@@ -146,7 +146,7 @@ impl Basis<'_> {
     fn try_out(&self, found: &NearestField, alternative: Alternative, model: &Model) -> Trial {
         Trial {
             residual_rms: model.residual_rms(self.rows, found),
-            ..self.reference.test(alternative, self.base, model)
+            ..self.reference.test(alternative, model)
         }
     }
 

@@ -78,10 +78,14 @@ pub struct Card {
 /// A file of a shipped card's name, beside a study or in its or this folder's `materials`, whose text is not the shipped one.
 fn overlooked(name: &str, folder: &Path, shipped: &str) -> Option<PathBuf> {
     let file = format!("{name}.toml");
-    let beside = [folder.join(&file), folder.join("materials").join(&file)];
-    let here = Path::new("materials").join(&file);
-    let mut all = beside.into_iter().chain([here]);
-    all.find(|path| std::fs::read_to_string(path).is_ok_and(|text| text != shipped))
+    let candidates = [
+        folder.join(&file),
+        folder.join("materials").join(&file),
+        Path::new("materials").join(&file),
+    ];
+    candidates
+        .into_iter()
+        .find(|path| std::fs::read_to_string(path).is_ok_and(|text| text != shipped))
 }
 
 /// What is needed to fit a card again.

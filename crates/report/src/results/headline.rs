@@ -114,7 +114,7 @@ impl Headline<'_> {
         }
         note.extend(self.state.note().map(|words| format!(" {words}")));
         if !self.listed().into_iter().all(|group| self.is_held(group)) {
-            note += " Forces are those of supports; a dash is a group without one.";
+            note += " Forces are those of supports; a dash is a group on which none acts.";
         }
         if let Some(gauge) = &self.state.gauge {
             note += &format!(" Gauge section: {}.", gauge.words);
@@ -210,7 +210,9 @@ impl Headline<'_> {
             let (at, groups) = &self.steps[step];
             let is_held = self.is_held(group);
             let figure = |((head, value), size): &(Column, f64)| match value(&groups[group]) {
-                _ if !is_held && !head.starts_with("displacement") => "–".to_owned(),
+                _ if !is_held && !DISPLACEMENTS.iter().any(|(own, _)| own == head) => {
+                    "–".to_owned()
+                }
                 small if small.abs() <= NOTHING * size => number(0.0),
                 value => number(value),
             };

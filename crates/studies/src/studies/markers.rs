@@ -235,10 +235,12 @@ impl MarkerStudy {
         failed: Vec<(usize, Error)>,
     ) -> Result<(), Error> {
         self.leave_out(failed)?;
-        self.mistake = self.mistake(estimates);
-        for estimate in estimates.iter_mut().filter(|_| self.mistake.is_some()) {
-            estimate.verdict.answer = Answer::NotExplained;
-            estimate.verdict.reasons.insert(0, Reason::Mistaken);
+        self.mistake = self.likely_mistake(estimates);
+        if self.mistake.is_some() {
+            for estimate in estimates {
+                estimate.verdict.answer = Answer::NotExplained;
+                estimate.verdict.reasons.insert(0, Reason::Mistaken);
+            }
         }
         Ok(())
     }

@@ -36,6 +36,8 @@ pub struct Model {
 /// be too short: an alternative counts where it is likelier than both let the equations be.
 pub struct Reference {
     noises: Vec<Noise>,
+    /// That of the equations; `None` where their parameters are not determined.
+    equations: Option<Likelihood>,
     /// Variance due to the mesh's own error.
     mesh: f64,
 }
@@ -179,7 +181,12 @@ impl Reference {
             let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
             MESH * rows.scaled(&error).norm_squared() / (2.0 * rows.chosen.len() as f64)
         });
-        Self { noises, mesh }
+        let equations = likeliest(&noises, base);
+        Self {
+            noises,
+            equations,
+            mesh,
+        }
     }
 
     /// The factor of one further column that fits best beside the equations.
@@ -197,8 +204,9 @@ impl Reference {
     }
 
     /// The reduction of the misfit of the equations by a model.
-    pub fn test(&self, alternative: Alternative, base: &Model, model: &Model) -> Trial {
-        let (Some(before), Some(after)) = (self.likelihood(base), self.likelihood(model)) else {
+    pub fn test(&self, alternative: Alternative, model: &Model) -> Trial {
+        let after = likeliest(&self.noises, model);
+        let (Some(before), Some(after)) = (&self.equations, after) else {
             return Trial::nothing(alternative);
         };
         let count = model.residual.len() as f64;
@@ -213,15 +221,12 @@ impl Reference {
             ..Trial::nothing(alternative)
         }
     }
+}
 
-    /// That of a model under the noise which makes it likeliest; `None` where its parameters are not determined.
-    fn likelihood(&self, model: &Model) -> Option<Likelihood> {
-        let all = self
-            .noises
-            .iter()
-            .filter_map(|noise| noise.likelihood(model));
-        all.min_by(|a, b| a.surprise.total_cmp(&b.surprise))
-    }
+/// The likelihood of a model under the noise which makes it likeliest; `None` where its parameters are not determined.
+fn likeliest(noises: &[Noise], model: &Model) -> Option<Likelihood> {
+    let all = noises.iter().filter_map(|noise| noise.likelihood(model));
+    all.min_by(|a, b| a.surprise.total_cmp(&b.surprise))
 }
 
 impl Noise {

@@ -26,7 +26,7 @@ impl Card {
     pub fn warnings(&self) -> Vec<Diagnostic> {
         let overlooked = self.overlooked.as_ref().map(|path| {
             let (name, path) = (&self.name, path.display());
-            let message = format!("`{name}` is the card that comes with gelbench; {path} has other values and is not read");
+            let message = format!("`{name}` is the card that comes with gelbench; {path} differs from it and is not read");
             Diagnostic::warning("", message).hint(format!("name the file with its ending to use it: \"{path}\""))
         });
         overlooked

@@ -107,7 +107,7 @@ impl Mistake {
 
 impl MarkerStudy {
     /// The mistake that a file seems to hold, if there is one.
-    pub(super) fn mistake(&self, estimates: &[FieldEstimate]) -> Option<Diagnostic> {
+    pub(super) fn likely_mistake(&self, estimates: &[FieldEstimate]) -> Option<Diagnostic> {
         let frames = self.frames_with(estimates);
         let doubtful = frames.filter(|(_, estimate)| may_be_mistaken(estimate));
         let (frame, estimate) =

@@ -113,12 +113,12 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks.extend(refined::remark(study, estimates).map(Block::paragraph));
     let remarks = remarks(study, estimates).into_iter();
     blocks.extend(remarks.map(Block::paragraph));
-    blocks.extend(reading::blocks(&study.understood));
     let last = estimates.last();
     let deviation = study.conditions.scale_deviation;
     let words = last.and_then(|last| scale_paragraph(last, deviation));
     let words = words.into_iter().chain(unknown_edge(study, estimates));
     blocks.extend(words.map(Block::paragraph));
+    blocks.extend(reading::blocks(&study.understood));
     if let Some(last) = last {
         blocks.push(Block::heading("Edges of the last frame"));
         blocks.extend(edges(study, last));

@@ -249,8 +249,8 @@ fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
     }
 }
 
-/// Load factors above this one are more likely percentages.
-const LARGE_FACTOR: f64 = 10.0;
+/// Load factors above the first may be percentages, above the second they hardly are anything else.
+const LARGE_FACTORS: [f64; 2] = [5.0, 10.0];
 
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
@@ -273,15 +273,20 @@ fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
             "such as [0.5, 1.0]; only a card with `[softening]` depends on the loading history";
         path.fault("factors", message, hint);
     }
-    if let Some(large) = factors.iter().find(|factor| **factor > LARGE_FACTOR) {
+    let largest = factors.iter().copied().fold(0.0, f64::max);
+    if largest > LARGE_FACTORS[0] {
         let message = format!(
-            "{large} means {} % of the stated loads and motions",
-            100.0 * large
+            "{largest} means {} % of the stated loads and motions",
+            100.0 * largest
         );
         let hint = format!(
-            "write \"{large} %\" if percent is meant; otherwise state larger loads instead"
+            "write \"{largest} %\" if percent is meant; otherwise state larger loads instead"
         );
-        path.fault("factors", &message, &hint);
+        if largest > LARGE_FACTORS[1] {
+            path.fault("factors", &message, &hint);
+        } else {
+            path.warning("factors", &message, &hint);
+        }
     }
     factors
 }

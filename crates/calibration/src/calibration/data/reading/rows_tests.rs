@@ -74,7 +74,7 @@ fn strains_that_may_be_in_percent_deserve_a_word() {
 
 #[test]
 fn strains_that_begin_at_one_may_be_stretches() {
-    let told = |column: &str, first: &str| {
+    let warned = |column: &str, first: &str| {
         let text = format!(
             "# test: uniaxial\n{column} [-],nominal_stress [MPa]\n{first}\n1.5,0.1\n2,0.2\n"
         );
@@ -83,10 +83,10 @@ fn strains_that_begin_at_one_may_be_stretches() {
             .iter()
             .any(|one| one.message.contains("as stretches do"))
     };
-    assert!(told("nominal_strain", "1,0") && told("nominal_strain", "1.02,0.003"));
+    assert!(warned("nominal_strain", "1,0") && warned("nominal_strain", "1.02,0.003"));
     assert!(
-        !told("stretch", "1,0")
-            && !told("nominal_strain", "1,0.05")
-            && !told("nominal_strain", "0,0")
+        !warned("stretch", "1,0")
+            && !warned("nominal_strain", "1,0.05")
+            && !warned("nominal_strain", "0,0")
     );
 }
