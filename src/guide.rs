@@ -4,6 +4,7 @@
 //!
 //! | page | for |
 //! |---|---|
+//! | [From the laboratory](laboratory) | "I have a tensile test", "a biaxial test", "displacements from image correlation": from the raw file to the figure |
 //! | [Keys](keys) | every key of studies and cards with unit, range and default |
 //! | [Plates](plates) | a clamped plate in all three models: the study file, the report, the figures |
 //! | [Specimens](specimens) | any shape, any mesh, supports and loads, adaptive refinement, paths that end early |
@@ -48,6 +49,8 @@ pub mod own_condition {}
 #[doc = include_str!("guide/own_study.md")]
 pub mod own_study {}
 
+#[doc = include_str!("guide/laboratory.md")]
+pub mod laboratory {}
 #[doc = include_str!("guide/keys.md")]
 pub mod keys {}
 #[doc = include_str!("guide/plates.md")]

@@ -94,7 +94,7 @@ pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Ve
 /// Fits, prints, and writes card, picture and figures.
 pub fn fit(arguments: FitArguments) -> Outcome {
     arguments.printed.choose();
-    let mut reading = arguments.reading.reading();
+    let mut reading = arguments.reading.reading()?;
     let terms = arguments.relaxation.as_deref().map(terms).transpose()?;
     let memory = memory(terms, arguments.softening);
     if memory != Memory::None {

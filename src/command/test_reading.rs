@@ -1,21 +1,26 @@
 //! What the command line says of test data.
 
+use std::path::Path;
+
 use clap::Args;
 
+use super::terminal::warn;
 use crate::calibration;
-use crate::document::Statements;
+use crate::document::file::MOST_OF_A_STUDY;
+use crate::document::{Statements, read_text};
+use crate::error::{Diagnostic, Error};
 
 /// What the files of test data do not say themselves.
 #[derive(Args)]
 #[command(next_help_heading = "What the files do not state")]
 pub struct ReadingArguments {
-    /// uniaxial, planar, equibiaxial, biaxial or compression
+    /// uniaxial, planar, equibiaxial, biaxial or compression; biaxial where strains are measured along two axes
     #[arg(long, allow_hyphen_values = true)]
     test: Option<String>,
-    /// nominal or cauchy
+    /// nominal, cauchy or second-piola-kirchhoff
     #[arg(long, allow_hyphen_values = true)]
     stress: Option<String>,
-    /// stretch, nominal or logarithmic
+    /// stretch, nominal, logarithmic or green-lagrange
     #[arg(long, allow_hyphen_values = true)]
     strain: Option<String>,
     /// Unit of the stress, or of the force
@@ -33,10 +38,10 @@ pub struct ReadingArguments {
     /// Cross-section of the specimen, if the file has forces
     #[arg(long, allow_hyphen_values = true)]
     area: Option<String>,
-    /// Length of the specimen, if the file has displacements
+    /// Length of the specimen, if the file has displacements and no size
     #[arg(long, allow_hyphen_values = true)]
     length: Option<String>,
-    /// Width of the specimen; with the thickness it replaces the cross-section
+    /// Width of the specimen; with the thickness it replaces the cross-section. Of a biaxial test, the length along the second axis
     #[arg(long, allow_hyphen_values = true)]
     width: Option<String>,
     /// Thickness of the specimen
@@ -61,6 +66,19 @@ pub struct ReadingArguments {
     /// without names, or of equal names, have numbers: strain=2,stress=1
     #[arg(long, value_name = "WHAT=COLUMN")]
     columns: Vec<String>,
+    /// Rows to use: lines of the file such as 12..340, or a column and its value such as SetName=Test
+    #[arg(long, value_name = "ROWS")]
+    rows: Option<String>,
+    /// Nominal strains to use, such as 0..0.3 or ..30%
+    #[arg(long, value_name = "LOW..HIGH", allow_hyphen_values = true)]
+    strain_range: Option<String>,
+    /// Columns whose sign is reversed: strain, stress or both
+    #[arg(long, value_name = "COLUMNS")]
+    flip: Option<String>,
+    /// Statements remembered under a name: written to presets/NAME.txt from the options if there is none, and taken from it otherwise;
+    /// options take precedence
+    #[arg(long, value_name = "NAME")]
+    preset: Option<String>,
     /// All files are one specimen, under several protocols; files of several specimens state `# specimen name: NAME` each
     #[arg(long)]
     one_specimen: bool,
@@ -68,7 +86,20 @@ pub struct ReadingArguments {
 
 impl ReadingArguments {
     /// What is said, by the keys of test data.
-    pub fn reading(self) -> Statements {
+    ///
+    /// # Errors
+    /// [`Error::Input`] and [`Error::Write`] of the preset.
+    pub fn reading(self) -> Result<Statements, Error> {
+        let preset = self.preset.clone();
+        let stated = self.stated();
+        match preset {
+            None => Ok(stated),
+            Some(name) => with_preset(&name, stated),
+        }
+    }
+
+    /// What the options say.
+    fn stated(self) -> Statements {
         let given = [
             self.test,
             self.stress,
@@ -88,10 +119,60 @@ impl ReadingArguments {
             self.preconditioned,
             Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
             self.one_specimen.then(|| "one".to_owned()),
+            self.rows,
+            self.strain_range,
+            self.flip,
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs
             .filter_map(|(key, value)| Some((key.to_owned(), value?)))
             .collect()
     }
+}
+
+/// Statements with those of a preset, which is a file of the lines that the head of a table may have; it is written from the statements where
+/// there is none.
+fn with_preset(name: &str, stated: Statements) -> Result<Statements, Error> {
+    let path = Path::new("presets").join(format!("{name}.txt"));
+    if !path.exists() {
+        if stated.is_empty() {
+            let hint = format!(
+                "give the options that it shall remember; it is written to {}",
+                path.display()
+            );
+            return Err(Error::input(format!("there is no preset {name} yet"), hint));
+        }
+        let lines = stated
+            .iter()
+            .map(|(key, value)| format!("# {key}: {value}\n"));
+        let text: String = lines.collect();
+        let written = std::fs::create_dir_all("presets").and_then(|()| std::fs::write(&path, text));
+        written.map_err(|fault| Error::write(&path, fault.to_string()))?;
+        warn(&[
+            Diagnostic::warning("", format!("the preset {} was written", path.display())).hint(
+                format!("--preset {name} states the same again; it is a text that can be edited"),
+            ),
+        ]);
+        return Ok(stated);
+    }
+    let text = read_text(&path, MOST_OF_A_STUDY, "a preset is a text")?;
+    let mut all = Statements::new();
+    for line in text.lines().filter(|line| !line.trim().is_empty()) {
+        let pair = line.trim_start_matches('#').split_once(':');
+        let known = pair.filter(|(key, _)| calibration::KEYS.contains(&key.trim()));
+        let Some((key, value)) = known else {
+            let hint = format!(
+                "lines such as `# area: 10 mm^2`, with one of {}",
+                calibration::KEYS.join(", ")
+            );
+            let message = format!(
+                "{}: `{line}` is no statement about test data",
+                path.display()
+            );
+            return Err(Error::input(message, hint));
+        };
+        all.insert(key.trim().to_owned(), value.trim().to_owned());
+    }
+    all.extend(stated);
+    Ok(all)
 }

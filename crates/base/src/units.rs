@@ -14,7 +14,7 @@ mod sheet_size;
 pub use figures::{decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
-pub use remedy::{bare_ratio, could_be_stretch_ratios};
+pub use remedy::{bare_ratio, could_be_stretch_ratios, symbol};
 pub use sheet_size::implausible_sheet;
 
 /// The kind of a physical quantity.
@@ -63,6 +63,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("um", Dimension::Length, 1e-3),
     ("µm", Dimension::Length, 1e-3),
     ("in", Dimension::Length, 25.4),
+    ("ft", Dimension::Length, 304.8),
     ("mm^2", Dimension::Area, 1.0),
     ("cm^2", Dimension::Area, 100.0),
     ("m^2", Dimension::Area, 1e6),
@@ -74,15 +75,29 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("gf", Dimension::Force, 9.80665e-3),
     ("kgf", Dimension::Force, 9.80665),
     ("lbf", Dimension::Force, 4.448_221_615_260_5),
+    ("ozf", Dimension::Force, 0.278_013_850_953_781_25),
+    ("cN", Dimension::Force, 1e-2),
+    ("dyn", Dimension::Force, 1e-5),
     ("MPa", Dimension::Stress, 1.0),
     ("kPa", Dimension::Stress, 1e-3),
     ("Pa", Dimension::Stress, 1e-6),
     ("GPa", Dimension::Stress, 1e3),
     ("N/mm^2", Dimension::Stress, 1.0),
     ("N/m^2", Dimension::Stress, 1e-6),
+    ("kN/m^2", Dimension::Stress, 1e-3),
+    ("MN/m^2", Dimension::Stress, 1.0),
+    ("N/cm^2", Dimension::Stress, 1e-2),
+    ("gf/mm^2", Dimension::Stress, 9.80665e-3),
+    ("kgf/cm^2", Dimension::Stress, 0.098_066_5),
+    ("kgf/mm^2", Dimension::Stress, 9.80665),
+    ("dyn/cm^2", Dimension::Stress, 1e-7),
+    ("hPa", Dimension::Stress, 1e-4),
+    ("mbar", Dimension::Stress, 1e-4),
     ("bar", Dimension::Stress, 0.1),
+    ("atm", Dimension::Stress, 0.101_325),
     ("mmHg", Dimension::Stress, 133.322_387_415e-6),
     ("psi", Dimension::Stress, 6.894_757_293_168e-3),
+    ("ksi", Dimension::Stress, 6.894_757_293_168),
     ("kg/m^3", Dimension::Density, 1e-12),
     ("g/cm^3", Dimension::Density, 1e-9),
     ("tonne/mm^3", Dimension::Density, 1.0),

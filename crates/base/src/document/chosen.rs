@@ -26,7 +26,7 @@ pub const TIMES: &str =
 
 /// Names that testing machines give to the displacement of their grip.
 pub const MACHINE_DISPLACEMENTS: &str = "tensile_extension compressive_extension tensile_displacement compressive_displacement axial_displacement crosshead \
-     crosshead_displacement crosshead_position position stroke disp standardweg traversenweg weg 位移";
+     crosshead_displacement crosshead_position position stroke disp standardweg traversenweg traversenweg_absolut weg 位移";
 
 /// Names that testing machines give to the force.
 pub const MACHINE_FORCES: &str = "tensile_load compressive_load tensile_force compressive_force axial_load axial_force standard_force standardkraft kraft 力 载荷";

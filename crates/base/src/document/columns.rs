@@ -1,49 +1,91 @@
 //! The columns of a table, and the lines above its rows that name them.
 
 use super::lines::is_name;
-use crate::units;
+use crate::units::{self, Dimension};
 
 /// A column's name and unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Column {
     /// Its name in lower case, with underscores for spaces; empty where the file has no names of columns.
     pub name: String,
-    /// The unit in brackets, if there is one.
+    /// The unit, in brackets or glued to the name, if there is one: the symbol of a known unit, any other text as it is written.
     pub unit: Option<String>,
     /// Its name as it is written, without the unit.
     pub written: String,
+    /// Name and unit as they are written.
+    head: String,
 }
 
 impl Column {
-    /// Name and unit of `nominal stress [MPa]` or `Stress (kPa)`.
+    /// Name and unit of `nominal stress [MPa]`, `Stress (kPa)`, `Force_N`, `Force/N` or `Kraft in N`.
     pub(super) fn new(field: &str) -> Self {
         let field = unquoted(field);
-        let (name, unit) = match field.split_once(['[', '(', '（', '［']) {
-            Some((name, unit)) => (name, Some(unit.trim_end_matches([']', ')', '）', '］']))),
-            None => (field, None),
-        };
+        let bracketed = field
+            .split_once(['[', '(', '（', '［'])
+            .map(|(name, unit)| (name, unit.trim_end_matches([']', ')', '）', '］'])));
+        let (name, unit) = bracketed
+            .or_else(|| glued(field))
+            .map_or((field, None), |(name, unit)| (name, Some(spelled(unit))));
         Self {
             name: plain_name(name),
-            unit: unit.map(|unit| unit.trim().to_owned()),
+            unit,
             written: name.trim().to_owned(),
+            head: field.to_owned(),
         }
     }
 
     /// Gives it the unit of a line below the names: brackets behind its name that hold no unit belong to the name.
     pub(super) fn add_unit(&mut self, unit: &str) {
-        if let Some(remark) = self.unit.take_if(|own| !is_unit(own) && is_unit(unit)) {
-            self.written = format!("{} ({remark})", self.written);
+        if self.unit.as_deref().is_some_and(|own| !is_unit(own)) && is_unit(unit) {
+            self.written.clone_from(&self.head);
+            self.unit = None;
         }
-        self.unit.get_or_insert(unit.to_owned());
+        if self.unit.is_none() {
+            self.head = format!("{} [{unit}]", self.head);
+            self.unit = Some(spelled(unit));
+        }
     }
 
     /// Name and unit as written.
     pub fn head(&self) -> String {
-        match &self.unit {
-            Some(unit) => format!("{} [{unit}]", self.written),
-            None => self.written.clone(),
-        }
+        self.head.clone()
     }
+}
+
+/// The symbol of a unit, however it is spelled; any other text as it is.
+fn spelled(unit: &str) -> String {
+    units::symbol(unit).unwrap_or(unit.trim()).to_owned()
+}
+
+/// Name and unit of a head without brackets, where its end is the unit of a length, force, stress, time or ratio: `XForce_mN`, `Stress.MPa`,
+/// `Time, s`, `Weg in mm`. Ends that may be words or indices (`in`, `min`, `_m`) are units behind a slash or ` in ` alone.
+fn glued(field: &str) -> Option<(&str, &str)> {
+    const WORDS: [&str; 5] = ["in", "m", "min", "h", "ft"];
+    let trimmed = field.trim_end_matches('.');
+    let ((name, unit), is_stated) = match (trimmed.rsplit_once(" in "), trimmed.rsplit_once('/')) {
+        (Some(parts), _) | (None, Some(parts)) if is_symbol(parts.1) => (parts, true),
+        _ => (trimmed.rsplit_once(['_', ' ', '.', ','])?, false),
+    };
+    let known = is_symbol(unit) && (is_stated || !WORDS.contains(&unit.trim()));
+    let name = name.trim_end_matches(['.', ',', ' ', '_']);
+    (known && !name.is_empty()).then_some((name, unit))
+}
+
+/// Whether the end of a head is a unit of what tests measure: one letter alone must be its symbol, or that of seconds.
+fn is_symbol(unit: &str) -> bool {
+    const MEASURED: [Dimension; 5] = [
+        Dimension::Length,
+        Dimension::Force,
+        Dimension::Stress,
+        Dimension::Time,
+        Dimension::Ratio,
+    ];
+    let unit = unit.trim();
+    let Some(symbol) = units::symbol(unit) else {
+        return false;
+    };
+    let is_exact = symbol == unit || unit == "S" || unit.chars().count() > 1;
+    is_exact && MEASURED.iter().any(|of| units::factor(symbol, *of).is_ok())
 }
 
 /// A name in the form of columns: in lower case, with underscores for spaces.
@@ -193,5 +235,38 @@ mod tests {
         assert_eq!(column.written, "disp.Horizontal Displacement U");
         assert_eq!(column.unit.as_deref(), Some("mm"));
         assert_eq!(Column::new("位移（mm）").unit.as_deref(), Some("mm"));
+    }
+
+    #[test]
+    fn units_may_be_glued_to_names() {
+        for (head, name, unit) in [
+            ("stress_MPa", "stress", Some("MPa")),
+            ("Force/N", "force", Some("N")),
+            ("XForce_mN", "xforce", Some("mN")),
+            ("Time_S", "time", Some("s")),
+            ("Displacement_um", "displacement", Some("um")),
+            ("Stress..MPa.", "stress", Some("MPa")),
+            ("Time, s", "time", Some("s")),
+            ("Kraft in N", "kraft", Some("N")),
+            ("Force kN", "force", Some("kN")),
+            ("Stress (KPa)", "stress", Some("kPa")),
+            ("strain_%", "strain", Some("%")),
+            ("Length/m", "length", Some("m")),
+            ("strain_min", "strain_min", None),
+            ("pressure_in", "pressure_in", None),
+            ("P1", "p1", None),
+            ("u_m", "u_m", None),
+            ("stress_n", "stress_n", None),
+            ("Load cell", "load_cell", None),
+            ("m", "m", None),
+        ] {
+            let column = Column::new(head);
+            assert_eq!(
+                (&*column.name, column.unit.as_deref()),
+                (name, unit),
+                "{head}"
+            );
+            assert_eq!(column.head(), head);
+        }
     }
 }

@@ -198,9 +198,17 @@ impl<'a> Head<'a> {
             Dimension::Ratio => "-",
             other => other.internal_unit(),
         };
-        let unit = self.setting(key, column.unit.as_deref())?;
+        // What cannot be read as a unit of this kind gives way to a statement.
+        let stated = self.setting(key, None)?;
+        let own = column.unit.as_deref();
+        let readable = own.filter(|own| stated.is_none() || units::factor(own, dimension).is_ok());
+        let unit = match (&stated, readable) {
+            (Some(stated), Some(own)) if units::symbol(stated) == Some(own) => Some(own.to_owned()),
+            _ => self.setting(key, readable)?,
+        };
         let unit = unit.ok_or_else(|| self.missing(key, example))?;
-        units::factor(&unit, dimension).map_err(|fault| {
+        let symbol = units::symbol(&unit).unwrap_or(&unit);
+        units::factor(symbol, dimension).map_err(|fault| {
             let hint = fault.remedy(&unit, dimension);
             let place = self.table.columns_place.clone();
             self.fault(place, format!("the {key} {fault}"), &hint)

@@ -241,6 +241,13 @@ impl Table {
         }
     }
 
+    /// The text of a field, as it is written in the file.
+    pub fn field(&self, row: usize, column: usize) -> Option<String> {
+        let text = &self.source.text[self.rows[row].1.clone()];
+        let record = self.records(text).records().next()?.ok()?;
+        record.get(column).map(|field| unquoted(field).to_owned())
+    }
+
     /// The first column with this name.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)

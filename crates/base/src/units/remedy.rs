@@ -1,6 +1,6 @@
 //! What to write instead of a text that is no quantity.
 
-use super::{Dimension, QuantityFault, UNITS, number_length, parse};
+use super::{Dimension, QuantityFault, UNITS, normalised, number_length, parse};
 use crate::error::nearest;
 
 /// Other names and spellings of units, in lower case.
@@ -26,6 +26,7 @@ const SPELLINGS: &[(&str, &[&str])] = &[
         ],
     ),
     ("in", &["inch", "inches", "\"", "″", "zoll"]),
+    ("ft", &["foot", "feet"]),
     ("mm^2", &["mm2", "sqmm", "square mm"]),
     ("cm^2", &["cm2", "sqcm", "square cm"]),
     ("m^2", &["m2"]),
@@ -33,6 +34,9 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("gf", &["grams-force", "gram-force", "pond"]),
     ("µN", &["un", "micronewton", "micronewtons"]),
     ("kgf", &["kilogram-force", "kilopond", "kp"]),
+    ("kgf/cm^2", &["kp/cm^2", "kg/cm^2"]),
+    ("dyn", &["dyne", "dynes"]),
+    ("dyn/cm^2", &["dyne/cm^2"]),
     ("K", &["kelvin"]),
     ("mol/L", &["mol/l", "mol/dm^3", "mol/dm3", "m"]),
     ("mmol/L", &["mmol/l", "mm"]),
@@ -95,6 +99,31 @@ impl QuantityFault {
             }
         }
     }
+}
+
+/// The symbol of a unit in a table's head, however it is spelled: `KPa`, `Mpa`, `sec`, `Newton`, `kN/m²`. `None` where it is not known, or where
+/// capitals decide: `mPa` is no unit of this field, a thousandth of a Pa.
+pub fn symbol(unit: &str) -> Option<&'static str> {
+    let text = normalised(unit.trim());
+    let exact = UNITS.iter().find(|(known, ..)| *known == text);
+    if let Some((known, ..)) = exact {
+        return Some(known);
+    }
+    if text.starts_with("mPa") || text.starts_with("MN") && !text.contains('/') {
+        return None;
+    }
+    let lower = text.to_lowercase();
+    let in_other_case = UNITS
+        .iter()
+        .find(|(known, ..)| known.to_lowercase() == lower);
+    let spelled = || {
+        SPELLINGS
+            .iter()
+            .find(|(_, spellings)| spellings.contains(&&*lower))
+    };
+    in_other_case
+        .map(|(known, ..)| *known)
+        .or_else(|| spelled().map(|(known, _)| *known))
 }
 
 /// The unit that another spelling stands for, else the one that was probably meant.
@@ -162,6 +191,26 @@ pub fn could_be_stretch_ratios(bare: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_of_heads_are_known_however_they_are_spelled() {
+        for (unit, expected) in [
+            ("KPa", Some("kPa")),
+            ("Mpa", Some("MPa")),
+            ("mPa", None),
+            ("MN", None),
+            ("MN/m2", Some("MN/m^2")),
+            ("kgf/cm^2", Some("kgf/cm^2")),
+            ("Sec", Some("s")),
+            ("S", Some("s")),
+            ("newton", Some("N")),
+            ("MM", Some("mm")),
+            ("MPa·s", Some("MPa·s")),
+            ("furlong", None),
+        ] {
+            assert_eq!(symbol(unit), expected, "{unit}");
+        }
+    }
 
     #[test]
     fn ratios_from_rest_on_could_be_either() {

@@ -84,6 +84,7 @@ impl<'a> Choice<'a> {
         if columns.iter().all(|column| column.name.is_empty()) {
             choice.order();
         } else {
+            choice.sizes();
             for kind in [Kind::Strain, Kind::Stress, Kind::Time] {
                 choice.of_names(kind);
             }
@@ -96,6 +97,19 @@ impl<'a> Choice<'a> {
         of_kind(&self.roles, kind).next().is_some()
     }
 
+    /// The columns of the specimen's size, where its length is not stated.
+    fn sizes(&mut self) {
+        if matches!(self.head.text("length"), Ok(Some(_))) {
+            return;
+        }
+        for column in 0..self.roles.len() {
+            let named = self.named(Kind::Size, column);
+            if let Some(own) = named.filter(|own| has_numbers(self.head, own)) {
+                self.roles[column] = own.role;
+            }
+        }
+    }
+
     /// Chooses by the names of columns.
     fn of_names(&mut self, kind: Kind) {
         if self.has(kind) {
@@ -105,12 +119,8 @@ impl<'a> Choice<'a> {
         let mut named: Vec<Named> = columns
             .filter_map(|column| self.named(kind, column))
             .collect();
-        let has_numbers = |own: &Named| {
-            let mut values = values(self.head, (own.column, 1.0)).into_iter();
-            values.any(f64::is_finite)
-        };
-        if named.iter().any(has_numbers) {
-            named.retain(has_numbers);
+        if named.iter().any(|own| has_numbers(self.head, own)) {
+            named.retain(|own| has_numbers(self.head, own));
         }
         let name = kind.name();
         if self.is_one(kind, &named) {
@@ -154,10 +164,19 @@ impl<'a> Choice<'a> {
 
     /// Chooses one of the columns that may be the same quantity; where others differ from it, the user is asked.
     fn of_candidates(&mut self, quantity: &str, candidates: &[Named]) {
-        let Some(first) = candidates
-            .iter()
-            .min_by_key(|own| (own.naming, own.role.numbered, own.column))
-        else {
+        let readings = Readings {
+            head: self.head,
+            roles: &self.roles,
+        };
+        // What needs a dimension that is not stated gives way to what can be read.
+        let mut possible = candidates.to_vec();
+        if candidates.iter().any(|own| readings.are_possible(own)) {
+            possible.retain(|own| readings.are_possible(own));
+        }
+        let Some(first) = possible.iter().min_by_key(|own| {
+            let is_measured = readings.is_measured(own);
+            (!is_measured, own.naming, own.role.numbered, own.column)
+        }) else {
             return;
         };
         self.roles[first.column] = first.role;
@@ -165,16 +184,16 @@ impl<'a> Choice<'a> {
             head: self.head,
             roles: &self.roles,
         };
-        let mut others = candidates.iter().filter(|own| own.column != first.column);
+        let mut others = possible.iter().filter(|own| own.column != first.column);
         if others.all(|other| readings.agree(first, other)) {
             return;
         }
-        let each = candidates.iter();
+        let each = possible.iter();
         let options = each.map(|own| self.option(&[(quantity, own.column)]));
         let message = format!(
             "{}: {} columns may be the {}, and they do not agree",
             self.head.table.source.name,
-            candidates.len(),
+            possible.len(),
             first.role.kind.name()
         );
         let question = question(message, options.collect());
@@ -269,6 +288,12 @@ impl<'a> Choice<'a> {
             head
         }
     }
+}
+
+/// Whether a column has numbers at all.
+fn has_numbers(head: &Head, own: &Named) -> bool {
+    let mut values = values(head, (own.column, 1.0)).into_iter();
+    values.any(f64::is_finite)
 }
 
 /// The question which of some readings is meant.

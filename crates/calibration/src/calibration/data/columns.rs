@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use super::record::Machine;
-use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, of_kind};
+use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, SECOND_PIOLA_KIRCHHOFF, of_kind};
 use super::table_reading::{ColumnReading, TableReading};
 use super::test_data::StrainColumn;
 use crate::document::{Column, ColumnRole, Faulty, Head};
 use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::units::Dimension;
+use crate::units::{self, Dimension};
 
 /// A test begins at a stretch of 1; a test that begins beyond this factor of it may be in percent.
 const AT_REST: f64 = 10.0;
@@ -17,19 +17,19 @@ const AT_REST: f64 = 10.0;
 /// The factor from a column of strains or displacements to a ratio; stretches without a unit are plain ratios where they begin near 1.
 pub fn strain_factor(
     head: &Head,
-    column: usize,
-    is_displacement: bool,
+    roles: &[Role],
+    (column, role): (usize, &Role),
     measure: StrainColumn,
 ) -> Faulty<f64> {
     let named = &head.table.columns[column];
-    if is_displacement {
+    if role.measure == Some(DISPLACEMENT) {
         let unit = head.factor("strain unit", named, Dimension::Length)?;
-        return Ok(unit / head.required_quantity("length", Dimension::Length)?);
+        return Ok(unit / length(head, roles, role.axis())?);
     }
     let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
     let begins_at_rest = || values.fold(f64::INFINITY, f64::min) < AT_REST;
-    let unit = head.setting("strain unit", named.unit.as_deref())?;
-    if unit.is_none() && measure == StrainColumn::Stretch && begins_at_rest() {
+    let is_bare = named.unit.is_none() && head.setting("strain unit", None)?.is_none();
+    if is_bare && measure == StrainColumn::Stretch && begins_at_rest() {
         Ok(1.0)
     } else {
         head.factor("strain unit", named, Dimension::Ratio)
@@ -37,10 +37,13 @@ pub fn strain_factor(
 }
 
 /// The factor from a column of stresses or forces to MPa.
-pub fn stress_factor(head: &Head, column: usize, is_force: bool) -> Faulty<f64> {
+pub fn stress_factor(head: &Head, roles: &[Role], (column, role): (usize, &Role)) -> Faulty<f64> {
     let named = &head.table.columns[column];
-    if is_force {
-        Ok(head.factor("stress unit", named, Dimension::Force)? / area(head)?)
+    if role.measure == Some(FORCE) {
+        Ok(
+            head.factor("stress unit", named, Dimension::Force)?
+                / area(head, roles, role.numbered)?,
+        )
     } else {
         head.factor("stress unit", named, Dimension::Stress)
     }
@@ -49,28 +52,44 @@ pub fn stress_factor(head: &Head, column: usize, is_force: bool) -> Faulty<f64> 
 /// Column and factor to a ratio, or to MPa.
 pub type Scaled = (usize, f64);
 
-/// Column, factor to MPa and axis of a stress.
-pub type StressColumn = (usize, f64, usize);
+/// A column of stresses.
+#[derive(Clone, Copy, Debug)]
+pub struct StressColumn {
+    /// Its number.
+    pub column: usize,
+    /// The factor to MPa.
+    pub factor: f64,
+    /// The axis of the stress.
+    pub axis: usize,
+    /// Whether it is the second Piola-Kirchhoff stress S, which the stretch turns into the nominal one, P = λ S.
+    pub is_second: bool,
+}
+
+/// What a statement on the measure of stresses means: the measure as data have it, and whether it is the second Piola-Kirchhoff stress.
+const STRESS_MEASURES: [(&str, (StressMeasure, bool)); 3] = [
+    ("nominal", (StressMeasure::Nominal, false)),
+    ("cauchy", (StressMeasure::Cauchy, false)),
+    (SECOND_PIOLA_KIRCHHOFF, (StressMeasure::Nominal, true)),
+];
 
 /// The measure of the strains, and the columns with their factors to a ratio along both axes.
 pub fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Scaled>; 2])> {
-    let Some((first, role)) = of_kind(roles, Kind::Strain).min_by_key(|(_, role)| role.axis())
-    else {
+    let Some(first) = of_kind(roles, Kind::Strain).min_by_key(|(_, role)| role.axis()) else {
         let names = "`stretch`, `nominal_strain` or `logarithmic_strain`";
         return Err(no_column(head, "strains", names));
     };
-    let displaced = role.measure == Some(DISPLACEMENT);
-    let measure = if displaced {
+    let measure = if first.1.measure == Some(DISPLACEMENT) {
         StrainColumn::Strain(StrainMeasure::Nominal)
     } else {
-        head.choice("strain measure", role.measure, &StrainColumn::NAMES)?
+        head.choice("strain measure", first.1.measure, &StrainColumn::NAMES)?
     };
-    let scaled = |column: usize| -> Faulty<Scaled> {
-        Ok((column, strain_factor(head, column, displaced, measure)?))
+    let scaled = |own: (usize, &Role)| -> Faulty<Scaled> {
+        Ok((own.0, strain_factor(head, roles, own, measure)?))
     };
+    let along = scaled(first)?;
     let across = of_kind(roles, Kind::Strain).find(|(_, role)| role.axis() == 1);
-    let across = across.map(|(column, _)| scaled(column)).transpose()?;
-    Ok((measure, [Some(scaled(first)?), across]))
+    let across = across.map(scaled).transpose()?;
+    Ok((measure, [Some(along), across]))
 }
 
 /// The measure of the stresses, and their columns.
@@ -79,11 +98,10 @@ pub fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<Stres
         let names = "`nominal_stress`, `cauchy_stress` or `force`";
         return Err(no_column(head, "stresses", names));
     };
-    let loaded = role.measure == Some(FORCE);
-    let measure = if loaded {
-        StressMeasure::Nominal
+    let (measure, is_second) = if role.measure == Some(FORCE) {
+        (StressMeasure::Nominal, false)
     } else {
-        head.choice("stress measure", role.measure, &StressMeasure::NAMES)?
+        head.choice("stress measure", role.measure, &STRESS_MEASURES)?
     };
     let direction = match head.setting("direction", None)?.as_deref() {
         None | Some("1") => 0,
@@ -95,30 +113,67 @@ pub fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<Stres
         }
     };
     let mut columns = Vec::new();
-    for (column, role) in of_kind(roles, Kind::Stress) {
-        let factor = stress_factor(head, column, loaded)?;
-        columns.push((column, factor, role.axis().max(direction)));
+    for own in of_kind(roles, Kind::Stress) {
+        columns.push(StressColumn {
+            column: own.0,
+            factor: stress_factor(head, roles, own)?,
+            axis: own.1.axis().max(direction),
+            is_second,
+        });
     }
     Ok((measure, columns))
 }
 
-/// The cross-section of the specimen in mm²: the stated one, or width times thickness.
-pub fn area(head: &Head) -> Faulty<f64> {
+/// The length of the specimen at rest along an axis in mm: `length`, or `width` along the second axis, where it is stated; otherwise the size
+/// in the first row less the displacement there.
+pub fn length(head: &Head, roles: &[Role], axis: usize) -> Faulty<f64> {
+    let key = ["length", "width"][axis];
+    match (
+        head.quantity(key, Dimension::Length)?,
+        size_at_rest(head, roles, axis),
+    ) {
+        (Some(stated), _) => Ok(stated),
+        (None, Some(size)) => Ok(size),
+        (None, None) => Err(head.missing(key, "2 mm")),
+    }
+}
+
+/// The size of the specimen along an axis before its first displacement in mm, where columns state both.
+fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
+    let first = |kind: Kind, measure: Option<&str>| {
+        let mut own = of_kind(roles, kind);
+        let (column, _) = own.find(|(_, role)| role.axis() == axis && role.measure == measure)?;
+        let column_head = &head.table.columns[column];
+        let factor = units::factor(column_head.unit.as_deref()?, Dimension::Length).ok()?;
+        Some(factor * head.table.rows.first()?.0[column])
+    };
+    let size = first(Kind::Size, None)? - first(Kind::Strain, Some(DISPLACEMENT)).unwrap_or(0.0);
+    Some(size).filter(|size| *size > 0.0)
+}
+
+/// The cross-section of the specimen in mm²: the stated one, or width times thickness; of a specimen that is pulled along two axes, the
+/// thickness times its length along the other axis.
+pub fn area(head: &Head, roles: &[Role], axis: Option<usize>) -> Faulty<f64> {
     let stated = head.quantity("area", Dimension::Area)?;
-    let sides = ["width", "thickness"].map(|key| head.quantity(key, Dimension::Length));
-    match (stated, sides) {
-        (Some(area), [Ok(None), Ok(None)]) => Ok(area),
-        (None, [Ok(None), Ok(None)]) => {
+    let thickness = head.quantity("thickness", Dimension::Length)?;
+    let across = match axis {
+        Some(axis) => head.quantity(["width", "length"][axis], Dimension::Length)?,
+        None => head.quantity("width", Dimension::Length)?,
+    };
+    match (stated, thickness, across) {
+        (Some(area), None, _) if axis.is_some() || across.is_none() => Ok(area),
+        (None, None, None) => {
             let mut fault = head.missing("area", "20 mm^2");
             let hint = fault.hint.take().unwrap_or_default();
             fault.hint = Some(format!("{hint}; or width and thickness of the specimen"));
             Err(fault)
         }
-        (None, [width, thickness]) => {
-            let side = |side: Option<f64>, key| side.ok_or_else(|| head.missing(key, "2 mm"));
-            Ok(side(width?, "width")? * side(thickness?, "thickness")?)
+        (None, None, Some(_)) => Err(head.missing("thickness", "2 mm")),
+        (None, Some(thickness), Some(across)) => Ok(thickness * across),
+        (None, Some(thickness), None) => {
+            Ok(thickness * length(head, roles, 1 - axis.unwrap_or(0))?)
         }
-        (Some(_), _) => {
+        (Some(_), ..) => {
             let message = "the area is stated, and width or thickness too";
             Err(head.fault(head.place("area"), message, "state the area, or both sides"))
         }
@@ -138,8 +193,8 @@ pub fn machine(head: &Head, roles: &[Role]) -> Faulty<Option<Machine>> {
         return Ok(None);
     }
     Ok(Some(Machine {
-        length: head.required_quantity("length", Dimension::Length)?,
-        area: area(head)?,
+        length: length(head, roles, 0)?,
+        area: area(head, roles, None)?,
         presses: head.setting("test", None)?.as_deref() == Some("compression"),
     }))
 }
@@ -181,11 +236,22 @@ pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
     column.unit.clone().or_else(|| said().ok().flatten())
 }
 
+/// A dimension of the specimen without the rounding of its arithmetic.
+fn rounded(value: f64) -> f64 {
+    (1e9 * value).round() / 1e9
+}
+
 impl TableReading {
     /// What some roles say, and the rows that are fitted.
     pub fn of(head: &Head, roles: &[Role], rows: &Range<usize>) -> Self {
         let mut found = Self::default();
-        for kind in [Kind::Strain, Kind::Stress, Kind::Time, Kind::Other] {
+        for kind in [
+            Kind::Strain,
+            Kind::Stress,
+            Kind::Time,
+            Kind::Size,
+            Kind::Other,
+        ] {
             for (index, role) in of_kind(roles, kind) {
                 let column = &head.table.columns[index];
                 let name = if column.written.is_empty() {
@@ -197,7 +263,7 @@ impl TableReading {
                     Kind::Other => found.unread.push(name),
                     _ => found
                         .columns
-                        .push(ColumnReading::of(head, (column, name), role)),
+                        .push(ColumnReading::of(head, roles, (column, name), role)),
                 }
             }
         }
@@ -211,19 +277,25 @@ impl TableReading {
 }
 
 impl ColumnReading {
-    fn of(head: &Head, (column, name): (&Column, String), role: &Role) -> Self {
+    fn of(head: &Head, roles: &[Role], (column, name): (&Column, String), role: &Role) -> Self {
         let key = format!("{} measure", role.kind.name());
         let said = || head.setting(&key, None).ok().flatten();
         let measure = role.measure.map(str::to_owned).or_else(said);
         let measure = measure.unwrap_or_default();
-        let length = || head.quantity("length", Dimension::Length).ok().flatten();
         let divided_by = match &*measure {
-            DISPLACEMENT => length().map(|length| format!("{length} mm")),
-            FORCE => area(head).ok().map(|area| format!("{area} mm²")),
+            DISPLACEMENT => length(head, roles, role.axis())
+                .ok()
+                .map(|length| format!("{} mm", rounded(length))),
+            FORCE => area(head, roles, role.numbered)
+                .ok()
+                .map(|area| format!("{} mm²", rounded(area))),
             _ => None,
         };
         let quantity = match (&*measure, role.kind) {
             (_, Kind::Time) => "time".to_owned(),
+            (_, Kind::Size) => "size at rest".to_owned(),
+            ("green-lagrange", _) => "Green-Lagrange strain".to_owned(),
+            (SECOND_PIOLA_KIRCHHOFF, _) => "second Piola-Kirchhoff stress".to_owned(),
             (DISPLACEMENT | FORCE | "stretch", _) => measure,
             ("cauchy", kind) => format!("Cauchy {}", kind.name()),
             (measure, kind) => format!("{measure} {}", kind.name()),

@@ -86,6 +86,7 @@ impl Conversion {
         let strain = match self.strain {
             StrainColumn::Stretch => "stretch".to_owned(),
             StrainColumn::Strain(measure) => format!("{}_strain", measure.name()),
+            StrainColumn::GreenLagrange => "green_lagrange_strain".to_owned(),
         };
         let numbered = |name: &str, unit: &str, axes: &[usize]| -> Vec<String> {
             match axes {

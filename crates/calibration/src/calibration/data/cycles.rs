@@ -198,8 +198,16 @@ fn between_holds(values: &[f64], pair: &[usize]) -> (Range<usize>, usize) {
 
 /// The warning about rows with strains that turn back: those of loading alone do not. A user who states which cycles are taken knows that
 /// there are some.
-pub fn reversals(head: &Head, rows: &[(usize, f64)]) -> Option<Diagnostic> {
-    let changes = rows.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+pub fn reversals(head: &Head, test: Test, rows: &[(usize, f64)]) -> Option<Diagnostic> {
+    /// A protocol begins with a strain below this share of the largest.
+    const BEGINS: f64 = 0.05;
+    let far = farthest(rows.iter().map(|(_, strain)| *strain)).abs();
+    // The next protocol of a biaxial test begins at rest: no specimen was unloaded within one row.
+    let begins =
+        |pair: &[(usize, f64)]| pair[1].1.abs() <= BEGINS * far && pair[0].1.abs() > 0.5 * far;
+    let changes = rows
+        .windows(2)
+        .filter(|pair| pair[0].1 != pair[1].1 && !(test == Test::Biaxial && begins(pair)));
     let changes: Vec<(usize, bool)> = changes
         .map(|pair| (pair[1].0, pair[1].1 > pair[0].1))
         .collect();

@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
+use super::gross_rows::gross_rows;
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
-use super::roles::{Role, check_columns};
+use super::roles::{Kind, Role, check_columns, of_kind};
 use super::rounding::WrittenColumn;
 use super::table_reading::TableReading;
 use super::test_data::{Loaded, Observation, StrainColumn, Test, TestData, Times};
@@ -16,6 +17,16 @@ use crate::error::{Diagnostic, Error};
 use crate::material::parameters::StressMeasure;
 use crate::statistics::farthest;
 use crate::units::Dimension;
+
+/// The key of the columns whose sign is reversed.
+pub const FLIP: &str = "flip";
+
+/// The columns whose sign is reversed.
+const FLIPS: [(&str, [f64; 2]); 3] = [
+    ("strain", [-1.0, 1.0]),
+    ("stress", [1.0, -1.0]),
+    ("both", [-1.0, -1.0]),
+];
 
 /// The meaning of the columns.
 pub struct Layout {
@@ -39,13 +50,20 @@ impl Layout {
     /// Determines the meaning of the columns; all missing information is reported at once.
     pub fn new(head: &Head) -> Result<Self, Vec<Diagnostic>> {
         let mut faults = Faults::default();
-        let test = faults.of(head.choice("test", None, &Test::NAMES));
+        let stated = head.choice("test", None, &Test::NAMES);
         let Choice {
             roles,
             questions,
             of_times,
             ..
-        } = Choice::of(head, test);
+        } = Choice::of(head, stated.as_ref().ok().copied());
+        // Strains that are measured along two axes are those of a biaxial test, whatever its ratio.
+        let is_stated = !matches!(head.setting("test", None), Ok(None));
+        let strains_across = of_kind(&roles, Kind::Strain).filter(|(_, role)| role.axis() == 1);
+        let test = match strains_across.count() {
+            1 if !is_stated => Some(Test::Biaxial),
+            _ => faults.of(stated),
+        };
         faults.0.extend(questions);
         let strains = faults.of(strains(head, &roles));
         let stresses = faults.of(stresses(head, &roles));
@@ -56,6 +74,13 @@ impl Layout {
             return Err(faults.0);
         };
         faults.of(check_columns(head, &roles, test));
+        let [turn_strain, turn_stress] = faults.of(flip(head, strain)).unwrap_or([1.0; 2]);
+        let strains = strains.map(|own| own.map(|(column, factor)| (column, turn_strain * factor)));
+        let turned = |own: StressColumn| StressColumn {
+            factor: turn_stress * own.factor,
+            ..own
+        };
+        let stresses = stresses.into_iter().map(turned).collect();
         let ratio = (test == Test::Biaxial && strains[1].is_none()).then(|| strain_ratio(head));
         let strain_ratio = ratio.and_then(|ratio| faults.of(ratio));
         if !faults.0.is_empty() {
@@ -80,7 +105,33 @@ impl Layout {
     /// The columns that are read.
     pub fn columns(&self) -> impl Iterator<Item = usize> {
         let strains = self.strains.iter().flatten().map(|(column, _)| *column);
-        strains.chain(self.stresses.iter().map(|(column, ..)| *column))
+        strains.chain(self.stresses.iter().map(|own| own.column))
+    }
+
+    /// λ − 1 along the first axis in a row, without any zero found in the record.
+    pub fn strain_as_written(&self, row: &[f64]) -> f64 {
+        self.strains_of(row, &Part::whole(0))[0]
+    }
+
+    /// Those of some rows at which the stress of an axis leaves the curve of its neighbours.
+    pub fn gross_rows(&self, table: &Table, rows: &[usize]) -> Vec<usize> {
+        let row = |row: &usize| &table.rows[*row].0;
+        let strains: Vec<f64> = rows
+            .iter()
+            .map(|own| self.strain_as_written(row(own)))
+            .collect();
+        let mut gross = Vec::new();
+        for own in &self.stresses {
+            let stresses: Vec<f64> = rows.iter().map(|at| row(at)[own.column]).collect();
+            gross.extend(
+                gross_rows(&strains, &stresses)
+                    .into_iter()
+                    .map(|at| rows[at]),
+            );
+        }
+        gross.sort_unstable();
+        gross.dedup();
+        gross
     }
 
     /// The strains of an observation along an axis: the strain across a strip is not known.
@@ -110,11 +161,18 @@ impl Layout {
                 along.push((index, first));
             }
             let observations = if is_kept { &mut kept } else { &mut left_out };
-            for (column, factor, axis) in &self.stresses {
+            for own in &self.stresses {
+                let strains = self.along(own.axis, [first, second]);
+                let stress = part.stress(row[own.column] * own.factor);
+                let stretch = if own.is_second {
+                    1.0 + strains[own.axis]
+                } else {
+                    1.0
+                };
                 observations.push(Observation {
-                    strains: self.along(*axis, [first, second]),
-                    axis: *axis,
-                    stress: part.stress(row[*column] * factor),
+                    strains,
+                    axis: own.axis,
+                    stress: stretch * stress,
                 });
             }
         }
@@ -125,7 +183,7 @@ impl Layout {
         let widest = [0, 1].map(|axis| farthest(observations.iter().map(|one| one.strains[axis])));
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
         let warnings = [
-            reversals(head, &along),
+            reversals(head, self.test, &along),
             implausible(head, self.strain, &observations),
             at_rest,
         ];
@@ -133,7 +191,7 @@ impl Layout {
             name: table.source.name.clone(),
             test: self.test,
             stress_measure: self.stress_measure,
-            axes: self.stresses.iter().map(|(.., axis)| *axis).collect(),
+            axes: self.stresses.iter().map(|own| own.axis).collect(),
             drawn_axis: usize::from(widest[1].abs() > widest[0].abs()),
             loaded: Loaded::of(observations.iter().flat_map(|one| one.strains)),
             observations,
@@ -157,8 +215,8 @@ impl Layout {
         let rows = &head.table.rows;
         let plain = Part::whole(rows.len());
         let strains = rows.iter().map(|(row, _)| self.strains_of(row, &plain)[0]);
-        let (column, factor, _) = self.stresses[0];
-        let stresses = rows.iter().map(|(row, _)| row[column] * factor);
+        let first = self.stresses[0];
+        let stresses = rows.iter().map(|(row, _)| row[first.column] * first.factor);
         let [strains, stresses] = [strains.collect::<Vec<_>>(), stresses.collect()];
         Part::of(head, self.machine, &strains, &stresses)
     }
@@ -185,7 +243,7 @@ impl Layout {
     /// The rounding of strains and stresses; zero for strains that were commanded.
     fn rounding(&self, table: &Table, rows: &Range<usize>) -> [f64; 2] {
         let own = |column: usize| WrittenColumn::of(table, column, rows);
-        let measured = own(self.stresses[0].0);
+        let measured = own(self.stresses[0].column);
         let of_strain = |(column, factor): &Scaled| {
             let read = |value: f64| self.strain.to_nominal(value * factor);
             let strains = own(*column);
@@ -196,7 +254,7 @@ impl Layout {
             }
         };
         let stresses = self.stresses.iter();
-        let stresses = stresses.map(|(column, factor, _)| own(*column).rounding(&|y| y * factor));
+        let stresses = stresses.map(|stress| own(stress.column).rounding(&|y| y * stress.factor));
         let strains = self.strains.iter().flatten().map(of_strain);
         [strains.fold(0.0, f64::max), stresses.fold(0.0, f64::max)]
     }
@@ -220,6 +278,23 @@ impl Layout {
         };
         [first, second]
     }
+}
+
+/// The signs of strains and stresses that are stated.
+fn flip(head: &Head, measure: StrainColumn) -> Faulty<[f64; 2]> {
+    if head.setting(FLIP, None)?.is_none() {
+        return Ok([1.0; 2]);
+    }
+    let signs = head.choice(FLIP, None, &FLIPS)?;
+    if signs[0] < 0.0 && measure == StrainColumn::Stretch {
+        let message = "a stretch has no sign that could be reversed";
+        return Err(head.fault(
+            head.place(FLIP),
+            message,
+            "--flip stress reverses the stresses",
+        ));
+    }
+    Ok(signs)
 }
 
 /// Missing information and faults, each once.

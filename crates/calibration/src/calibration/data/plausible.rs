@@ -100,7 +100,7 @@ pub fn implausible(
     const MOST: f64 = 20.0;
     let about = match strain {
         StrainColumn::Stretch => "stretches",
-        StrainColumn::Strain(_) => "strains",
+        StrainColumn::Strain(_) | StrainColumn::GreenLagrange => "strains",
     };
     let name = &head.table.source.name;
     let strains = observations.iter().flat_map(|one| one.strains);

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use super::choice::COLUMNS;
 use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
-use super::layout::Layout;
+use super::layout::{FLIP, Layout};
+use super::row_choice::{ROWS, STRAIN_RANGE, chosen_rows};
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// The statements about test data that a file or the command line must make.
-pub const KEYS: [&str; 18] = [
+pub const KEYS: [&str; 21] = [
     "test",
     "stress measure",
     "strain measure",
@@ -29,6 +30,9 @@ pub const KEYS: [&str; 18] = [
     PRECONDITIONED,
     COLUMNS,
     SPECIMEN_NAME,
+    ROWS,
+    STRAIN_RANGE,
+    FLIP,
 ];
 
 impl TestData {
@@ -57,12 +61,17 @@ impl TestData {
             let values = &table.rows[*row].0;
             layout.columns().all(|column| values[column].is_finite())
         };
-        let measured: Vec<usize> = (0..table.rows.len()).filter(is_measured).collect();
+        let all: Vec<usize> = (0..table.rows.len()).collect();
+        let (measured, holes) = kept(&all, is_measured);
         if measured.is_empty() {
             table.check_numbers(layout.columns(), hint)?;
         }
-        let holes = table.rows.len() - measured.len();
-        let fewer = (holes > 0).then(|| table.with_rows(&measured));
+        let chosen = chosen_rows(&head, &layout, &measured).map_err(|fault| input(*fault))?;
+        let all_are_stated = reading.contains_key(ROWS);
+        let gross = Some(layout.gross_rows(table, &chosen)).filter(|_| !all_are_stated);
+        let gross = gross.unwrap_or_default();
+        let (chosen, _) = kept(&chosen, |row| !gross.contains(row));
+        let fewer = (chosen.len() < all.len()).then(|| table.with_rows(&chosen));
         let head = match &fewer {
             Some(fewer) => Head::new(fewer, &KEYS, reading)?,
             None => head,
@@ -75,14 +84,34 @@ impl TestData {
             );
             Diagnostic::warning("", message).hint("they are left out")
         }));
+        data.warnings.extend(gross.first().map(|row| {
+            let message = format!(
+                "rows that leave the curve of their neighbours: {}",
+                gross.len()
+            );
+            let hint = "they are left out; `--rows 1..` keeps all rows";
+            let place = table.rows[*row].1.clone();
+            Diagnostic::warning("", message)
+                .hint(hint)
+                .at(&table.source, place)
+        }));
         Ok(data)
     }
+}
+
+/// Those of some rows that fulfil a condition, and how many do not.
+fn kept(rows: &[usize], condition: impl Fn(&usize) -> bool) -> (Vec<usize>, usize) {
+    let kept: Vec<usize> = rows.iter().copied().filter(condition).collect();
+    let others = rows.len() - kept.len();
+    (kept, others)
 }
 
 fn input(fault: Diagnostic) -> Error {
     Error::Input(vec![fault])
 }
 
+#[cfg(test)]
+mod dialects_tests;
 #[cfg(test)]
 mod layouts_tests;
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::columns::{Scaled, strain_factor, stress_factor};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
 use super::test_data::StrainColumn;
 use crate::document::Head;
-use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::material::parameters::StrainMeasure;
 use crate::units::Dimension;
 
 /// A column whose name says what it may be.
@@ -46,13 +46,24 @@ impl Readings<'_> {
         pairs.any(|(a, b)| is_same(a, b))
     }
 
+    /// Whether a column can be read: its unit and the dimensions of the specimen that it needs are stated.
+    pub fn are_possible(&self, own: &Named) -> bool {
+        !self.readings(own).is_empty()
+    }
+
+    /// Whether the measure of a column is known: by its name, its unit, or a statement.
+    pub fn is_measured(&self, own: &Named) -> bool {
+        let key = format!("{} measure", own.role.kind.name());
+        own.role.measure.is_some() || matches!(self.head.setting(&key, None), Ok(Some(_)))
+    }
+
     /// The values of a column in each of the measures that it may have: λ − 1, nominal stresses in MPa, or times in s from the first one on;
     /// none where units or the dimensions of the specimen are not stated.
     fn readings(&self, own: &Named) -> Vec<Vec<f64>> {
         match own.role.kind {
-            Kind::Strain => self.strains(own.column, own.role.measure),
+            Kind::Strain => self.strains((own.column, &own.role)),
             Kind::Stress => self.stresses(own),
-            Kind::Time | Kind::Other => {
+            Kind::Time | Kind::Size | Kind::Other => {
                 let column = &self.head.table.columns[own.column];
                 let Ok(factor) = self.head.factor("time unit", column, Dimension::Time) else {
                     return Vec::new();
@@ -64,43 +75,47 @@ impl Readings<'_> {
         }
     }
 
-    fn strains(&self, column: usize, measure: Option<&str>) -> Vec<Vec<f64>> {
-        let is_displacement = measure == Some(DISPLACEMENT);
+    fn strains(&self, own: (usize, &Role)) -> Vec<Vec<f64>> {
+        let measure = own.1.measure;
         let known = StrainColumn::NAMES.iter().filter(|(name, as_read)| {
-            if is_displacement {
+            if measure == Some(DISPLACEMENT) {
                 *as_read == StrainColumn::Strain(StrainMeasure::Nominal)
             } else {
                 measure.map_or(*as_read != StrainColumn::Stretch, |own| own == *name)
             }
         });
         let read = |(_, measure): &(&str, StrainColumn)| {
-            let factor = strain_factor(self.head, column, is_displacement, *measure).ok()?;
-            let values = values(self.head, (column, factor)).into_iter();
+            let factor = strain_factor(self.head, self.roles, own, *measure).ok()?;
+            let values = values(self.head, (own.0, factor)).into_iter();
             Some(values.map(|value| measure.to_nominal(value)).collect())
         };
         known.filter_map(read).collect()
     }
 
     fn stresses(&self, own: &Named) -> Vec<Vec<f64>> {
-        let is_force = own.role.measure == Some(FORCE);
-        let Ok(factor) = stress_factor(self.head, own.column, is_force) else {
+        let Ok(factor) = stress_factor(self.head, self.roles, (own.column, &own.role)) else {
             return Vec::new();
         };
         let values = values(self.head, (own.column, factor));
-        if is_force || own.role.measure == Some("nominal") {
+        let measure = own.role.measure;
+        if measure == Some(FORCE) || measure == Some("nominal") {
             return vec![values];
         }
         let axis = own.role.axis();
         let strains = of_kind(self.roles, Kind::Strain).find(|(_, role)| role.axis() == axis);
-        let strains = strains
-            .and_then(|(column, role)| self.strains(column, role.measure).into_iter().next());
-        let as_cauchy = strains.map(|strains| {
-            let pairs = values.iter().zip(strains);
+        let Some(strains) = strains.and_then(|own| self.strains(own).into_iter().next()) else {
+            return vec![values];
+        };
+        let times = |power: i32| -> Vec<f64> {
+            let pairs = values.iter().zip(&strains);
             pairs
-                .map(|(stress, x)| StressMeasure::Cauchy.to_nominal(*stress, x))
+                .map(|(stress, x)| stress * (1.0 + x).powi(power))
                 .collect()
-        });
-        let as_nominal = own.role.measure.is_none().then_some(values);
-        as_nominal.into_iter().chain(as_cauchy).collect()
+        };
+        match measure {
+            Some("cauchy") => vec![times(-1)],
+            Some(_) => vec![times(1)],
+            None => vec![times(0), times(-1), times(1)],
+        }
     }
 }

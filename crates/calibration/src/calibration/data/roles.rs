@@ -15,6 +15,8 @@ pub enum Kind {
     Stress,
     /// The time of the row.
     Time,
+    /// The size of the specimen along an axis, as it is stretched.
+    Size,
     /// A column that is not read.
     Other,
 }
@@ -26,6 +28,7 @@ impl Kind {
             Self::Strain => "strain",
             Self::Stress => "stress",
             Self::Time => "time",
+            Self::Size => "size",
             Self::Other => "",
         }
     }
@@ -55,12 +58,16 @@ pub struct Role {
     pub kind: Kind,
     /// The measure, where the name states it.
     pub measure: Option<&'static str>,
-    /// 0 or 1, where the name has a number.
+    /// 0 or 1, where the name has a number, or the letter of an axis.
     pub numbered: Option<usize>,
 }
 
 /// The measure of a column of displacements.
 pub const DISPLACEMENT: &str = "displacement";
+/// The measure of a column of Green-Lagrange strains.
+pub const GREEN_LAGRANGE: &str = "green-lagrange";
+/// The measure of a column of second Piola-Kirchhoff stresses.
+pub const SECOND_PIOLA_KIRCHHOFF: &str = "second-piola-kirchhoff";
 /// The measure of a column of forces.
 pub const FORCE: &str = "force";
 
@@ -95,10 +102,14 @@ impl Role {
 
     /// The meaning of a column by its name, and what kind of name it is.
     pub fn of(column: &Column) -> (Self, Naming) {
-        let (stem, axis) = axis_of(&column.name);
-        let (kind, measure, naming) =
-            meaning(NAMES, stem).unwrap_or((Kind::Other, None, Naming::Usual));
-        (Self::new(kind, measure, axis), naming)
+        let known = |stem: &str| meaning(NAMES, stem);
+        let numbered =
+            || axes_of(&column.name).find_map(|(stem, axis)| Some((known(stem)?, Some(axis))));
+        let plain = known(&column.name).map(|found| (found, None));
+        match plain.or_else(numbered) {
+            Some(((kind, measure, naming), axis)) => (Self::new(kind, measure, axis), naming),
+            None => (Self::OTHER, Naming::Usual),
+        }
     }
 }
 
@@ -106,20 +117,24 @@ impl Role {
 const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
     (
         (Kind::Strain, Some("stretch"), Naming::Usual),
-        "stretch lambda λ",
+        "stretch stretch_ratio lambda lam λ",
     ),
-    ((Kind::Strain, None, Naming::Usual), "strain"),
+    ((Kind::Strain, None, Naming::Usual), "strain epsilon eps ε"),
     (
         (Kind::Strain, Some("nominal"), Naming::Usual),
-        "nominal_strain engineering_strain",
+        "nominal_strain engineering_strain eng_strain",
     ),
     (
         (Kind::Strain, Some("logarithmic"), Naming::Usual),
-        "logarithmic_strain true_strain",
+        "logarithmic_strain true_strain log_strain hencky_strain",
+    ),
+    (
+        (Kind::Strain, Some(GREEN_LAGRANGE), Naming::Usual),
+        "green_lagrange_strain green_strain lagrange_strain lagrangian_strain",
     ),
     (
         (Kind::Strain, Some(DISPLACEMENT), Naming::Usual),
-        "displacement extension",
+        "displacement extension elongation",
     ),
     (
         (Kind::Strain, Some(DISPLACEMENT), Naming::Machine),
@@ -129,14 +144,18 @@ const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
         (Kind::Strain, None, Naming::Evaluation),
         "tensile_strain compressive_strain dehnung stauchung déformation 应变",
     ),
-    ((Kind::Stress, None, Naming::Usual), "stress"),
+    ((Kind::Stress, None, Naming::Usual), "stress sigma σ"),
     (
         (Kind::Stress, Some("nominal"), Naming::Usual),
-        "nominal_stress engineering_stress first_piola_kirchhoff_stress",
+        "nominal_stress engineering_stress eng_stress first_piola_kirchhoff_stress first_piola_stress pk1 pk1_stress p",
     ),
     (
         (Kind::Stress, Some("cauchy"), Naming::Usual),
         "cauchy_stress true_stress",
+    ),
+    (
+        (Kind::Stress, Some(SECOND_PIOLA_KIRCHHOFF), Naming::Usual),
+        "second_piola_kirchhoff_stress second_piola_stress pk2 pk2_stress",
     ),
     ((Kind::Stress, Some(FORCE), Naming::Usual), "force load"),
     ((Kind::Stress, Some(FORCE), Naming::Machine), MACHINE_FORCES),
@@ -145,15 +164,26 @@ const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
         "tensile_stress compressive_stress spannung zugspannung contrainte 应力",
     ),
     ((Kind::Time, None, Naming::Usual), TIMES),
+    ((Kind::Size, None, Naming::Machine), "size"),
 ];
 
-/// A name without the number of its axis, and the axis.
-fn axis_of(name: &str) -> (&str, Option<usize>) {
-    match name.rsplit_once('_') {
-        Some((stem, "1")) => (stem, Some(0)),
-        Some((stem, "2")) => (stem, Some(1)),
-        _ => (name, None),
-    }
+/// A name without the number or letter of its axis, and the axis: `stress_1`, `stress1`, `p11`, `force_y`, `XForce`.
+fn axes_of(name: &str) -> impl Iterator<Item = (&str, usize)> {
+    const ENDS: [[&str; 5]; 2] = [
+        ["1", "11", "x", "xx", "axial"],
+        ["2", "22", "y", "yy", "transverse"],
+    ];
+    const BEGINNINGS: [&str; 2] = ["x", "y"];
+    let ends = ENDS.into_iter().enumerate().flat_map(move |(axis, ends)| {
+        let stems = ends.into_iter().filter_map(|end| name.strip_suffix(end));
+        stems.map(move |stem| (stem.trim_end_matches('_'), axis))
+    });
+    let beginnings = BEGINNINGS.into_iter().enumerate();
+    let beginnings = beginnings.filter_map(move |(axis, letter)| {
+        let stem = name.strip_prefix(letter)?;
+        Some((stem.trim_start_matches('_'), axis))
+    });
+    ends.chain(beginnings)
 }
 
 /// The columns of some kind with the meaning of their names.

@@ -44,14 +44,17 @@ pub enum StrainColumn {
     Stretch,
     /// A strain.
     Strain(StrainMeasure),
+    /// The Green-Lagrange strain (λ² − 1)/2.
+    GreenLagrange,
 }
 
 impl StrainColumn {
     /// The names that files use.
-    pub const NAMES: [(&'static str, Self); 3] = [
+    pub const NAMES: [(&'static str, Self); 4] = [
         ("stretch", Self::Stretch),
         ("nominal", Self::Strain(StrainMeasure::Nominal)),
         ("logarithmic", Self::Strain(StrainMeasure::Logarithmic)),
+        ("green-lagrange", Self::GreenLagrange),
     ];
 
     /// λ − 1 from a value of the column.
@@ -59,6 +62,7 @@ impl StrainColumn {
         match self {
             Self::Stretch => value - 1.0,
             Self::Strain(measure) => measure.to_nominal(value),
+            Self::GreenLagrange => 2.0 * value / (1.0 + (1.0 + 2.0 * value).sqrt()),
         }
     }
 
@@ -67,6 +71,7 @@ impl StrainColumn {
         match self {
             Self::Stretch => 1.0 + x,
             Self::Strain(measure) => measure.of_nominal(x),
+            Self::GreenLagrange => x + 0.5 * x * x,
         }
     }
 }

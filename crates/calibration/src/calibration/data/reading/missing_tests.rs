@@ -16,7 +16,7 @@ fn what_is_not_stated_is_asked_for_and_never_guessed() {
         ),
         (
             whole.replace("; stress measure: nominal", "; strain measure: nominal"),
-            "the stress measure is not stated (write `# stress measure: nominal` at the top of the file, or give --stress nominal; it is one of nominal, cauchy)",
+            "the stress measure is not stated (write `# stress measure: nominal` at the top of the file, or give --stress nominal; it is one of nominal, cauchy, second-piola-kirchhoff)",
         ),
         (
             whole

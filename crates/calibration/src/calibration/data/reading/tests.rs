@@ -85,8 +85,8 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
             "measures length",
         ),
         (
-            "# test: uniaxial\nstretch [-],nominal_stress [Mpa]\n1,0",
-            "unknown unit `Mpa`",
+            "# test: uniaxial\nstretch [-],nominal_stress [mPa]\n1,0",
+            "unknown unit `mPa`",
         ),
         (
             "# test: uniaxial\nstretch [-],strss [MPa]\n1,0",
@@ -161,7 +161,7 @@ fn columns_that_do_not_fit_together_are_refused() {
             "all strains or all stresses are zero",
         ),
         (
-            "# test: uniaxial\n# a remark\nstretch [-],nominal_stress [Mpa]\n1,0",
+            "# test: uniaxial\n# a remark\nstretch [-],nominal_stress [mPa]\n1,0",
             "a.csv:3: the stress unit has the unknown unit",
         ),
     ] {

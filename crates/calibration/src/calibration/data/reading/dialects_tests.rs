@@ -1,0 +1,198 @@
+//! The same specimen in the dialects of testing machines: units in names, in brackets, or in a line of their own; columns in any order; force,
+//! stress or both; one axis or two.
+
+use super::layouts_tests::{is_right, stress};
+use super::tests::read;
+
+/// A quantity with its unit, and its values by the strain.
+type Quantity = (&'static str, &'static str, fn(f64) -> f64);
+
+/// How a dialect writes a name with its unit.
+type Dialect = fn(&str, &str) -> String;
+
+const DIALECTS: [Dialect; 7] = [
+    |name, unit| format!("{name} ({unit})"),
+    |name, unit| format!("{name}_{unit}"),
+    |name, unit| format!("{name}/{unit}"),
+    |name, unit| format!("\"{name} [{unit}]\""),
+    |name, unit| format!("{name} in {unit}"),
+    |name, unit| format!("{name}..{unit}."),
+    |name, _| name.to_owned(),
+];
+
+/// A table of some columns; the last dialect writes its units in a second line, and a separator of `;` comes with decimal commas.
+fn table(columns: &[Quantity], dialect: usize, separator: &str) -> String {
+    let names = columns
+        .iter()
+        .map(|(name, unit, _)| DIALECTS[dialect](name, unit));
+    let units = columns.iter().map(|(_, unit, _)| format!("({unit})"));
+    let mut lines = vec![names.collect::<Vec<_>>().join(separator)];
+    if dialect + 1 == DIALECTS.len() {
+        lines.push(units.collect::<Vec<_>>().join(separator));
+    }
+    for row in 0..40 {
+        let strain = 0.02 * f64::from(row);
+        let fields = columns
+            .iter()
+            .map(|(.., value)| format!("{:.9}", value(strain)));
+        let fields = fields.collect::<Vec<_>>().join(separator);
+        lines.push(if separator == ";" {
+            fields.replace('.', ",")
+        } else {
+            fields
+        });
+    }
+    lines.join("\n") + "\n"
+}
+
+const TIME: Quantity = ("Time", "s", |x| 50.0 * x);
+const EXTENSION: Quantity = ("Extension", "mm", |x| 20.0 * x);
+const CROSSHEAD: Quantity = ("Crosshead", "um", |x| 2e4 * x);
+const LOAD: Quantity = ("Load", "mN", |x| 1e4 * stress(x));
+const STRAIN: Quantity = ("Strain", "%", |x| 100.0 * x);
+const STRESS: Quantity = ("Stress", "KPa", |x| 1e3 * stress(x));
+
+const SPECIMEN: [(&str, &str); 3] = [
+    ("test", "uniaxial"),
+    ("length", "20 mm"),
+    ("area", "10 mm^2"),
+];
+const MEASURES: [(&str, &str); 3] = [
+    ("test", "uniaxial"),
+    ("strain measure", "nominal"),
+    ("stress measure", "nominal"),
+];
+
+#[test]
+fn every_dialect_gives_the_same_curve() {
+    let both = [&SPECIMEN[..], &MEASURES[1..]].concat();
+    let cases: [(&[Quantity], &[(&str, &str)]); 5] = [
+        (&[TIME, EXTENSION, LOAD], &SPECIMEN),
+        (&[STRAIN, STRESS, TIME], &MEASURES),
+        (&[EXTENSION, LOAD, STRAIN, STRESS], &both),
+        (&[TIME, CROSSHEAD, LOAD, STRAIN, STRESS], &SPECIMEN),
+        // Without the dimensions of the specimen only the machine's evaluation can be read.
+        (&[TIME, EXTENSION, LOAD, STRAIN, STRESS], &MEASURES),
+    ];
+    for (columns, reading) in cases {
+        for dialect in 0..DIALECTS.len() {
+            for separator in [",", ";", "\t"] {
+                for turned in 0..columns.len() {
+                    let mut columns = columns.to_vec();
+                    columns.rotate_left(turned);
+                    let text = table(&columns, dialect, separator);
+                    let data = read(&text, reading);
+                    let data = data.unwrap_or_else(|fault| panic!("{fault}\n{text}"));
+                    assert!(is_right(&data), "{text}\n{}", data.table.sentence());
+                }
+            }
+        }
+    }
+}
+
+/// λ of an equibiaxial sheet gives the stress 0.1 (λ − λ⁻⁵) along both axes.
+#[test]
+fn two_axes_of_displacements_and_forces_need_the_thickness_alone_where_sizes_are_columns() {
+    fn force(x: f64, across: f64) -> f64 {
+        let stretch = 1.0 + x;
+        1e3 * across * 0.1 * (stretch - stretch.powi(-5))
+    }
+    let columns: [Quantity; 6] = [
+        ("XSize", "um", |x| 1e4 * (1.0 + x)),
+        ("YSize", "um", |x| 8e3 * (1.0 + x)),
+        ("XDisplacement", "um", |x| 1e4 * x),
+        ("YDisplacement", "um", |x| 8e3 * x),
+        ("XForce", "mN", |x| force(x, 8.0)),
+        ("YForce", "mN", |x| force(x, 10.0)),
+    ];
+    for turned in 0..6 {
+        let mut columns = columns;
+        columns.rotate_left(turned);
+        let data = read(&table(&columns, 1, ","), &[("thickness", "1 mm")]).unwrap();
+        assert_eq!(data.observations.len(), 80);
+        for one in &data.observations {
+            let [first, second] = one.strains;
+            let expected = force(first, 1.0) / 1e3;
+            assert!((first - second).abs() < 1e-9, "{one:?}");
+            assert!((one.stress - expected).abs() < 1e-8, "{one:?} {expected}");
+        }
+    }
+    let missing = read(&table(&columns[2..], 1, ","), &[("thickness", "1 mm")]).unwrap_err();
+    assert!(missing.contains("the length is not stated"), "{missing}");
+}
+
+#[test]
+fn measures_of_lagrange_and_of_the_second_piola_kirchhoff_stress_are_converted() {
+    let text = |head: &str, strain: fn(f64) -> f64, factor: fn(f64) -> f64| {
+        let rows = (0..40).map(|row| {
+            let x = 0.02 * f64::from(row);
+            format!("{:.12},{:.12}\n", strain(x), factor(1.0 + x) * stress(x))
+        });
+        format!("{head}\n{}", rows.collect::<String>())
+    };
+    let uniaxial = [("test", "uniaxial")];
+    let green: fn(f64) -> f64 = |x| x + 0.5 * x * x;
+    for (head, strain, factor) in [
+        (
+            "green_strain [-],pk2 [MPa]",
+            green,
+            (|l| 1.0 / l) as fn(f64) -> f64,
+        ),
+        (
+            "true_strain [-],true_stress [MPa]",
+            |x: f64| x.ln_1p(),
+            |l| l,
+        ),
+        ("lambda,P [MPa]", |x| 1.0 + x, |_| 1.0),
+    ] {
+        let data = read(&text(head, strain, factor), &uniaxial).unwrap();
+        let measure = data.stress_measure;
+        let on_curve = data.observations.iter().all(|one| {
+            let nominal = measure.to_nominal(one.stress, one.strains[0]);
+            (nominal - stress(one.strains[0])).abs() < 1e-9
+        });
+        assert!(on_curve, "{head}");
+    }
+}
+
+#[test]
+fn rows_are_chosen_by_lines_columns_and_strains_and_signs_are_reversed() {
+    let text = "SetName,Extension_mm,Load_N\nPrecond,0,0\nPrecond,2,0.9\nTest,0,0\nTest,2,-0.5\nTest,4,-1\n";
+    for (key, value, count) in [
+        ("rows", "SetName=Test", 3),
+        ("rows", "4..", 3),
+        ("rows", "5..6", 2),
+        ("rows", "SetName=Test,5..5", 1),
+        ("strain range", "5 %..", 3),
+        ("strain range", "0..0.1", 4),
+    ] {
+        let reading = [
+            &SPECIMEN[..],
+            &[(key, value), ("cycle", "all"), ("zero", "none")],
+        ]
+        .concat();
+        let data = read(text, &reading)
+            .or_else(|_| read(text, &[&reading[..], &[("flip", "stress")]].concat()));
+        assert_eq!(data.unwrap().observations.len(), count, "{key} {value}");
+    }
+    let flipped = [
+        &SPECIMEN[..],
+        &[
+            ("rows", "SetName=Test"),
+            ("flip", "stress"),
+            ("zero", "none"),
+        ],
+    ];
+    let data = read(text, &flipped.concat()).unwrap();
+    assert_eq!(data.observations[2].stress, 0.1);
+    for (key, value, message) in [
+        ("rows", "SetName=Other", "the rows leave no row"),
+        ("rows", "abc", "cannot be read"),
+        ("rows", "Set=Test", "there is no column `Set`"),
+        ("strain range", "0.3", "cannot be read"),
+        ("flip", "time", "the flip `time` is not known"),
+    ] {
+        let fault = read(text, &[&SPECIMEN[..], &[(key, value)]].concat()).unwrap_err();
+        assert!(fault.contains(message), "{fault}");
+    }
+}

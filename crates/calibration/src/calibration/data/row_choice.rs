@@ -1,0 +1,105 @@
+//! The rows of a table that are fitted, as the user states them.
+
+use super::layout::Layout;
+use crate::document::{Faulty, Head, column_named};
+use crate::units::{self, Dimension};
+
+/// The key of the rows: lines of the file, or a column and the value that it must have.
+pub const ROWS: &str = "rows";
+/// The key of the nominal strains between which rows are fitted.
+pub const STRAIN_RANGE: &str = "strain range";
+
+/// What a row must fulfil.
+enum Condition {
+    /// It stands on one of these lines, counted from 1.
+    Lines([usize; 2]),
+    /// A column has this text.
+    Value(usize, String),
+}
+
+/// Those of some rows that are stated by [`ROWS`] and [`STRAIN_RANGE`]; all of them where neither is.
+///
+/// # Errors
+/// A fault where a statement cannot be read, or leaves no row.
+pub fn chosen_rows(head: &Head, layout: &Layout, rows: &[usize]) -> Faulty<Vec<usize>> {
+    let mut chosen = rows.to_vec();
+    for condition in conditions(head)? {
+        chosen.retain(|row| condition.holds(head, *row));
+    }
+    none_is_a_fault(head, ROWS, &chosen)?;
+    if let Some([low, high]) = strain_range(head)? {
+        chosen.retain(|row| {
+            let strain = layout.strain_as_written(&head.table.rows[*row].0);
+            (low..=high).contains(&strain)
+        });
+        none_is_a_fault(head, STRAIN_RANGE, &chosen)?;
+    }
+    Ok(chosen)
+}
+
+fn none_is_a_fault(head: &Head, key: &str, chosen: &[usize]) -> Faulty<()> {
+    if chosen.is_empty() {
+        let hint = "look at the values in the file";
+        return Err(head.fault(head.place(key), format!("the {key} leave no row"), hint));
+    }
+    Ok(())
+}
+
+impl Condition {
+    fn holds(&self, head: &Head, row: usize) -> bool {
+        match self {
+            Self::Lines([first, last]) => {
+                let place = &head.table.rows[row].1;
+                (*first..=*last).contains(&head.table.source.line(place.start))
+            }
+            Self::Value(column, value) => head.table.field(row, *column).as_ref() == Some(value),
+        }
+    }
+}
+
+/// The conditions of `--rows 12..340` or `--rows SetName=Test,Cycle=3-Stretch`.
+fn conditions(head: &Head) -> Faulty<Vec<Condition>> {
+    let Some(text) = head.text(ROWS)? else {
+        return Ok(Vec::new());
+    };
+    let parts = text.split(',').map(|part| {
+        if let Some((name, value)) = part.split_once('=') {
+            let column = column_named(head.table, name.trim())?;
+            return Ok(Condition::Value(column, value.trim().to_owned()));
+        }
+        let lines = part.split_once("..").and_then(|(first, last)| {
+            let line = |text: &str, open: usize| match text.trim() {
+                "" => Some(open),
+                number => number.parse().ok(),
+            };
+            Some([line(first, 1)?, line(last, usize::MAX)?])
+        });
+        lines.map(Condition::Lines).ok_or_else(|| {
+            let message = format!("the rows `{part}` cannot be read");
+            let hint =
+                "lines of the file such as 12..340, or a column and its value such as SetName=Test";
+            *head.fault(head.place(ROWS), message, hint)
+        })
+    });
+    parts.collect::<Result<_, _>>().map_err(Box::new)
+}
+
+/// The stated nominal strains.
+fn strain_range(head: &Head) -> Faulty<Option<[f64; 2]>> {
+    let Some(text) = head.text(STRAIN_RANGE)? else {
+        return Ok(None);
+    };
+    let ratio = |text: &str, open: f64| match text.trim() {
+        "" => Some(open),
+        number => units::parse(number, Dimension::Ratio).ok(),
+    };
+    let range = text
+        .split_once("..")
+        .and_then(|(low, high)| Some([ratio(low, f64::MIN)?, ratio(high, f64::MAX)?]));
+    let Some(range) = range.filter(|[low, high]| low < high) else {
+        let message = format!("the strain range `{text}` cannot be read");
+        let hint = "nominal strains such as 0..0.3, \"0 %..30 %\" or ..0.3";
+        return Err(head.fault(head.place(STRAIN_RANGE), message, hint));
+    };
+    Ok(Some(range))
+}
