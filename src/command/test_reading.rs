@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use crate::calibration;
-use crate::document::Statements;
+use gelbench_base::document::Statements;
+use gelbench_calibration::calibration;
 
 /// What the files of test data do not say themselves.
 #[derive(Args)]

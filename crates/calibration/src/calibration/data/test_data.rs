@@ -162,6 +162,7 @@ pub enum FoundZero {
 
 /// The data of one test.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct TestData {
     /// The file's name.
     pub name: String,
