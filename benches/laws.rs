@@ -13,12 +13,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use gelbench::finite_element::{Element, FiniteElements};
-use gelbench::material::samples;
-use gelbench::material::sheet::COMPONENTS;
-use gelbench::material::volume::bulk_modulus;
 use gelbench::material::{HyperelasticLaw, PlaneState, Volume, VolumeEnergy};
 use gelbench::problem::ClampedPlate;
 use gelbench::solve::NewtonSettings;
+use gelbench_mechanics::material::samples;
+use gelbench_mechanics::material::sheet::COMPONENTS;
+use gelbench_mechanics::material::volume::bulk_modulus;
 
 const POINTS: usize = 4096;
 const ROUNDS: usize = 30;

@@ -15,8 +15,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use gelbench::dynamics::{
-    Integrator, Motion, MovingForce, MovingSupport, Start, Step, TimeFunction, TimeSettings,
-    follow, lumped_mass,
+    Integrator, Motion, MovingForce, MovingSupport, Start, TimeFunction, TimeSettings, follow,
+    lumped_mass,
 };
 use gelbench::error::Error;
 use gelbench::finite_element::{Element, FiniteElements};
@@ -25,6 +25,7 @@ use gelbench::material::Card;
 use gelbench::mesh::Side;
 use gelbench::problem::{ClampedPlate, Model};
 use gelbench::solve::NewtonSettings;
+use gelbench_mechanics::dynamics::Step;
 
 /// SOFA's time of an implicit step over its nodes, in ms.
 const SOFA: f64 = 9.0 / 4000.0;

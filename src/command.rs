@@ -16,15 +16,15 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::budget::Budget;
-use crate::document::inputs;
-use crate::error::Error;
 use crate::kinds;
-use crate::output;
-use crate::output::ResultFolder;
-use crate::studies::{self, name};
-use crate::validation;
 use conclusion::{conclude, printed};
+use gelbench_base::budget::Budget;
+use gelbench_base::document::inputs;
+use gelbench_base::error::Error;
+use gelbench_report::output;
+use gelbench_report::output::ResultFolder;
+use gelbench_studies::studies::{self, name};
+use gelbench_validation::validation;
 use journal::FolderJournal;
 use large::Large;
 use progress::{Progress, Shown, tell_files};

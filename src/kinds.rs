@@ -5,15 +5,17 @@
 
 use std::path::Path;
 
-use crate::budget::Budget;
-use crate::document::{Document, Faults, Key};
-use crate::error::{Diagnostic, Error, suggestion};
-use crate::results::{Check, Outcome, Results};
-use crate::studies::plate as plate_study;
-use crate::studies::sections::read_text;
-use crate::studies::specimen::{self, Specimen};
-use crate::studies::{Kind, Loaded, Prepare, PreparedStudy, Progress, motion, name, other_files};
-use crate::validation::{
+use gelbench_base::budget::Budget;
+use gelbench_base::document::{Document, Faults, Key};
+use gelbench_base::error::{Diagnostic, Error, suggestion};
+use gelbench_report::results::{Check, Outcome, Results};
+use gelbench_studies::studies::plate as plate_study;
+use gelbench_studies::studies::sections::read_text;
+use gelbench_studies::studies::specimen::{self, Specimen};
+use gelbench_studies::studies::{
+    Kind, Loaded, Prepare, PreparedStudy, Progress, motion, name, other_files,
+};
+use gelbench_validation::validation::{
     REAL_MEASUREMENTS, correction_matrix, cost, finite_elements, fit_coverage, flagship,
     interval_coverage, motion_correction, nonlinear_spring, other_codes, plate_ablation,
     real_measurements, smoothing, spring_identification, vibrating_plate, vibrating_spring,

@@ -20,8 +20,8 @@ use std::slice::from_ref;
 
 use rayon::prelude::*;
 
-use crate::error::{Diagnostic, Error};
-use crate::studies::{PreparedStudy, Progress};
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_studies::studies::{PreparedStudy, Progress};
 
 mod altered;
 mod figures;

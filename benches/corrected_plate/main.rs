@@ -34,8 +34,8 @@ use std::process::ExitCode;
 
 use gelbench::error::Error;
 use gelbench::material::Card;
-use gelbench::output;
 use gelbench::problem::ClampedPlate;
+use gelbench_report::output;
 use peak_alloc::PeakAlloc;
 use rayon::ThreadPoolBuilder;
 

@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::{Field, Grid};
 use gelbench::error::Error;
 use gelbench::problem::ClampedPlate;
+use gelbench_corrector::corrector::climb::{Field, Grid};
 use rayon::ThreadPool;
 
 use super::MEMORY;

@@ -15,11 +15,11 @@
 //! threads was slower than by one on this machine (600 × 200: 0.54 against 0.30 s, 1000 × 334: 3.8 against 2.5 s).
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::{Field, Grid};
 use gelbench::mesh::Mesh;
 use gelbench::problem::ClampedPlate;
-use gelbench::problem::sheet_energy::SheetEnergy;
-use gelbench::solve::{Assembly, Cholesky};
+use gelbench_corrector::corrector::climb::{Field, Grid};
+use gelbench_mechanics::problem::sheet_energy::SheetEnergy;
+use gelbench_mechanics::solve::{Assembly, Cholesky};
 
 use super::way::Layout;
 

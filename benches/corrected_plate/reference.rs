@@ -1,9 +1,10 @@
 //! The converged field: a climb on a grid graded towards the corners, where the field is singular.
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
+use gelbench::corrector::climb::{Climb, ClimbSettings};
 use gelbench::error::Error;
 use gelbench::problem::ClampedPlate;
+use gelbench_corrector::corrector::climb::{Field, Grid};
 
 /// The published converged force at 100 % in N, with five digits after the point: Richardson's extrapolation of
 /// finite elements by dolfinx and scikit-fem.

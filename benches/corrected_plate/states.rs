@@ -3,11 +3,12 @@
 use std::time::Instant;
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive, RigidMotion};
+use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive};
 use gelbench::error::Error;
 use gelbench::finite_element::FiniteElements;
 use gelbench::problem::ClampedPlate;
 use gelbench::solve::NewtonSettings;
+use gelbench_mechanics::problem::RigidMotion;
 
 use super::opponent::Opponent;
 use super::way::{self, Layout};

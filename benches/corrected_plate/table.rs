@@ -2,7 +2,8 @@
 
 use gelbench::corrector::DifferenceScheme;
 use gelbench::output;
-use gelbench::results::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
+use gelbench::results::Drawing;
+use gelbench_report::results::{Axis, Line, LineChart, PALETTE, Stroke};
 
 use super::columns::{Columns, number, ratio};
 use super::lines;

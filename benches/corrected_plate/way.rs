@@ -4,10 +4,11 @@ use std::fmt;
 use std::time::Instant;
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
+use gelbench::corrector::climb::{Climb, ClimbSettings};
 use gelbench::error::Error;
 use gelbench::finite_element::Element;
 use gelbench::problem::ClampedPlate;
+use gelbench_corrector::corrector::climb::{Field, Grid};
 
 use super::opponent::{Guess, Opponent};
 

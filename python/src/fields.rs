@@ -1,7 +1,8 @@
 //! Meshes and arrays as Python has them.
 
 use gelbench::mesh::Mesh;
-use gelbench::results::{Array, Components, Grid, GridCell};
+use gelbench::results::{Array, Grid};
+use gelbench_report::results::{Components, GridCell};
 use numpy::{IxDyn, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

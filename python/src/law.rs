@@ -4,12 +4,14 @@ use std::fmt;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 
-use gelbench::material::code::{Code, CodeLaw};
-use gelbench::material::law::TensionResponse;
-use gelbench::material::sheet::{COMPONENTS, Kinematics, PlaneState, PlaneTensor, SheetResponse};
+use gelbench::material::PlaneState;
+use gelbench::material::sheet::{Kinematics, PlaneTensor, SheetResponse};
+use gelbench::material::{Code, CodeLaw};
 use gelbench::material::{
     EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants, Softening, Volume,
 };
+use gelbench_mechanics::material::law::TensionResponse;
+use gelbench_mechanics::material::sheet::COMPONENTS;
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 

@@ -7,9 +7,10 @@ use gelbench::error::Error;
 use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
 use gelbench::mesh::{CellShape, Exemptions, MeshReading};
 use gelbench::results::GridSeries;
-use gelbench::studies::markers::written::{self, FrameFiles, SERIES};
-use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, worst_answer};
+use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
 use gelbench::units::{self, Dimension};
+use gelbench_studies::studies::markers::worst_answer;
+use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES};
 use pyo3::prelude::*;
 use std::time::Instant;
 

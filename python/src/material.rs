@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use gelbench::document::{EditedDocument, NewValue, name_of};
-use gelbench::error::{Error, suggestion};
-use gelbench::material::curve::{Mode, simple_shear};
+use gelbench::error::Error;
+use gelbench::material::curve::Mode;
 use gelbench::material::registry::{CARDS, LAWS};
 use gelbench::material::stability::stable_range;
 use gelbench::material::{Card, HyperelasticLaw};
+use gelbench_base::document::{EditedDocument, NewValue, name_of};
+use gelbench_base::error::suggestion;
+use gelbench_mechanics::material::curve::simple_shear;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use gelbench::error::Error;
-use gelbench::output::{self, ResultFolder, vtk};
-use gelbench::results::{self, Content, GridSeries, NamedGrid};
+use gelbench::output::ResultFolder;
+use gelbench::results::{self, Content, GridSeries};
+use gelbench_report::output::{self, vtk};
+use gelbench_report::results::NamedGrid;
 use numpy::PyArray2;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;

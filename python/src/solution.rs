@@ -9,7 +9,7 @@ use gelbench::mesh::Mesh;
 use gelbench::problem::{DeformedSheet, GroupState};
 use gelbench::results::{self, Grid};
 use gelbench::solve::Convergence;
-use gelbench::studies::OneModel;
+use gelbench_studies::studies::OneModel;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;

@@ -9,11 +9,12 @@ use gelbench::budget::Budget;
 use gelbench::document::with_files;
 use gelbench::error::{Diagnostic, Error};
 use gelbench::kinds;
-use gelbench::material::softened_law::check_memory;
 use gelbench::mesh::{CellShape, MeshData};
-use gelbench::studies::specimen::{Along, Specimen};
-use gelbench::studies::{Kind, Loaded, ModelKind, Progress, plate, specimen};
+use gelbench::studies::{Kind, Loaded, Progress};
 use gelbench::units::{self, Dimension};
+use gelbench_mechanics::material::softened_law::check_memory;
+use gelbench_studies::studies::specimen::{self, Along, Specimen};
+use gelbench_studies::studies::{ModelKind, plate};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 

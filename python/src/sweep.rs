@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use gelbench::error::{Diagnostic, Error};
 use gelbench::output;
-use gelbench::studies::name;
-use gelbench::studies::sections::read_text;
 use gelbench::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Row, Run, Sampling, Setting, Shard, Share,
     SweepFolder, Values, Variable,
 };
+use gelbench_studies::studies::name;
+use gelbench_studies::studies::sections::read_text;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;

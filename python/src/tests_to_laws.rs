@@ -6,15 +6,18 @@ use gelbench::calibration::{
     self, Bounds, FitSettings, Memory, Provenance, Terms, TestData, Weighting,
 };
 use gelbench::document::{Statements, Table};
-use gelbench::error::{Error, suggestion};
+use gelbench::error::Error;
 use gelbench::identification::{
     Argument, Form, IdentificationSettings, Recording, Shape, identify as identified, law_text,
 };
 use gelbench::material::Card;
 use gelbench::material::registry::{LAWS, Law};
 use gelbench::output;
-use gelbench::results::{
-    Drawing, fit_json, fit_picture, identification_json, identification_picture,
+use gelbench::results::Drawing;
+use gelbench_base::error::suggestion;
+use gelbench_calibration::calibration::KEYS;
+use gelbench_report::results::{
+    fit_json, fit_picture, identification_json, identification_picture,
 };
 use pyo3::prelude::*;
 
@@ -49,11 +52,8 @@ pub fn fit(
 ) -> PyResult<Fitted> {
     run(py, progress, |watch| {
         let mut reading: Statements = said.into_iter().collect();
-        if let Some(key) = reading
-            .keys()
-            .find(|key| !calibration::KEYS.contains(&key.as_str()))
-        {
-            let hint = suggestion(key, &calibration::KEYS, "one of");
+        if let Some(key) = reading.keys().find(|key| !KEYS.contains(&key.as_str())) {
+            let hint = suggestion(key, &KEYS, "one of");
             return Err(input(format!("`{key}` is not a key of test data"), &hint));
         }
         if history.is_some() {

@@ -14,19 +14,19 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
-use crate::compare::imported::{
+use crate::kinds;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::units::{self, Dimension};
+use gelbench_mechanics::material::HyperelasticLaw;
+use gelbench_mechanics::mesh::Mesh;
+use gelbench_report::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, ModelFields, Sites,
 };
-use crate::error::{Diagnostic, Error};
-use crate::kinds;
-use crate::material::HyperelasticLaw;
-use crate::mesh::Mesh;
-use crate::output::{self, ResultFolder};
-use crate::results::{Array, Block, Grid, GridSeries, Sheet};
-use crate::studies;
-use crate::studies::sections;
-use crate::studies::specimen::{self, Along, Specimen};
-use crate::units::{self, Dimension};
+use gelbench_report::output::{self, ResultFolder};
+use gelbench_report::results::{Array, Block, Grid, GridSeries, Sheet};
+use gelbench_studies::studies;
+use gelbench_studies::studies::sections;
+use gelbench_studies::studies::specimen::{self, Along, Specimen};
 
 /// What the command line says about a comparison.
 #[derive(Args)]

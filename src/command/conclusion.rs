@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::terminal::{Outcome, complain_of_end, print, warn};
-use crate::error::Diagnostic;
-use crate::results::{Check, End, Results};
+use gelbench_base::error::Diagnostic;
+use gelbench_report::results::{Check, End, Results};
 
 /// The exit code of a study of which a model has no solution.
 const NO_SOLUTION: u8 = 3;

@@ -7,9 +7,9 @@ use clap::Args;
 use super::choice::one_of;
 use super::terminal::{Outcome, print, print_data, save, warn};
 use super::test_reading::ReadingArguments;
-use crate::calibration::{Conversion, StrainColumn, TestData};
-use crate::material::parameters::StressMeasure;
-use crate::output;
+use gelbench_calibration::calibration::{Conversion, StrainColumn, TestData};
+use gelbench_mechanics::material::parameters::StressMeasure;
+use gelbench_report::output;
 
 #[derive(Args)]
 pub struct ConvertArguments {

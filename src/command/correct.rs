@@ -9,11 +9,11 @@ use std::path::Path;
 
 use super::progress::Progress;
 use super::terminal::{Outcome, print_report, warn};
-use crate::error::Error;
-use crate::material::Card;
-use crate::studies::markers::{MarkerStudy, worst_answer};
-use crate::studies::name;
-use crate::studies::sections::read_text;
+use gelbench_base::error::Error;
+use gelbench_mechanics::material::Card;
+use gelbench_studies::studies::markers::{MarkerStudy, worst_answer};
+use gelbench_studies::studies::name;
+use gelbench_studies::studies::sections::read_text;
 
 mod frames;
 mod job;

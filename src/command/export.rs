@@ -7,14 +7,14 @@ use clap::{Args, ValueEnum};
 use super::choice::one_of;
 use super::large::Large;
 use super::terminal::{Outcome, print, save, warn};
-use crate::error::{Diagnostic, Error};
 use crate::kinds;
-use crate::material::Code;
-use crate::output;
-use crate::output::export::{Export, InputFile};
-use crate::studies::sections;
-use crate::studies::specimen;
-use crate::studies::specimen::Specimen;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_mechanics::material::Code;
+use gelbench_report::output;
+use gelbench_report::output::export::{Export, InputFile};
+use gelbench_studies::studies::sections;
+use gelbench_studies::studies::specimen;
+use gelbench_studies::studies::specimen::Specimen;
 
 /// Which of the three finite-element meshes of a study goes out.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -11,17 +11,17 @@ use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
-use crate::calibration::{
+use gelbench_base::document::Statements;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_calibration::calibration::{
     self, Base, Bounds, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData,
     Weighting,
 };
-use crate::document::Statements;
-use crate::error::{Diagnostic, Error};
-use crate::material::Card;
-use crate::material::card::FitRecord;
-use crate::material::registry::{CARDS, DATA, LAWS, Law};
-use crate::output::{self, ResultFolder};
-use crate::results::{Drawing, fit_json, fit_picture};
+use gelbench_mechanics::material::Card;
+use gelbench_mechanics::material::card::FitRecord;
+use gelbench_mechanics::material::registry::{CARDS, DATA, LAWS, Law};
+use gelbench_report::output::{self, ResultFolder};
+use gelbench_report::results::{Drawing, fit_json, fit_picture};
 
 #[derive(Args)]
 #[command(group = ArgGroup::new("laws").required(true))]

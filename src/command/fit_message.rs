@@ -1,9 +1,9 @@
 //! What the command prints about fits.
 
-use crate::calibration::{Fit, TestData};
-use crate::material::Card;
-use crate::material::HyperelasticLaw;
-use crate::material::curve::{Mode, samples};
+use gelbench_calibration::calibration::{Fit, TestData};
+use gelbench_mechanics::material::Card;
+use gelbench_mechanics::material::HyperelasticLaw;
+use gelbench_mechanics::material::curve::{Mode, samples};
 
 /// Parameters, figures, stability, predictions and warnings of a fit.
 pub fn fit(fit: &Fit, tests: &[TestData]) -> String {

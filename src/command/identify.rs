@@ -12,15 +12,15 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, save, warn};
-use crate::budget::{Budget, Need};
-use crate::error::{Diagnostic, Error};
-use crate::identification::{
+use gelbench_base::budget::{Budget, Need};
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::units::number;
+use gelbench_calibration::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Sample, Shape,
     identify, law_text,
 };
-use crate::output::ResultFolder;
-use crate::results::{identification_json, identification_picture};
-use crate::units::number;
+use gelbench_report::output::ResultFolder;
+use gelbench_report::results::{identification_json, identification_picture};
 
 /// Memory of an instant of a recording: 2.1 kB were measured with 300,000 of them.
 const BYTES_OF_AN_INSTANT: f64 = 3000.0;

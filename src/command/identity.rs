@@ -1,7 +1,7 @@
 //! What tells whether a command that was broken off is the same as a later one.
 
-use crate::document::inputs;
-use crate::output::identity;
+use gelbench_base::document::inputs;
+use gelbench_report::output::identity;
 
 /// The identity of a command by what was said to it, the contents of all files that it has read, and the program itself.
 pub fn of(said: &str) -> String {

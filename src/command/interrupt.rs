@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::output::{Left, ResultFolder, Unfinished};
+use gelbench_report::output::{Left, ResultFolder, Unfinished};
 
 /// The exit code of a command that was interrupted: 128 and the number of the signal.
 const EXIT_CODE: i32 = 130;

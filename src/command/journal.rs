@@ -4,9 +4,9 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use crate::error::{Diagnostic, Error};
-use crate::output::ResultFolder;
-use crate::solve::{Journal, Milestone};
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_mechanics::solve::{Journal, Milestone};
+use gelbench_report::output::ResultFolder;
 
 /// How much work a kill may undo, but for the load factor that is being solved: what is found within it is not worth a file.
 const WORTH_A_FILE: Duration = Duration::from_secs(2);

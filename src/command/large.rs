@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::budget::Budget;
+use gelbench_base::budget::Budget;
 
 /// What a command may use.
 #[derive(Args, Debug)]

@@ -8,10 +8,10 @@ use super::convert::{ConvertArguments, convert};
 use super::fit::{FitArguments, fit, load, refit, together};
 use super::message;
 use super::terminal::{Outcome, print, save};
-use crate::error::Error;
-use crate::material::registry::{CARDS, LAWS};
-use crate::output;
-use crate::results::{Drawing, card_curves, comparison_chart};
+use gelbench_base::error::Error;
+use gelbench_mechanics::material::registry::{CARDS, LAWS};
+use gelbench_report::output;
+use gelbench_report::results::{Drawing, card_curves, comparison_chart};
 
 #[derive(Subcommand)]
 pub enum Materials {

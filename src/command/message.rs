@@ -7,10 +7,10 @@ use textwrap::{WordSeparator, WordSplitter};
 
 use super::fit_message;
 
-use crate::error::{Diagnostic, Severity};
-use crate::material::Card;
-use crate::material::curve::{Mode, far_end};
-use crate::material::stability::{SEARCHED, stable_range};
+use gelbench_base::error::{Diagnostic, Severity};
+use gelbench_mechanics::material::Card;
+use gelbench_mechanics::material::curve::{Mode, far_end};
+use gelbench_mechanics::material::stability::{SEARCHED, stable_range};
 
 /// Columns of a finding where no terminal says how many it has.
 const USUAL_COLUMNS: usize = 80;

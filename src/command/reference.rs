@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 use super::terminal::{Outcome, print, print_data};
-use crate::document::{Bound, FoundKey, Key, Presence, Takes, comments, explore};
-use crate::error::Error;
 use crate::kinds;
-use crate::material::Card;
-use crate::output;
-use crate::results::limit;
-use crate::studies::{Kind, markers, plate};
-use crate::units::Dimension;
+use gelbench_base::document::{Bound, FoundKey, Key, Presence, Takes, comments, explore};
+use gelbench_base::error::Error;
+use gelbench_base::units::Dimension;
+use gelbench_mechanics::material::Card;
+use gelbench_report::output;
+use gelbench_report::results::limit;
+use gelbench_studies::studies::{Kind, markers, plate};
 
 /// Kinds of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

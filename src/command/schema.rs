@@ -4,8 +4,8 @@ use serde_json::{Map, Value, json};
 
 use super::reference::FileKind;
 use super::terminal::{Outcome, print_data};
-use crate::document::{Bound, FoundKey, Presence, Takes, comments};
-use crate::units::Dimension;
+use gelbench_base::document::{Bound, FoundKey, Presence, Takes, comments};
+use gelbench_base::units::Dimension;
 
 /// Prints the schema of a kind of files.
 pub fn print_schema(kind: FileKind) -> Outcome {

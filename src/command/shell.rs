@@ -6,7 +6,7 @@ use clap::Command;
 use clap_complete::Shell;
 
 use super::terminal::{Outcome, print, print_data, save};
-use crate::error::Error;
+use gelbench_base::error::Error;
 
 /// Prints the completions of a shell.
 pub fn completions(shell: Shell, command: &mut Command) -> Outcome {

@@ -9,14 +9,14 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
-use crate::document::{self, file};
-use crate::error::{Diagnostic, Error};
-use crate::studies::name;
-use crate::studies::sections::read_text;
 use crate::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Sampling, Shard, Share, Sweep, SweepFolder,
     Variable,
 };
+use gelbench_base::document::{self, file};
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_studies::studies::name;
+use gelbench_studies::studies::sections::read_text;
 
 /// What stands below the help.
 pub const HELP: &str = "A key's parts have dots between them, places of lists count from 0, and parameters of the study's card are material.KEY:

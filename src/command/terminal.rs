@@ -10,9 +10,9 @@ use serde_json::Value;
 use textwrap::{Options, WordSeparator, WordSplitter};
 
 use super::message;
-use crate::error::{Diagnostic, Error};
-use crate::output;
-use crate::results::End;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_report::output;
+use gelbench_report::results::End;
 
 /// What a command comes to: its exit code, or the fault that decides on it.
 pub type Outcome = Result<u8, Error>;

@@ -5,10 +5,10 @@ use std::path::Path;
 use clap::Args;
 
 use super::terminal::warn;
-use crate::calibration;
-use crate::document::file::MOST_OF_A_STUDY;
-use crate::document::{Statements, read_text};
-use crate::error::{Diagnostic, Error};
+use gelbench_base::document::file::MOST_OF_A_STUDY;
+use gelbench_base::document::{Statements, read_text};
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_calibration::calibration;
 
 /// What the files of test data do not say themselves.
 #[derive(Args)]

@@ -8,12 +8,12 @@ use super::conclusion::conclude;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, print_report, warn};
 use super::{identity, interrupt};
-use crate::error::{Diagnostic, Error};
 use crate::kinds;
-use crate::output::{self, ResultFolder};
-use crate::results::{Results, check_lines};
-use crate::studies::{self, Kind};
-use crate::validation;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_report::output::{self, ResultFolder};
+use gelbench_report::results::{Results, check_lines};
+use gelbench_studies::studies::{self, Kind};
+use gelbench_validation::validation;
 
 /// Computes the cases, and writes one report of them.
 pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::terminal::Outcome;
-use crate::error::Error;
+use gelbench_base::error::Error;
 
 /// The program of the window.
 const PROGRAM: &str = "gelbench-workbench";

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::variable::Setting;
-use crate::budget::Budget;
-use crate::document::{EditedDocument, NewValue, with_files};
-use crate::error::{Diagnostic, Error, suggestion};
 use crate::kinds;
-use crate::material::Card;
-use crate::studies::{PreparedStudy, motion, specimen};
+use gelbench_base::budget::Budget;
+use gelbench_base::document::{EditedDocument, NewValue, with_files};
+use gelbench_base::error::{Diagnostic, Error, suggestion};
+use gelbench_mechanics::material::Card;
+use gelbench_studies::studies::{PreparedStudy, motion, specimen};
 
 /// The card of a run stands beside the study's own under this name, in memory.
 const CARD: &str = "gelbench-sweep-card.toml";

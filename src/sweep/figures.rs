@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::plan::Run;
 use super::variable::Setting;
-use crate::results::Results;
+use gelbench_report::results::Results;
 
 /// The separator between the warnings of a run.
 pub(super) const BETWEEN: &str = " | ";

@@ -8,10 +8,10 @@ use std::thread::panicking;
 
 use super::plan::Run;
 use super::{Row, Sweep, blocks, figures, json, read, write};
-use crate::document::inputs::noted;
-use crate::error::{Diagnostic, Error};
-use crate::output::{ANOTHER_FOLDER, ResultFolder, Unfinished, identity, write_document};
-use crate::studies::name;
+use gelbench_base::document::inputs::noted;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_report::output::{ANOTHER_FOLDER, ResultFolder, Unfinished, identity, write_document};
+use gelbench_studies::studies::name;
 
 /// The file with a line for each run.
 const TABLE: &str = "sweep.csv";

@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::points::Points;
 use super::variable::{MOST_RUNS, Setting, Values, Variable};
-use crate::error::Diagnostic;
-use crate::statistics::{normal_quantile, normal_reach};
+use gelbench_base::error::Diagnostic;
+use gelbench_base::statistics::{normal_quantile, normal_reach};
 
 /// Most points, and dimensions, of the scrambled sequence.
 const MOST_OF_SOBOL: usize = 1 << 16;

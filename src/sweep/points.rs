@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::variable::{MOST_RUNS, Setting, key_and_unit};
-use crate::document::read_records;
-use crate::error::{Diagnostic, Error};
+use gelbench_base::document::read_records;
+use gelbench_base::error::{Diagnostic, Error};
 
 /// Points in place of drawn ones: a table with a column for each key, and a line for each point.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 
 use super::figures::Row;
 use super::table::{heads, names};
-use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
-use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
-use crate::statistics::{quantile, rank_correlation};
-use crate::units::number;
+use gelbench_base::statistics::{quantile, rank_correlation};
+use gelbench_base::units::number;
+use gelbench_report::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
+use gelbench_report::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
 
 /// With fewer runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;

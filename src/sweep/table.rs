@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::figures::{BETWEEN, Row};
 use super::variable::{Setting, headed, key_and_unit};
-use crate::document::{read_records, write_records};
-use crate::error::Error;
+use gelbench_base::document::{read_records, write_records};
+use gelbench_base::error::Error;
 
 /// The columns before those of the figures, but for the keys, and those behind them.
 const FIRST: &str = "run";

@@ -2,7 +2,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::*;
-use crate::budget::Budget;
+use gelbench_base::budget::Budget;
 
 const STUDY: &str = "\
 title = \"small\"

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Diagnostic;
-use crate::units::number_length;
+use gelbench_base::error::Diagnostic;
+use gelbench_base::units::number_length;
 
 /// More runs are refused.
 pub const MOST_RUNS: usize = 1_000_000;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-mod sources;
+pub mod sources;
 
 use sources::{Arrows, ModulePath, Sources, expand, functions};
 

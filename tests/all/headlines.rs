@@ -6,8 +6,9 @@ use gelbench::budget::Budget;
 use gelbench::kinds::read_given;
 use gelbench::material::Card;
 use gelbench::material::curve::Mode;
-use gelbench::results::{Block, Drawing, Line, Results};
+use gelbench::results::{Block, Drawing, Results};
 use gelbench::studies::Progress;
+use gelbench_report::results::Line;
 use serde_json::Value;
 
 fn computed(text: &str) -> Results {

@@ -10,6 +10,7 @@ mod corpus;
 mod documents;
 mod doubtful_fields;
 mod examples;
+mod facade;
 mod faults;
 mod finite_element_reference;
 mod golden;

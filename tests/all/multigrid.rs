@@ -4,9 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
-use gelbench::mesh::{CellShape, Grid, Mesh, Shape};
+use gelbench::mesh::{CellShape, Mesh, Shape};
 use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
 use gelbench::solve::{LinearSolver, NewtonSettings, PathEnd, State};
+use gelbench_mechanics::mesh::Grid;
 
 use crate::common::sheets::{DOG_BONE, RING, STRIP_WITH_HOLE, held, named};
 

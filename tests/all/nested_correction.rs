@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use gelbench::corrector::CorrectorSettings;
 use gelbench::corrector::nested::{NestedCorrection, NestedMeshes};
-use gelbench::corrector::specimen::{correct, correct_without_multipliers};
+use gelbench::corrector::specimen::correct;
 use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
 use gelbench::mesh::{CellShape, Mesh, Shape};
 use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
 use gelbench::solve::{LinearSolver, NewtonSettings, Stage};
+use gelbench_corrector::corrector::specimen::correct_without_multipliers;
 
 use crate::common::sheets::{DOG_BONE, RING, STRIP_WITH_HOLE, held, named};
 

@@ -6,7 +6,7 @@ use std::fs;
 
 use crate::common::exports::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
 use crate::common::{SMALL, folder_with, gelbench, number, one_line, words};
-use gelbench::mesh::import_field;
+use gelbench_mechanics::mesh::import_field;
 
 /// The mesh that goes out is the one that the other models are compared with.
 #[test]

@@ -6,7 +6,8 @@ use gelbench::budget::Budget;
 use gelbench::kinds::kind_of;
 use gelbench::material::Card;
 use gelbench::results::Outcome;
-use gelbench::studies::{Progress, motion, specimen};
+use gelbench::studies::{Progress, motion};
+use gelbench_studies::studies::specimen;
 
 /// A study with a card by its name, and with another card put in its place.
 fn computed(text: &str, own: Option<Card>) -> Outcome {

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use crate::common::{gelbench, words};
 use gelbench::calibration::{FitSettings, Terms, TestData, fit_relaxation};
 use gelbench::document::Statements;
-use gelbench::dynamics::viscosity::{ElementMotion, ViscousLocal};
-use gelbench::dynamics::{SheetViscosity, Viscosity};
+use gelbench::dynamics::SheetViscosity;
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::material::Card;
 use gelbench::material::registry::Law;
@@ -15,6 +14,8 @@ use gelbench::material::viscosity::{Relaxation, ViscousMaterial};
 use gelbench::mesh::Side;
 use gelbench::problem::ClampedPlate;
 use gelbench::solve::Potential;
+use gelbench_mechanics::dynamics::Viscosity;
+use gelbench_mechanics::dynamics::viscosity::{ElementMotion, ViscousLocal};
 use tempfile::TempDir;
 
 /// Nominal stresses of a single element that follows a history of stretches as a strip with free edges, step by step as motions do.

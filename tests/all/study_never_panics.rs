@@ -7,8 +7,10 @@ use gelbench::calibration::{FitSettings, TestData, fit};
 use gelbench::document::Statements;
 use gelbench::kinds::{KINDS, kind_of, read_as};
 use gelbench::material::Card;
-use gelbench::material::registry::{CARDS, DATA, Law};
-use gelbench::studies::plate::{DEFAULT, load};
+use gelbench::material::registry::{CARDS, Law};
+use gelbench::studies::plate::load;
+use gelbench_mechanics::material::registry::DATA;
+use gelbench_studies::studies::plate::DEFAULT;
 use proptest::prelude::*;
 
 /// `text` with a piece replaced.

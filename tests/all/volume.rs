@@ -6,13 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use gelbench::finite_element::{Element, FiniteElements};
-use gelbench::material::samples;
-use gelbench::material::volume::bulk_modulus;
 use gelbench::material::{
     HyperelasticLaw, MooneyRivlin, NeoHooke, PlaneState, Volume, VolumeEnergy, Yeoh,
 };
 use gelbench::problem::{ClampedPlate, Measures};
 use gelbench::solve::NewtonSettings;
+use gelbench_mechanics::material::samples;
+use gelbench_mechanics::material::volume::bulk_modulus;
 use tempfile::TempDir;
 
 use crate::common::{SMALL, gelbench, machine_report, one_line, words};

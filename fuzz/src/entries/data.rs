@@ -7,7 +7,7 @@ use gelbench::budget::Budget;
 use gelbench::calibration::{FitSettings, TestData, Weighting, fit as fit_law};
 use gelbench::document::{Statements, Table};
 use gelbench::error::Error;
-use gelbench::estimation::{EdgeCondition, Physics, Robust, Unnamed};
+use gelbench::estimation::{EdgeCondition, Physics, Robust};
 use gelbench::identification::{
     Argument, Form, IdentificationSettings, Recording, Shape, identify as identify_spring, law_text,
 };
@@ -15,10 +15,12 @@ use gelbench::markers::ReadSettings;
 use gelbench::material::Card;
 use gelbench::material::registry::LAWS;
 use gelbench::mesh::CellShape;
-use gelbench::results::{fit_json, fit_picture, identification_json, identification_picture};
-use gelbench::studies::markers::{
-    Conditions, MarkerStudy, MeshSource, Request, measured_force, written,
+use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
+use gelbench_estimation::estimation::Unnamed;
+use gelbench_report::results::{
+    fit_json, fit_picture, identification_json, identification_picture,
 };
+use gelbench_studies::studies::markers::{measured_force, written};
 
 use super::choices::Choices;
 use super::{Became, with_file};

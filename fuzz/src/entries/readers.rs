@@ -3,16 +3,19 @@
 use std::path::Path;
 
 use gelbench::budget::Budget;
-use gelbench::corrector::condition::Linear;
-use gelbench::corrector::{Corrector, CorrectorSettings, Solver, retained};
+use gelbench::corrector::Linear;
+use gelbench::corrector::{Corrector, CorrectorSettings, Solver};
 use gelbench::document::{Statements, Table};
 use gelbench::identification::Recording;
 use gelbench::kinds::{kind_of, read_as};
-use gelbench::markers::{ReadSettings, read, read_lines};
+use gelbench::markers::{ReadSettings, read};
 use gelbench::material::Card;
-use gelbench::mesh::{CellShape, MeshReading, Outline, import, import_series};
+use gelbench::mesh::{CellShape, MeshReading, Outline, import};
 use gelbench::solve::SparseRows;
 use gelbench::studies::plate;
+use gelbench_corrector::corrector::retained;
+use gelbench_mechanics::markers::read_lines;
+use gelbench_mechanics::mesh::import_series;
 
 use super::{Became, with_file};
 

@@ -1,7 +1,7 @@
 //! What makes the figures of a comparison doubtful.
 
-use crate::compare::imported::Difference;
-use crate::error::Diagnostic;
+use gelbench_base::error::Diagnostic;
+use gelbench_report::compare::imported::Difference;
 
 /// Displacements that all models find larger or smaller by one factor, be it the ratio of two
 /// units or of two load factors.

@@ -9,13 +9,13 @@ use crate::command::identity;
 use crate::command::interrupt;
 use crate::command::progress::{Progress, tell_files};
 use crate::command::terminal::{print, warn};
-use crate::error::Error;
-use crate::estimation::FieldEstimate;
-use crate::markers::Frame;
-use crate::output::{self, ResultFolder};
-use crate::results::Results;
-use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{ComparedFrames, MarkerStudy};
+use gelbench_base::error::Error;
+use gelbench_estimation::estimation::FieldEstimate;
+use gelbench_mechanics::markers::Frame;
+use gelbench_report::output::{self, ResultFolder};
+use gelbench_report::results::Results;
+use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES, played};
+use gelbench_studies::studies::markers::{ComparedFrames, MarkerStudy};
 
 /// Corrects all frames of a field, writes into the job's folder, and prints.
 pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>, Results), Error> {

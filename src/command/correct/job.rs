@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use crate::command::terminal::NOT_EXPLAINED;
-use crate::estimation::Answer;
-use crate::studies::pictures::Pictures;
+use gelbench_estimation::estimation::Answer;
+use gelbench_studies::studies::pictures::Pictures;
 
 /// One folder of results: what they follow from, and how they are written.
 #[derive(Clone)]

@@ -10,16 +10,16 @@ use super::request::request;
 use crate::command::interrupt;
 use crate::command::progress::Progress;
 use crate::command::terminal::{Outcome, print_report, warn};
-use crate::error::{Diagnostic, Error};
-use crate::estimation::{FieldEstimate, JointSettings};
-use crate::material::Card;
-use crate::material::softened_law::check_memory;
-use crate::output::ResultFolder;
-use crate::studies::markers::joint::{
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_estimation::estimation::{FieldEstimate, JointSettings};
+use gelbench_mechanics::material::Card;
+use gelbench_mechanics::material::softened_law::check_memory;
+use gelbench_report::output::ResultFolder;
+use gelbench_studies::studies::markers::joint::{
     CorrectedSpecimen, JointStudy, NamedSpecimen, given_the_law, results, undetermined,
 };
-use crate::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
-use crate::studies::name;
+use gelbench_studies::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
+use gelbench_studies::studies::name;
 
 /// Estimates the parameters, corrects, prints, and writes.
 pub fn run(options: Options, mut job: Job) -> Outcome {

@@ -9,10 +9,10 @@ use super::values::{CELLS, HOLES, PLACES, Y_AXIS, named};
 use super::values::{encoding, force, force_column, gap, length, scale_error, size, unit};
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
-use crate::document::TextEncoding;
-use crate::estimation::{JointSettings, MeasuredForce, Physics, Robust};
-use crate::mesh::{CellShape, Exemptions};
-use crate::studies::markers::ForceColumn;
+use gelbench_base::document::TextEncoding;
+use gelbench_estimation::estimation::{JointSettings, MeasuredForce, Physics, Robust};
+use gelbench_mechanics::mesh::{CellShape, Exemptions};
+use gelbench_studies::studies::markers::ForceColumn;
 
 /// What the command line says about a correction.
 #[derive(Args, Debug)]

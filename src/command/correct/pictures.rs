@@ -3,8 +3,8 @@
 use clap::Args;
 
 use super::values::named;
-use crate::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
-use crate::studies::pictures::{Pictures, Shown};
+use gelbench_report::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
+use gelbench_studies::studies::pictures::{Pictures, Shown};
 
 /// What the command line says of pictures.
 #[derive(Args, Debug)]

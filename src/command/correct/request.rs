@@ -1,11 +1,11 @@
 //! What is to be corrected, of what the command line says.
 
 use super::options::Options;
-use crate::error::Error;
-use crate::estimation::EdgeCondition;
-use crate::markers::{ChosenColumns, ReadSettings};
-use crate::mesh::{Exemptions, MeshReading};
-use crate::studies::markers::{Conditions, MeshSource, Request};
+use gelbench_base::error::Error;
+use gelbench_estimation::estimation::EdgeCondition;
+use gelbench_mechanics::markers::{ChosenColumns, ReadSettings};
+use gelbench_mechanics::mesh::{Exemptions, MeshReading};
+use gelbench_studies::studies::markers::{Conditions, MeshSource, Request};
 
 /// What is to be corrected, and how.
 pub fn request(options: Options) -> Result<Request, Error> {

@@ -2,12 +2,12 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::document::TextEncoding;
-use crate::error::Diagnostic;
-use crate::estimation::MeasuredForce;
-use crate::mesh::CellShape;
-use crate::studies::markers::{ForceColumn, measured_force};
-use crate::units::{self, Dimension};
+use gelbench_base::document::TextEncoding;
+use gelbench_base::error::Diagnostic;
+use gelbench_base::units::{self, Dimension};
+use gelbench_estimation::estimation::MeasuredForce;
+use gelbench_mechanics::mesh::CellShape;
+use gelbench_studies::studies::markers::{ForceColumn, measured_force};
 
 /// Kinds of cells.
 pub const CELLS: [(&str, CellShape); 4] = [

@@ -24,7 +24,7 @@ pub type Arrows = BTreeMap<ModulePath, BTreeSet<ModulePath>>;
 pub struct Sources(pub BTreeMap<ModulePath, Source>);
 
 /// A text without comments and without the items that are compiled for tests only.
-fn production(text: &str) -> String {
+pub fn production(text: &str) -> String {
     let mut code = String::new();
     let mut lines = text.lines().map(|line| line.split("//").next().unwrap());
     while let Some(line) = lines.next() {
@@ -158,12 +158,12 @@ impl Source {
 }
 
 impl Sources {
-    /// Those of the crate in `src` and of all crates in `crates`, whose top modules have one name everywhere.
+    /// Those of the crates in `src`, `validation` and `crates`, whose top modules have one name everywhere.
     pub fn of_workspace() -> Self {
         let mut sources = Self(BTreeMap::new());
         let crates = fs::read_dir("crates").unwrap();
         let mut roots: Vec<PathBuf> = crates.map(|own| own.unwrap().path()).collect();
-        roots.push(PathBuf::new());
+        roots.extend([PathBuf::from("validation"), PathBuf::new()]);
         for root in roots {
             sources.read(&root.join("src/lib.rs"), Vec::new());
         }

@@ -1,7 +1,8 @@
 //! How far a model is from the finite elements with the grip at the same place, in percent.
 
-use gelbench::compare::area_weighted_percent;
-use gelbench::mesh::{Mesh, NodalField};
+use gelbench::mesh::Mesh;
+use gelbench_mechanics::mesh::NodalField;
+use gelbench_report::compare::area_weighted_percent;
 
 use super::engine::Solved;
 use super::scene::{Grip, Scene};

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 use web_time::Instant;
 
 use gelbench::error::Error;
-use gelbench::results::nodal_states;
-use gelbench::solve::{LinearSolver, Loading, Stage, Tangent, compliance};
+use gelbench::solve::{LinearSolver, Loading, Stage};
+use gelbench_mechanics::solve::{Tangent, compliance};
+use gelbench_report::results::nodal_states;
 
 use super::background::Worker;
 use super::scene::{Colour, Grip, Known, Model, Scene};

@@ -10,10 +10,11 @@ use gelbench::error::Error;
 use gelbench::estimation::FieldEstimate;
 use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
-use gelbench::output::{self, vtk};
-use gelbench::results::{Drawing, Panel, Results, mesh_outlines, nodal_states};
+use gelbench::results::{Drawing, Results};
 use gelbench::studies::markers::MarkerStudy;
-use gelbench::studies::markers::written::{self, FrameFiles, SERIES, played};
+use gelbench_report::output::{self, vtk};
+use gelbench_report::results::{Panel, mesh_outlines, nodal_states};
+use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES, played};
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -264,7 +265,7 @@ fn edges(mesh: &Mesh) -> Vec<String> {
 
 fn preview(study: &MarkerStudy) -> Preview {
     let understood = &study.understood;
-    let column = |taken: &gelbench::markers::ColumnTaken| {
+    let column = |taken: &gelbench_mechanics::markers::ColumnTaken| {
         let unit = taken
             .unit
             .map(|unit| format!(" in {unit} mm, {}", taken.unit_source));

@@ -1,9 +1,10 @@
 //! What a dropped file is: it finds its view by itself.
 
-use gelbench::calibration::{KEYS, TestData};
+use gelbench::calibration::TestData;
 use gelbench::document::Statements;
 use gelbench::document::with_files;
 use gelbench::markers::{ReadSettings, read};
+use gelbench_calibration::calibration::KEYS;
 use std::path::PathBuf;
 
 /// What a file may be.

@@ -9,7 +9,9 @@ use gelbench::material::Card;
 use gelbench::material::curve::Mode;
 use gelbench::material::registry::Law;
 use gelbench::material::stability::stable_range;
-use gelbench::results::{Drawing, LineChart, fit_picture};
+use gelbench::results::Drawing;
+use gelbench_calibration::calibration::StableRange;
+use gelbench_report::results::{LineChart, fit_picture};
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -149,7 +151,7 @@ fn fitted(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Fitted {
         Drawing::Charts(charts) => charts.into_iter().map(|(chart, _)| chart).collect(),
         _ => Vec::new(),
     };
-    let range = |range: &calibration::StableRange| (range.mode.name().to_owned(), range.stretches);
+    let range = |range: &StableRange| (range.mode.name().to_owned(), range.stretches);
     Fitted {
         law: fit.law.name.to_owned(),
         formula: fit.law.formula.to_owned(),

@@ -10,10 +10,9 @@ use gelbench::document::with_files;
 use gelbench::error::Error;
 use gelbench::kinds;
 use gelbench::output::{self, vtk};
-use gelbench::results::{
-    Drawing, FieldFigure, Grid, LineChart, Panel, PictureFormat, PictureStyle, Sheet,
-};
+use gelbench::results::{Drawing, Grid, Sheet};
 use gelbench::studies::Progress;
+use gelbench_report::results::{FieldFigure, LineChart, Panel, PictureFormat, PictureStyle};
 
 use super::background::Worker;
 use super::engine::{Bodies, Fault};

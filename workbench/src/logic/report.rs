@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use gelbench::output::vtk;
-use gelbench::results::{Block, Content, Drawing, Outcome, Results, requirements};
+use gelbench::results::{Block, Content, Drawing, Outcome, Results};
+use gelbench_report::results::requirements;
 
 /// A part of a report.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]

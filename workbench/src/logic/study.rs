@@ -13,8 +13,9 @@ use gelbench::material::Card;
 use gelbench::mesh::Shape;
 use gelbench::problem::Support;
 use gelbench::studies::plate;
-use gelbench::studies::specimen::{self, Along, Specimen};
-use gelbench::units::{Linear, could_be_stretch_ratios};
+use gelbench::units::Linear;
+use gelbench_base::units::could_be_stretch_ratios;
+use gelbench_studies::studies::specimen::{self, Along, Specimen};
 
 use super::scene::{CardFile, Grip, Outline, Scene};
 

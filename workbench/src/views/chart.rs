@@ -3,7 +3,7 @@
 use eframe::egui::{Color32, Ui};
 use egui_plot::{Corner, FilledArea, Legend, Line, LineStyle, Plot, PlotPoints, Points, Polygon};
 
-use gelbench::results::{LineChart, Scale, Stroke};
+use gelbench_report::results::{LineChart, Scale, Stroke};
 
 /// The height from which a chart has room for its legend.
 const LEGEND: f32 = 140.0;
@@ -15,7 +15,7 @@ const DARK: u16 = 200;
 pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     let of_x = scaled(chart.x.scale);
     let of_y = scaled(chart.y.scale);
-    let label = |axis: &gelbench::results::Axis| match axis.scale {
+    let label = |axis: &gelbench_report::results::Axis| match axis.scale {
         Scale::Logarithmic => format!("log₁₀ {}", axis.label),
         _ => axis.label.clone(),
     };
@@ -91,7 +91,7 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
 
 /// What lies between a line there and a line back over the same places.
 fn between(
-    line: &gelbench::results::Line,
+    line: &gelbench_report::results::Line,
     of_x: fn(f64) -> f64,
     of_y: fn(f64) -> f64,
 ) -> FilledArea {

@@ -1,6 +1,7 @@
 //! What goes out: offers to choose from, written beside the drawing, then saved.
 
-use gelbench::results::{Drawing, LineChart};
+use gelbench::results::Drawing;
+use gelbench_report::results::LineChart;
 
 use super::files;
 use crate::logic::background::{Background, Wake};

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Grid, RichText, Ui};
 
-use gelbench::results::{Axis, Line, LineChart, PALETTE, Stroke, from_rest};
+use gelbench_report::results::{Axis, Line, LineChart, PALETTE, Stroke, from_rest};
 
 use crate::logic::engine::Fault;
 use crate::logic::scene::Model;

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 #[cfg(not(target_arch = "wasm32"))]
-use gelbench::output::free_name;
+use gelbench_report::output::free_name;
 
 #[cfg(target_arch = "wasm32")]
 use crate::logic::outputs::archive;

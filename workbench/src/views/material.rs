@@ -4,10 +4,11 @@ use eframe::egui::{
     Button, ComboBox, DragValue, Frame, Grid, RichText, ScrollArea, TextEdit, Ui, vec2,
 };
 
-use gelbench::calibration::KEYS;
 use gelbench::material::Card;
-use gelbench::material::registry::{LAWS, MARLOW_TABLE};
-use gelbench::results::material_chart;
+use gelbench::material::registry::LAWS;
+use gelbench_calibration::calibration::KEYS;
+use gelbench_mechanics::material::registry::MARLOW_TABLE;
+use gelbench_report::results::material_chart;
 
 use super::{chart, controls, exports, figures, files};
 use crate::logic::background::{Background, Wake};

@@ -7,7 +7,8 @@ use eframe::egui::{
     vec2,
 };
 
-use gelbench::results::{Drawing, FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
+use gelbench::results::Drawing;
+use gelbench_report::results::{FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
 
 use super::colours::{colour, range};
 use super::surface::View;

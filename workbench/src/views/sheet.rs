@@ -197,7 +197,7 @@ fn room(scene: &Scene) -> [f64; 2] {
 
 /// The colour of a model's lines, in charts and where models lie over each other.
 pub fn model_colour(model: Model) -> Color32 {
-    let [r, g, b] = gelbench::results::PALETTE[match model {
+    let [r, g, b] = gelbench_report::results::PALETTE[match model {
         Model::Springs => 1,
         Model::Corrected => 0,
         Model::Elements => 2,
@@ -317,7 +317,7 @@ pub fn colour_bar(ui: &Ui, name: &str, [low, high]: [f64; 2], area: Rect) {
     let ink = ui.visuals().text_color();
     let font = || FontId::proportional(12.0);
     let below = bar.bottom() + 2.0;
-    let number = gelbench::units::number;
+    let number = gelbench_base::units::number;
     painter.text(
         pos2(bar.left(), below),
         Align2::LEFT_TOP,

@@ -3,7 +3,7 @@
 use eframe::egui::{Button, CollapsingHeader, RichText, ScrollArea, TextEdit, Ui};
 
 use gelbench::kinds::KINDS;
-use gelbench::studies::plate;
+use gelbench_studies::studies::plate;
 
 use super::exports::{self, Offer};
 use super::{figures, files, report};

@@ -38,6 +38,7 @@ pub enum Takes {
 
 /// A key that a reader has looked up.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Key {
     /// Its tables and its name: `plate.length`, `support[].kind`.
     pub path: String,

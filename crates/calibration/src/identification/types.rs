@@ -81,6 +81,7 @@ pub struct FittedMotion {
 
 /// The result of an identification.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Identification {
     /// The settings.
     pub settings: IdentificationSettings,

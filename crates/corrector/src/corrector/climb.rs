@@ -73,6 +73,7 @@ impl Default for ClimbSettings {
 
 /// A corrected field at one stretch.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ClimbSolution {
     /// Displacements in mm on the finest grid.
     pub field: Field,

@@ -49,6 +49,7 @@ impl Describe for ByNumber {}
 
 /// The Lagrange multipliers of one condition.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Multipliers {
     /// The condition's name.
     pub name: String,
@@ -72,6 +73,7 @@ pub struct Step {
 
 /// The result of a correction.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Correction {
     /// The start and the field after each step; the last one is the result.
     pub steps: Vec<Step>,

@@ -67,6 +67,7 @@ const FROM_A_GUESS: usize = 8;
 
 /// A corrected field on the finest mesh.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct NestedCorrection {
     /// The state on the finest mesh.
     pub state: State,

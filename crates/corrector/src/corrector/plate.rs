@@ -42,6 +42,7 @@ impl KnownConditions {
 
 /// A corrected plate at one stretch.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct CorrectedState {
     /// The corrected field; its residual is that of the difference scheme.
     pub state: State,

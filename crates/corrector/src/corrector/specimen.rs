@@ -29,6 +29,7 @@ impl Describe for Names<'_> {
 
 /// A corrected field at one load factor.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct CorrectedField {
     /// The field with the residual of the energy used in the correction.
     pub state: State,

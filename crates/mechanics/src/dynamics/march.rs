@@ -50,6 +50,7 @@ pub struct TimeSettings {
 /// The end of a motion before its time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: {fault}; {}", self.describe(), fault.advice())]
+#[non_exhaustive]
 pub struct MotionEnd {
     /// The last time in s that was reached.
     pub time: f64,

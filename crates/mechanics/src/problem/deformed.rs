@@ -21,6 +21,7 @@ type Place = (usize, [f64; 2]);
 
 /// Stress at a point of a sheet, in MPa.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Stress {
     /// First Piola–Kirchhoff stress P, force per reference area: components 11, 12, 21, 22. The nominal stress is its
     /// transpose.

@@ -6,6 +6,7 @@ use super::loading::State;
 
 /// An equilibrium with what the path after it depends on.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Milestone {
     /// The equilibrium.
     pub state: State,

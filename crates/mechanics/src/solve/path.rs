@@ -13,6 +13,7 @@ use crate::error::SolveFault;
 /// The end of a path before its last load factor.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}: {fault}; {}", self.describe(), fault.advice())]
+#[non_exhaustive]
 pub struct PathEnd {
     /// The load factor that could not be reached.
     pub factor: f64,

@@ -28,6 +28,7 @@ use model::Model;
 
 /// An input file of another code.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct InputFile {
     /// Its text.
     pub text: String,

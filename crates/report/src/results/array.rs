@@ -32,6 +32,7 @@ impl Components {
 
 /// Named numbers at the points or in the cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Array {
     /// Its name with the unit.
     pub name: &'static str,

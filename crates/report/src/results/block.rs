@@ -128,6 +128,7 @@ pub enum Content {
 
 /// A picture and its caption.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Figure {
     /// File name.
     pub name: String,

@@ -58,6 +58,7 @@ pub use verdict::worst as worst_answer;
 
 /// A field that was read, with all data for its correction.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MarkerStudy {
     /// The material.
     pub card: Card,

@@ -8,13 +8,13 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
 use gelbench::kinds;
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
-use gelbench::material::softened_law::check_memory;
 use gelbench::material::{Card, HyperelasticLaw};
 use gelbench::mesh::{Mesh, Side};
-use gelbench::problem::sheet_energy::SheetEnergy;
 use gelbench::problem::{BoundaryProblem, ClampedPlate, Model as Problem, Support};
-use gelbench::solve::{Assembly, Remembering};
-use gelbench::studies::specimen;
+use gelbench_mechanics::material::softened_law::check_memory;
+use gelbench_mechanics::problem::sheet_energy::SheetEnergy;
+use gelbench_mechanics::solve::{Assembly, Remembering};
+use gelbench_studies::studies::specimen;
 
 use super::path;
 use super::plate::Quick;

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use gelbench::dynamics::{
-    Dashpots, Integrator, Motion, MovingSupport, SheetViscosity, Start, Step, TimeSettings,
-    Viscosity, follow, lumped_mass,
+    Dashpots, Integrator, Motion, MovingSupport, SheetViscosity, Start, TimeSettings, follow,
+    lumped_mass,
 };
 use gelbench::error::Error;
 use gelbench::mass_spring::DashpotLaw;
@@ -12,6 +12,7 @@ use gelbench::material::Card;
 use gelbench::material::viscosity::ViscousMaterial;
 use gelbench::mesh::Side;
 use gelbench::solve::Potential;
+use gelbench_mechanics::dynamics::{Step, Viscosity};
 
 use super::bodies::{Body, Energy, LastBodies};
 use super::{Fault, values};

@@ -2,7 +2,8 @@
 
 use gelbench::error::Error;
 use gelbench::problem::Model;
-use gelbench::solve::{Attendance, Loading, NewtonSettings, Potential, State, follow};
+use gelbench::solve::{Loading, NewtonSettings, Potential, State, follow};
+use gelbench_mechanics::solve::Attendance;
 
 use super::bodies::{Body, Sheet};
 use crate::logic::scene::Grip;

@@ -3,9 +3,10 @@
 use self_cell::self_cell;
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive, RigidMotion};
+use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive};
 use gelbench::error::Error;
 use gelbench::problem::ClampedPlate;
+use gelbench_mechanics::problem::RigidMotion;
 
 use crate::logic::scene::Grip;
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use gelbench::error::Error;
 use gelbench::estimation::EdgeCondition;
-use gelbench::results::MeshFigure;
+use gelbench_report::results::MeshFigure;
 
 use super::length;
 
@@ -136,8 +136,9 @@ pub fn middle(lines: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
 mod tests {
     use super::*;
     use gelbench::mesh::{CellShape, Shape};
-    use gelbench::results::{Drawing, mesh_outlines};
+    use gelbench::results::Drawing;
     use gelbench::studies::markers::Conditions;
+    use gelbench_report::results::mesh_outlines;
 
     fn strip() -> MeshFigure {
         let mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, CellShape::Quad9);

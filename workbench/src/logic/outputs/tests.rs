@@ -96,7 +96,7 @@ fn vtk_files_are_read_back_with_the_field_that_went_out() {
 #[test]
 fn a_chart_goes_out_as_a_table() {
     let card = CardFile::shipped("pva-10").unwrap().read().unwrap();
-    let chart = gelbench::results::material_chart(&card);
+    let chart = gelbench_report::results::material_chart(&card);
     let wanted = Wanted::Lines("curves".into(), chart.clone());
     let written = Writer.answer(&wanted).unwrap();
     let text = String::from_utf8(written.files[0].1.clone()).unwrap();

@@ -5,7 +5,8 @@ use eframe::egui::{
     Rect, Response, RichText, Role, Sense, Shape, Stroke, TextEdit, Ui, WidgetInfo, vec2,
 };
 
-use gelbench::results::{Drawing, MeshFigure};
+use gelbench::results::Drawing;
+use gelbench_report::results::MeshFigure;
 
 use super::Fields;
 use crate::logic::field::{Edge, Preview, middle, nearest};

@@ -2,7 +2,8 @@
 
 use eframe::egui::{RichText, Slider, Stroke, Ui};
 
-use gelbench::results::{Drawing, FieldFigure, Scale};
+use gelbench::results::Drawing;
+use gelbench_report::results::{FieldFigure, Scale};
 
 use super::Fields;
 use crate::logic::field::CorrectedFrame;

@@ -167,6 +167,7 @@ pub enum FoundZero {
 
 /// The data of one test.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct TestData {
     /// The file's name.
     pub name: String,

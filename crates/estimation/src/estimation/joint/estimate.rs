@@ -43,6 +43,7 @@ impl Default for JointSettings {
 
 /// The parameters according to all frames together.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct JointEstimate {
     /// The law; a new search would begin at the values found.
     pub law: RegressedLaw,

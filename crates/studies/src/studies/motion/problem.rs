@@ -58,6 +58,7 @@ pub struct Tolerances {
 }
 
 /// A sheet that moves.
+#[non_exhaustive]
 pub struct MovingSheet {
     /// The sheet with supports, loads and meshes; its load factors are that of the start, or none at rest.
     pub specimen: Specimen,

@@ -69,6 +69,7 @@ pub const NEWTON: NewtonSettings = NewtonSettings {
 };
 
 /// A specimen, its supports and loads, and how finely it is meshed.
+#[non_exhaustive]
 pub struct Specimen {
     /// For file names.
     pub name: String,

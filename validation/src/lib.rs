@@ -1,4 +1,4 @@
-//! The cases that validate gelbench.
+#![doc = include_str!("../README.md")]
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

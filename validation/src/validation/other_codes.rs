@@ -14,8 +14,8 @@ use crate::problem::{ClampedPlate, Measures};
 use crate::solve::State;
 
 /// Converged force in N and width at mid length in mm at the stretches, by Richardson's extrapolation of the same codes.
-const CONVERGED: &str = include_str!("../../../../validation/plate/converged.csv");
-const SUMMARY: &str = include_str!("../../../../validation/plate/summary.csv");
+const CONVERGED: &str = include_str!("../../plate/converged.csv");
+const SUMMARY: &str = include_str!("../../plate/summary.csv");
 const STRETCHES: [f64; 5] = [0.15, 0.3, 0.5, 0.75, 1.0];
 
 /// Reads a study of this case.
