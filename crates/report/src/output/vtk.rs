@@ -9,8 +9,11 @@ use vtkio::model::{
 };
 use vtkio::xml::Compressor;
 
+use self::compressed::{COMPRESSOR, compressed};
 use crate::mesh::CellShape;
 use crate::results::{Array, Components, Grid, GridCell, GridSeries};
+
+mod compressed;
 
 /// A program for ParaView that shows the models of the folder that it is in, side by side.
 pub const VIEW: &str = include_str!("view.py");
@@ -44,7 +47,6 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
             cell: grid.in_cells.iter().map(attribute).collect(),
         },
     };
-    let level = if fills_blocks(&piece) { 0 } else { COMPRESSION };
     let file = Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
@@ -53,37 +55,14 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
         file_path: None,
     };
     let mut bytes = Vec::new();
-    let file = file.try_into_xml_format(Compressor::ZLib, level);
+    let file = file.try_into_xml_format(Compressor::None, 0);
     file.and_then(|file| file.write(&mut bytes))
         .expect("a grid with matching arrays can be written to memory");
     finished(&bytes, grid)
 }
 
-/// The level of zlib's compression: that of ParaView.
-const COMPRESSION: u32 = 5;
-
-/// Whether an array fills its blocks to the end, or is empty: vtkio ends such an array with an empty block, which VTK does not read.
-fn fills_blocks(piece: &UnstructuredGridPiece) -> bool {
-    const BLOCK: usize = 32768;
-    let arrays = piece.data.point.iter().chain(&piece.data.cell);
-    let sizes = arrays.map(|array| match array {
-        Attribute::DataArray(DataArray { data, .. }) => data.num_bytes(),
-        Attribute::Field { .. } => 0,
-    });
-    let numbers = match &piece.cells.cell_verts {
-        VertexNumbers::XML {
-            connectivity,
-            offsets,
-        } => [8 * connectivity.len(), 8 * offsets.len()],
-        VertexNumbers::Legacy { vertices, .. } => [4 * vertices.len(); 2],
-    };
-    let of_mesh = [piece.points.num_bytes(), piece.cells.types.len()];
-    let mut sizes = sizes.chain(of_mesh).chain(numbers);
-    sizes.any(|size| size.is_multiple_of(BLOCK))
-}
-
-/// The file with the names of the components, which vtkio does not write, and with numbers of points that have a sign, as VTK and meshio
-/// expect them.
+/// The file with compressed arrays, which vtkio writes number by number, with the names of the components, which it does not write, and with
+/// numbers of points that have a sign, as VTK and meshio expect them.
 fn finished(file: &[u8], grid: &Grid) -> Vec<u8> {
     let file = String::from_utf8_lossy(file);
     let arrays = || grid.at_points.iter().chain(&grid.in_cells);
@@ -93,7 +72,8 @@ fn finished(file: &[u8], grid: &Grid) -> Vec<u8> {
     };
     let mut whole = String::with_capacity(file.len() + 4096);
     let mut parts = file.split("<DataArray ");
-    whole += parts.next().unwrap_or_default();
+    let first = parts.next().unwrap_or_default();
+    whole += &first.replacen("header_type=", &format!("{COMPRESSOR} header_type="), 1);
     for part in parts {
         let (head, rest) = part.split_once('>').unwrap_or((part, ""));
         whole += "<DataArray ";
@@ -105,7 +85,12 @@ fn finished(file: &[u8], grid: &Grid) -> Vec<u8> {
             whole += &format!(" ComponentName{index}=\"{name}\"");
         }
         whole += if head.ends_with('/') { "/>" } else { ">" };
-        whole += rest;
+        let (array, after) = rest.split_at(rest.find('<').unwrap_or(rest.len()));
+        match compressed(array).filter(|_| !head.ends_with('/')) {
+            Some(array) => whole += &array,
+            None => whole += array,
+        }
+        whole += after;
     }
     whole.into_bytes()
 }
@@ -274,7 +259,7 @@ mod tests {
             let field: Vec<f64> = (0..2 * count).map(|i| f64::from(i).sin()).collect();
             let file = super::grid(&Grid::scattered(&points, &field));
             let compressed = String::from_utf8_lossy(&file).contains("vtkZLibDataCompressor");
-            assert_eq!(compressed, count != 4096);
+            assert!(compressed, "{count}");
             assert!(Vtk::parse_xml(&file[..]).is_ok());
         }
     }
