@@ -26,25 +26,12 @@ use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 
-mod doubtful_zero;
-
-/// Fits a law to some tests together, and doubts their zeros.
+/// Fits a law to some tests together.
 ///
 /// # Errors
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all; [`Error::Solve`] when the search ends at no minimum.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
-    let mut fit = nearest(law, tests, settings)?;
-    fit.doubt_zeros(tests);
-    Ok(fit)
-}
-
-/// As [`fit`], without doubts about zeros.
-pub(in crate::calibration) fn nearest(
-    law: &'static Law,
-    tests: &[TestData],
-    settings: &FitSettings,
-) -> Result<Fit, Error> {
     check_measures(tests)?;
     if law.name == SWELLING {
         let message = format!(

@@ -6,7 +6,7 @@
 //! of which the data resolve nothing.
 
 use super::data::{Branches, TestData, Times};
-use super::fit::{check_measures, nearest};
+use super::fit::{check_measures, fit};
 use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
 use super::regression::{Misfit, check_minimum};
@@ -148,7 +148,7 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         let hint = "relaxation is fitted to incompressible laws only: choose another law";
         return Err(Error::input(message, hint));
     }
-    nearest(law, tests, &settings.without(&[SHARES, TIMES].concat()))
+    fit(law, tests, &settings.without(&[SHARES, TIMES].concat()))
 }
 
 /// The shortest interval between rows and the longest duration of a history, in s.

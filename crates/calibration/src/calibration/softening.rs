@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::data::{Observation, TestData};
-use super::fit::{check_measures, nearest};
+use super::fit::{check_measures, fit};
 use super::fitted::Fit;
 use super::least_squares::{Residuals, descend};
 use super::regression::{Misfit, check_minimum};
@@ -148,7 +148,7 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
         return Err(Error::input(message, hint));
     }
     let rising: Vec<TestData> = tests.iter().map(rising).collect();
-    let fit = nearest(law, &rising, &settings.without(&SOFTENING))?;
+    let fit = fit(law, &rising, &settings.without(&SOFTENING))?;
     Ok(First {
         law,
         fitted: fit.fitted,

@@ -72,11 +72,7 @@ impl<R: Response> Solution<R> {
     }
 
     /// The figures of the fit, without warnings.
-    pub fn quality(&self) -> Quality {
-        self.quality_of(&self.misfit.response.predicted(&self.values))
-    }
-
-    fn quality_of(&self, predicted: &[Vec<f64>]) -> Quality {
+    fn quality(&self, predicted: &[Vec<f64>]) -> Quality {
         let response = &self.misfit.response;
         let mut judged = self.judged();
         let tests = response.moved_tests(&self.values);
@@ -118,7 +114,7 @@ impl<R: Response> Solution<R> {
         let pairs = parameters.iter().zip(&self.values).enumerate();
         let parameters: Vec<Parameter> = pairs.map(with_value).collect();
         let predicted = response.predicted(&self.values);
-        let mut quality = self.quality_of(&predicted);
+        let mut quality = self.quality(&predicted);
         quality.warnings = warnings(&quality, &parameters, rival);
         Fit {
             law,
