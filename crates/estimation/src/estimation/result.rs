@@ -28,7 +28,6 @@ impl NearestField<'_> {
         let own = mesh_error.as_ref();
         let judged = judge(&mut self, edges, own)?;
         let markers = self.markers();
-        let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
         let begun = self.take_uncertainty(edges, own, &judged)?;
@@ -46,7 +45,6 @@ impl NearestField<'_> {
             growth: self.growth(edges, &idle),
             verdict: judged.verdict.with_forces(&begun.force_checks),
             contradiction: judged.contradiction,
-            whiteness,
             markers,
             noise: (larger * self.variances.sound / mean).sqrt(),
             noise_range: self.deviations(larger).filter(|_| is_noise),
