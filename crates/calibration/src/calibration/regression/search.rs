@@ -20,7 +20,7 @@ const REFINED: usize = 3;
 const DRAWS: usize = 80;
 
 /// Parameters with their sum of squares.
-pub type Candidate = (f64, Vec<f64>);
+type Candidate = (f64, Vec<f64>);
 
 /// The rough minima that are reached from some starts, the best first.
 pub fn improved(

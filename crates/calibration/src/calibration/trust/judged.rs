@@ -140,12 +140,6 @@ impl Judged {
             .is_some_and(|verdict| verdict.answer.has_intervals())
     }
 
-    /// The number of independent points that tell as much of the noise as so many do.
-    pub fn effective(&self, points: f64) -> f64 {
-        self.verdict
-            .map_or(points, |verdict| verdict.effective_points)
-    }
-
     /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
     pub fn estimates(&self, values: &[f64]) -> (Vec<Estimate>, DMatrix<f64>) {
         let size = values.len();
