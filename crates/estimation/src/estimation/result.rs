@@ -31,7 +31,6 @@ impl NearestField<'_> {
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
         let begun = self.take_uncertainty(edges, own, &judged)?;
-        let idle = self.idle(edges, &begun.forces);
         let larger = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
@@ -42,7 +41,7 @@ impl NearestField<'_> {
             cells: self.cells(own)?,
             holds_mesh_error: own.is_some(),
             imbalance: self.imbalance(),
-            growth: self.growth(edges, &idle),
+            growth: self.growth(edges),
             verdict: judged.verdict.with_forces(&begun.force_checks),
             contradiction: judged.contradiction,
             markers,
@@ -57,11 +56,7 @@ impl NearestField<'_> {
                 None => RULE.into(),
             },
             interior_forces: self.equations.forces.clone(),
-            edges: edges
-                .iter()
-                .zip(&idle)
-                .map(|(edge, idle)| edge.outcome(*idle))
-                .collect(),
+            edges: edges.iter().map(Edge::outcome).collect(),
             steps: self.steps,
             reactions: self.reactions(),
             multipliers: self.multipliers,
@@ -268,14 +263,13 @@ impl NearestField<'_> {
 }
 
 impl Edge {
-    /// Its condition, and whether it is idle.
-    pub(super) fn outcome(&self, idle: bool) -> EdgeOutcome {
+    /// Its condition.
+    pub(super) fn outcome(&self) -> EdgeOutcome {
         EdgeOutcome {
             edge: self.segment.name.clone(),
             length: self.segment.length(),
             condition: self.condition,
             probability: self.probability,
-            idle,
         }
     }
 }

@@ -185,9 +185,6 @@ pub struct EdgeOutcome {
     pub condition: EdgeCondition,
     /// Where the data have chosen between free and loaded: the probability of the misfit if the edge is free.
     pub probability: Option<f64>,
-    /// Whether its force is zero within an interval that is small compared with the largest force, though the data
-    /// have refused it as a free edge: such an edge lies elsewhere.
-    pub idle: bool,
 }
 
 /// The residual of a marker.
