@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use super::data::{Observation, Test, TestData};
 use super::fitted::Fit;
-use super::regression::{Elastic, Misfit, Response, Search, check_minimum, ordered};
+use super::regression::{Elastic, Misfit, Response, Search, ordered};
 use super::settings::{FitSettings, limits};
 use super::solution::Solution;
 use super::trust::noise_warnings;
@@ -69,13 +69,12 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
-    check_minimum(&misfit, law, &parameters, &minimum.values, &bounds)?;
     let begun = Solution {
         misfit,
         values: minimum.values,
         bounds,
     };
-    let mut solution = begun.settled().with_zeros();
+    let mut solution = begun.checked(law, &parameters)?.settled().with_zeros();
     solution.values = ordered(&parameters, &solution.bounds, solution.values);
     let mut fit = solution.fit(law, &parameters, settings, minimum.rival.as_ref());
     let tests = solution.misfit.response.moved_tests(&solution.values);

@@ -9,7 +9,7 @@ use super::data::{Branches, TestData, Times};
 use super::fit::{check_measures, fit};
 use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
-use super::regression::{Misfit, check_minimum};
+use super::regression::Misfit;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::solution::Solution;
 use super::trust::taken_zeros;
@@ -57,8 +57,8 @@ pub fn fit_relaxation(
         solution: best,
         ..
     } = series;
-    check_minimum(&misfit, law, &parameters, &best.values, &best.bounds)?;
-    let solution = Solution { misfit, ..best }.settled();
+    let begun = Solution { misfit, ..best };
+    let solution = begun.checked(law, &parameters)?.settled();
     let mut fit = solution.fit(law, &parameters, settings, None);
     let mut material = solution.misfit.response.material(&solution.values);
     material.covered = Covered {

@@ -9,7 +9,7 @@ use super::data::{Observation, TestData};
 use super::fit::{check_measures, fit};
 use super::fitted::Fit;
 use super::least_squares::{Residuals, descend};
-use super::regression::{Misfit, check_minimum, improved};
+use super::regression::{Misfit, improved};
 use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};
 use super::solution::Solution;
@@ -64,13 +64,12 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         Error::input(message, "look at the strains, or choose another law")
     })?;
     let values = descend(&misfit, &rough, &bounds).unwrap_or(rough);
-    check_minimum(&misfit, first.law, &parameters, &values, &bounds)?;
     let begun = Solution {
         misfit,
         values,
         bounds,
     };
-    let solution = begun.settled();
+    let solution = begun.checked(first.law, &parameters)?.settled();
     let mut fit = solution.fit(first.law, &parameters, settings, None);
     fit.quality.warnings.extend(taken_zeros(tests));
     let softening = solution.misfit.response.softening(&solution.values);
