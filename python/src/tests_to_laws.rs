@@ -76,7 +76,7 @@ pub fn fit(
             None => {
                 watch.tell("all laws");
                 let (fits, _) = calibration::rank(&tests_read, &settings);
-                calibration::best(fits, &tests_read)
+                calibration::best(fits)
                     .ok_or_else(|| input("no law could be fitted", "look at the data"))?
             }
         };

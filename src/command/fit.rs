@@ -214,7 +214,7 @@ fn found(
             let (fits, reasons) = calibration::rank(tests, settings);
             print(&fit_message::ranking(&fits, &reasons))?;
             let nearest = fits.first().map(|fit| (fit.law.name, fit.quality.aicc));
-            let best = calibration::best(fits, tests);
+            let best = calibration::best(fits);
             if let (Some(best), Some(nearest)) = (&best, nearest) {
                 print(&fit_message::chosen(best, nearest))?;
             }

@@ -36,13 +36,13 @@ mod recording;
 mod resolution;
 mod sample;
 mod smoothing;
-mod spikes;
 mod suspects;
 mod types;
 mod verdict;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape, UnknownForm};
+use corners::corners;
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
@@ -50,7 +50,7 @@ use resolution::largest;
 pub use sample::Sample;
 use suspects::examine;
 pub use types::{FittedMotion, Identification, IdentificationSettings, RecordingVerdict};
-use verdict::{Evidence, Faults, notes};
+use verdict::{Evidence, notes};
 
 #[cfg(test)]
 mod tests;
@@ -320,9 +320,9 @@ impl<'a> Fit<'a> {
         signals: &(SignalSpline, SignalSpline),
     ) -> Identification {
         let joint = self.joint;
-        let faults = Faults::of(joint.recording);
+        let corners = corners(&joint.recording.extension);
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
-        let suspects = if !signals.0.coarse && !signals.1.coarse && faults.are_few() {
+        let suspects = if !signals.0.coarse && !signals.1.coarse && corners.is_none() {
             examine(joint, &self.state, &found, fit)
         } else {
             Vec::new()
@@ -330,7 +330,7 @@ impl<'a> Fit<'a> {
         let evidence = Evidence {
             recording: joint.recording,
             signals,
-            faults: &faults,
+            corners,
             suspects: &suspects,
         };
         found.verdict = evidence.verdict(&found);

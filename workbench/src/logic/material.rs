@@ -102,11 +102,7 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
             })?;
             (vec![calibration::fit(law, &tests, &settings)?], Vec::new())
         }
-        None => {
-            let (mut fits, without) = calibration::rank(&tests, &settings);
-            fits.iter_mut().for_each(|fit| fit.doubt_zeros(&tests));
-            (fits, without)
-        }
+        None => calibration::rank(&tests, &settings),
     };
     let provenance = Provenance {
         files: question

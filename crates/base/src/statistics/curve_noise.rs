@@ -155,7 +155,10 @@ impl CurveResiduals<'_> {
         let freedom = rows.checked_sub(estimates).filter(|freedom| *freedom > 0)? as f64;
         let basis = Basis::new(self.design)?;
         let columns = self.of_one_size(&with_last(&basis.columns, self.residual));
-        let sized = self.sized(&basis.columns);
+        // S times the columns.
+        let sized = basis
+            .columns
+            .map_with_location(|row, _, value| value * self.sizes[row]);
         let part = |candidate: &Candidate| {
             let noise = self.along(candidate);
             let triangle = Triangle::new(noise, &columns);
@@ -221,16 +224,7 @@ impl CurveResiduals<'_> {
 
     /// S⁻¹ times some columns: rows whose noise is of one size.
     fn of_one_size(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
-        DMatrix::from_fn(columns.nrows(), columns.ncols(), |row, column| {
-            columns[(row, column)] / self.sizes[row]
-        })
-    }
-
-    /// S times some columns.
-    fn sized(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
-        DMatrix::from_fn(columns.nrows(), columns.ncols(), |row, column| {
-            columns[(row, column)] * self.sizes[row]
-        })
+        columns.map_with_location(|row, _, value| value / self.sizes[row])
     }
 
     fn along(&self, candidate: &Candidate) -> NoiseAlong<'_> {

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use super::data::{Observation, Test, TestData};
 use super::fitted::Fit;
-use super::regression::{Elastic, Misfit, Response, Search, check_minimum, ordered};
+use super::regression::{Elastic, Misfit, Response, Search, ordered};
 use super::settings::{FitSettings, limits};
 use super::solution::Solution;
 use super::trust::noise_warnings;
@@ -26,25 +26,12 @@ use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 
-mod doubtful_zero;
-
-/// Fits a law to some tests together, and doubts their zeros.
+/// Fits a law to some tests together.
 ///
 /// # Errors
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all; [`Error::Solve`] when the search ends at no minimum.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
-    let mut fit = nearest(law, tests, settings)?;
-    fit.doubt_zeros(tests);
-    Ok(fit)
-}
-
-/// As [`fit`], without doubts about zeros.
-pub(in crate::calibration) fn nearest(
-    law: &'static Law,
-    tests: &[TestData],
-    settings: &FitSettings,
-) -> Result<Fit, Error> {
     check_measures(tests)?;
     if law.name == SWELLING {
         let message = format!(
@@ -82,13 +69,12 @@ pub(in crate::calibration) fn nearest(
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
-    check_minimum(&misfit, law, &parameters, &minimum.values, &bounds)?;
     let begun = Solution {
         misfit,
         values: minimum.values,
         bounds,
     };
-    let mut solution = begun.settled().with_zeros();
+    let mut solution = begun.checked(law, &parameters)?.settled().with_zeros();
     solution.values = ordered(&parameters, &solution.bounds, solution.values);
     let mut fit = solution.fit(law, &parameters, settings, minimum.rival.as_ref());
     let tests = solution.misfit.response.moved_tests(&solution.values);

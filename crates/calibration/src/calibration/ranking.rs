@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::data::TestData;
-use super::fit::nearest;
+use super::fit::fit;
 use super::fitted::Fit;
 use super::settings::{FitSettings, MEASURE};
 use crate::error::Error;
@@ -11,7 +11,7 @@ use crate::material::parameters::StressMeasure;
 use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
 
 /// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that
-/// cannot be fitted are left out, with the reasons. Zeros are not doubted, see [`Fit::doubt_zeros`].
+/// cannot be fitted are left out, with the reasons.
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
     // A fibre law needs to see two directions.
     let axis = |axis: usize| {
@@ -32,7 +32,7 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
         .collect();
     let outcomes: Vec<Result<Fit, Error>> = eligible
         .into_par_iter()
-        .map(|law| nearest(law, tests, settings))
+        .map(|law| fit(law, tests, settings))
         .collect();
     let (mut fits, mut reasons) = (Vec::new(), Vec::new());
     for outcome in outcomes {
@@ -46,15 +46,11 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
 }
 
 /// Of ranked fits the first that is stable over the data and all of whose parameters are determined, otherwise the
-/// first that is stable, otherwise the first, with doubts about the zeros of the tests; `None` where there is none.
-pub fn best(fits: Vec<Fit>, tests: &[TestData]) -> Option<Fit> {
-    let first = |fits: &[Fit], told: bool| {
-        let wanted =
-            |fit: &Fit| fit.quality.is_stable() && (!told || fit.quality.is_identifiable());
-        fits.iter().position(wanted)
-    };
-    let chosen = first(&fits, true).or_else(|| first(&fits, false));
-    let mut best = fits.into_iter().nth(chosen.unwrap_or(0))?;
-    best.doubt_zeros(tests);
-    Some(best)
+/// first that is stable, otherwise the first; `None` where there is none.
+pub fn best(fits: Vec<Fit>) -> Option<Fit> {
+    let is_stable = |fit: &Fit| fit.quality.is_stable();
+    let is_determined = |fit: &Fit| is_stable(fit) && fit.quality.is_identifiable();
+    let chosen = fits.iter().position(is_determined);
+    let chosen = chosen.or_else(|| fits.iter().position(is_stable));
+    fits.into_iter().nth(chosen.unwrap_or(0))
 }

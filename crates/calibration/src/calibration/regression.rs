@@ -7,5 +7,5 @@ mod zero;
 
 pub use elastic::Elastic;
 pub use misfit::{Estimated, Misfit, Response, Row, Rows};
-pub use search::{Candidate, Rival, Search, check_minimum, improved, ordered};
+pub use search::{Rival, Search, improved, ordered};
 pub use zero::{MovedZero, Zero};

@@ -6,10 +6,10 @@
 //! of which the data resolve nothing.
 
 use super::data::{Branches, TestData, Times};
-use super::fit::{check_measures, nearest};
+use super::fit::{check_measures, fit};
 use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
-use super::regression::{Misfit, check_minimum};
+use super::regression::Misfit;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::solution::Solution;
 use super::trust::taken_zeros;
@@ -57,8 +57,8 @@ pub fn fit_relaxation(
         solution: best,
         ..
     } = series;
-    check_minimum(&misfit, law, &parameters, &best.values, &best.bounds)?;
-    let solution = Solution { misfit, ..best }.settled();
+    let begun = Solution { misfit, ..best };
+    let solution = begun.checked(law, &parameters)?.settled();
     let mut fit = solution.fit(law, &parameters, settings, None);
     let mut material = solution.misfit.response.material(&solution.values);
     material.covered = Covered {
@@ -148,7 +148,7 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         let hint = "relaxation is fitted to incompressible laws only: choose another law";
         return Err(Error::input(message, hint));
     }
-    nearest(law, tests, &settings.without(&[SHARES, TIMES].concat()))
+    fit(law, tests, &settings.without(&[SHARES, TIMES].concat()))
 }
 
 /// The shortest interval between rows and the longest duration of a history, in s.

@@ -6,10 +6,10 @@
 use std::sync::Arc;
 
 use super::data::{Observation, TestData};
-use super::fit::{check_measures, nearest};
+use super::fit::{check_measures, fit};
 use super::fitted::Fit;
 use super::least_squares::{Residuals, descend};
-use super::regression::{Misfit, check_minimum};
+use super::regression::{Misfit, improved};
 use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};
 use super::solution::Solution;
@@ -20,14 +20,12 @@ use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::{Card, HyperelasticLaw, SoftenedLaw, Softening};
 use crate::statistics::farthest;
 
-mod earlier;
 mod misfit;
 #[cfg(test)]
 mod tests;
 
 pub use misfit::Base;
 
-use earlier::Search;
 use misfit::{SOFTENING, Softens, softening_parameters};
 
 /// Fits a law that softens to some tests together.
@@ -59,31 +57,41 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
     let scale = first.fitted.youngs_modulus();
     let bounds = limits(first.law, &parameters, &settings.bounds, scale)?;
     let start: Vec<f64> = parameters.iter().map(|one| one.value).collect();
-    let search = Search {
-        start: &start,
-        bounds: &bounds,
-        largest,
-    };
-    let (_, rough) = search.rough_minimum(&misfit).ok_or_else(|| {
+    let starts = starts(&start[..of_law], &bounds, largest);
+    let minima = improved(&misfit, starts, &bounds);
+    let (_, rough) = minima.into_iter().next().ok_or_else(|| {
         let message = format!("{}: no softening describes the data", first.law.name);
         Error::input(message, "look at the strains, or choose another law")
     })?;
     let values = descend(&misfit, &rough, &bounds).unwrap_or(rough);
-    check_minimum(&misfit, first.law, &parameters, &values, &bounds)?;
-    let doubts = search.doubts(&misfit, &values);
     let begun = Solution {
         misfit,
         values,
         bounds,
     };
-    let solution = begun.settled();
+    let solution = begun.checked(first.law, &parameters)?.settled();
     let mut fit = solution.fit(first.law, &parameters, settings, None);
     fit.quality.warnings.extend(taken_zeros(tests));
-    fit.quality.warnings.extend(doubts);
     let softening = solution.misfit.response.softening(&solution.values);
     fit.of_law = of_law;
     fit.choices = first.choices;
     Ok(softened(fit, base, tests, softening))
+}
+
+/// Values of r, m and β behind those of the law, at which the search begins; `largest` is the largest energy of the tests in mJ/mm³.
+fn starts(of_law: &[f64], bounds: &[[f64; 2]], largest: f64) -> Vec<Vec<f64>> {
+    let mut starts = Vec::new();
+    for r in [1.3, 2.0, 4.0] {
+        for width in [0.05, 0.3] {
+            for beta in [0.01, 0.3] {
+                let values = [of_law, &[r, width * largest, beta]].concat();
+                let within = values.iter().zip(bounds);
+                let within = within.map(|(value, [low, high])| value.clamp(*low, *high));
+                starts.push(within.collect());
+            }
+        }
+    }
+    starts
 }
 
 /// The fit of the law of the first loading with its softening.
@@ -148,7 +156,7 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
         return Err(Error::input(message, hint));
     }
     let rising: Vec<TestData> = tests.iter().map(rising).collect();
-    let fit = nearest(law, &rising, &settings.without(&SOFTENING))?;
+    let fit = fit(law, &rising, &settings.without(&SOFTENING))?;
     Ok(First {
         law,
         fitted: fit.fitted,

@@ -15,10 +15,11 @@
 
 use super::data::TestData;
 use super::fitted::Fit;
-use super::least_squares::{Precision, descend, minimise, sum_of_squares};
+use super::least_squares::{Precision, descend, lower, minimise, sum_of_squares};
 use super::regression::{Elastic, Misfit, Response, Rival};
 use super::settings::{FitSettings, Weighting};
 use super::trust::{Judged, Quality, warnings};
+use crate::error::{Error, SolveFault};
 use crate::material::parameters::Parameter;
 use crate::material::registry::Law;
 use crate::statistics::Estimate;
@@ -34,6 +35,19 @@ impl<R: Response> Solution<R> {
     /// What the residuals are.
     pub fn judged(&self) -> Judged {
         Judged::of(&self.misfit, &self.values, &self.bounds)
+    }
+
+    /// Refuses values of a law at which the sum of squares still falls.
+    pub fn checked(self, law: &Law, parameters: &[Parameter]) -> Result<Self, Error> {
+        if lower(&self.misfit, &self.values, &self.bounds).is_none() {
+            return Ok(self);
+        }
+        let keys: Vec<&str> = parameters.iter().map(|parameter| parameter.key).collect();
+        Err(Error::Solve {
+            model: format!("fit of {}", law.name),
+            step: format!("{} = {:.4?}", keys.join(", "), self.values),
+            fault: SolveFault::NoMinimum,
+        })
     }
 
     /// By the weights of the fitted stresses; the values are repeated by them where the residuals are noise.
@@ -72,11 +86,7 @@ impl<R: Response> Solution<R> {
     }
 
     /// The figures of the fit, without warnings.
-    pub fn quality(&self) -> Quality {
-        self.quality_of(&self.misfit.response.predicted(&self.values))
-    }
-
-    fn quality_of(&self, predicted: &[Vec<f64>]) -> Quality {
+    fn quality(&self, predicted: &[Vec<f64>]) -> Quality {
         let response = &self.misfit.response;
         let mut judged = self.judged();
         let tests = response.moved_tests(&self.values);
@@ -118,7 +128,7 @@ impl<R: Response> Solution<R> {
         let pairs = parameters.iter().zip(&self.values).enumerate();
         let parameters: Vec<Parameter> = pairs.map(with_value).collect();
         let predicted = response.predicted(&self.values);
-        let mut quality = self.quality_of(&predicted);
+        let mut quality = self.quality(&predicted);
         quality.warnings = warnings(&quality, &parameters, rival);
         Fit {
             law,

@@ -28,7 +28,7 @@ const OWN: f64 = 1e-6;
 
 /// A possible fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Suspect {
+enum Suspect {
     /// A constant on the force in N.
     ForceZero,
     /// A constant on the extension in mm.
@@ -66,45 +66,19 @@ impl Suspect {
 
     /// The suspect in words, with its amount.
     fn words(self, amount: f64, error: f64) -> String {
-        let of = |factor: f64, unit: &str| {
-            format!("{:.3} ± {:.3} {unit}", factor * amount, factor * error)
+        let (what, factor, unit) = match self {
+            Self::ForceZero => ("a zero error of the force of", 1.0, "N"),
+            Self::ExtensionZero => ("a zero error of the extension of", 1.0, "mm"),
+            Self::ForceDrift => ("a force that drifts by", 1.0, "N over the recording"),
+            Self::ExtensionDrift => ("an extension that drifts by", 1.0, "mm over the recording"),
+            Self::Lag => ("a force that is recorded", 1e3, "ms later than the motion"),
+            Self::Mass if amount < 0.0 => ("a mass that is smaller by", -1e6, "g"),
+            Self::Mass => ("a mass that is larger by", 1e6, "g"),
+            Self::StepOfK => ("a step of K(·) at rest by", 1.0, "N/mm"),
+            Self::Friction => ("a dry friction of", 1.0, "N"),
         };
-        match self {
-            Self::ForceZero => format!("a zero error of the force of {}", of(1.0, "N")),
-            Self::ExtensionZero => format!("a zero error of the extension of {}", of(1.0, "mm")),
-            Self::ForceDrift => {
-                format!("a force that drifts by {} over the recording", of(1.0, "N"))
-            }
-            Self::ExtensionDrift => {
-                let drift = of(1.0, "mm");
-                format!("an extension that drifts by {drift} over the recording")
-            }
-            Self::Lag => {
-                let lag = of(1e3, "ms");
-                format!("a force that is recorded {lag} later than the motion")
-            }
-            Self::Mass => {
-                let relation = if amount < 0.0 { "smaller" } else { "larger" };
-                let [size, error] = [amount.abs(), error].map(|mass| 1e6 * mass);
-                format!("a mass that is {relation} by {size:.3} ± {error:.3} g")
-            }
-            Self::StepOfK => format!("a step of K(·) at rest by {}", of(1.0, "N/mm")),
-            Self::Friction => format!("a dry friction of {}", of(1.0, "N")),
-        }
-    }
-}
-
-/// A suspect with its size and the standard error of the size.
-#[derive(Clone, Copy, Debug)]
-pub struct Suspected {
-    pub suspect: Suspect,
-    pub amount: f64,
-    pub error: f64,
-}
-
-impl Suspected {
-    fn size(&self) -> f64 {
-        (self.amount / self.error).abs()
+        let error = f64::abs(factor) * error;
+        format!("{what} {:.3} ± {error:.3} {unit}", factor * amount)
     }
 }
 
@@ -136,17 +110,33 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
 }
 
 /// A suspect in one linearised step from a fit.
-struct Trial {
-    /// Its error is infinite where it is part of the functions or the motion.
-    suspected: Suspected,
+#[derive(Clone, Copy, Debug)]
+pub struct Suspected {
+    suspect: Suspect,
+    /// Its size.
+    amount: f64,
+    /// The standard error of the size; infinite where it is part of the functions or the motion.
+    error: f64,
     /// The squares of the residuals that it explains.
     explained: f64,
     /// The largest change of a signal by it, over the largest value of that signal.
     effect: f64,
 }
 
+impl Suspected {
+    /// The size in standard errors.
+    fn size(&self) -> f64 {
+        (self.amount / self.error).abs()
+    }
+}
+
 /// Tries all suspects.
-fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedFit) -> Vec<Trial> {
+fn trials(
+    joint: &Joint,
+    state: &State,
+    fit: &Identification,
+    found: &PenalisedFit,
+) -> Vec<Suspected> {
     // A form that is wrong looks like a body of another kind.
     let is_free = |function: &Basis| matches!(function.form, Form::Spline(_));
     let are_free = joint.functions.iter().all(is_free);
@@ -182,12 +172,10 @@ fn trials(joint: &Joint, state: &State, fit: &Identification, found: &PenalisedF
         } else {
             (0.0, f64::INFINITY)
         };
-        Trial {
-            suspected: Suspected {
-                suspect: *suspect,
-                amount,
-                error,
-            },
+        Suspected {
+            suspect: *suspect,
+            amount,
+            error,
             explained: score * score / information,
             effect: amount.abs() * relative_size(joint, &columns[index]),
         }
@@ -213,14 +201,14 @@ pub fn examine(
     found: &PenalisedFit,
 ) -> Vec<Suspected> {
     let excess = (fit.misfit - 1.0).max(0.0) * fit.freedom;
-    let is_sure = |own: &Trial| {
+    let is_sure = |own: &Suspected| {
         // Friction never drives a motion.
-        let is_possible = own.suspected.suspect != Suspect::Friction || own.suspected.amount > 0.0;
-        let is_significant = own.suspected.size() > LIMIT;
+        let is_possible = own.suspect != Suspect::Friction || own.amount > 0.0;
+        let is_significant = own.size() > LIMIT;
         is_possible && is_significant && own.explained > TAKEN * excess && own.effect > RESOLUTION
     };
-    let sure = trials(joint, state, fit, found).into_iter().filter(is_sure);
-    let mut sure: Vec<Suspected> = sure.map(|own| own.suspected).collect();
+    let mut sure = trials(joint, state, fit, found);
+    sure.retain(is_sure);
     sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
     sure
 }

@@ -2,96 +2,23 @@
 
 use super::band::Function;
 use super::basis::Form;
-use super::corners::corners;
 use super::recording::Recording;
 use super::resolution::exceeds_resolution;
-use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
-use super::spikes::{bridged, spikes};
+use super::smoothing::SignalSpline;
 use super::suspects::{Suspected, description};
 use super::types::{FittedMotion, Identification, RecordingVerdict};
 use crate::estimation::Answer;
-use crate::units::number;
-
-/// A longest interval is a gap if it leaves the motion less than this share of the parts that both signals ask for, ...
-const FEW: f64 = 0.5;
-
-/// ... or if it is as long as so many usual intervals and as such a part of the duration.
-const INTERVALS: f64 = 20.0;
-const PART: f64 = 0.05;
 
 /// Places of a function at which its sign is looked at.
 const PLACES: usize = 41;
 
-/// The warning about a gap in the rows: a spline has only as many parts as the gap allows, and features that these miss are taken for noise.
-fn gap(recording: &Recording, [wanted, bridged]: [usize; 2]) -> Option<String> {
-    let (times, usual) = (&recording.times, recording.interval());
-    let length = |pair: &[f64]| pair[1] - pair[0];
-    let longest = times
-        .windows(2)
-        .max_by(|a, b| length(a).total_cmp(&length(b)))?;
-    let duration = times.last()? - times.first()?;
-    let is_few = (bridged as f64) < FEW * wanted as f64;
-    (is_few || length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
-        format!(
-            "there are no rows between {} and {} s: details of the motion there may be lost and counted as noise; identify the parts before and \
-             after the gap separately",
-            longest[0], longest[1]
-        )
-    })
-}
-
-/// Fewest corners that count: a single one is a jerk, or chance.
-const FEWEST_CORNERS: usize = 4;
-
-/// Rows of a recording that no smooth motion has.
-pub struct Faults {
-    /// The number of corners of the motion.
-    corners: usize,
-    /// The instants with spikes, of the extension and of the force.
-    spikes: [Vec<usize>; 2],
-}
-
-impl Faults {
-    /// Of a recording.
-    pub fn of(recording: &Recording) -> Self {
-        let Recording {
-            times,
-            extension,
-            force,
-            ..
-        } = recording;
-        let spikes = [extension, force].map(|values| spikes(times, values));
-        Self {
-            corners: corners(&bridged(times, extension, &spikes[0])).len(),
-            spikes,
-        }
-    }
-
-    /// Whether a smooth motion may be fitted.
-    pub fn are_few(&self) -> bool {
-        self.corners < FEWEST_CORNERS && self.spikes[0].is_empty()
-    }
-
-    fn doubts(&self, times: &[f64]) -> Vec<String> {
-        let corners = (self.corners >= FEWEST_CORNERS).then(|| {
-            format!(
-                "the motion has {} corners, as where a machine reverses at a constant rate: the fitted smooth motion cannot follow them, so that \
-                 intervals and bands are not valid; use sinusoidal motion, or identify the parts between corners separately",
-                self.corners
-            )
-        });
-        let spikes = ["extension", "force"].into_iter().zip(&self.spikes);
-        let spikes = spikes.filter_map(|(signal, at)| {
-            let first = times[*at.first()?];
-            Some(format!(
-                "the {signal} has {} spikes, the first at {} s: single values that are far from both neighbours bias the functions, and neither the \
-                 misfit nor intervals tell of it; remove these rows",
-                at.len(),
-                number(first)
-            ))
-        });
-        corners.into_iter().chain(spikes).collect()
-    }
+/// The doubt about a motion with so many corners.
+fn of_corners(count: usize) -> String {
+    format!(
+        "the motion has {count} corners, as where a machine reverses at a constant rate, or values that are far from both neighbours: the fitted \
+         smooth motion cannot follow them, so that intervals and bands are not valid; use sinusoidal motion, identify the parts between corners \
+         separately, or remove wrong rows"
+    )
 }
 
 /// Whether a motion is a steady vibration, which passes every extension at one speed forward and at one backward: among instants of like
@@ -159,7 +86,8 @@ pub struct Evidence<'a> {
     pub recording: &'a Recording,
     /// The splines of extension and force.
     pub signals: &'a (SignalSpline, SignalSpline),
-    pub faults: &'a Faults,
+    /// The number of corners of the motion, where it has some.
+    pub corners: Option<usize>,
     /// What the recording surely indicates, the surest first.
     pub suspects: &'a [Suspected],
 }
@@ -178,7 +106,7 @@ impl Evidence<'_> {
         let doubts = if reasons.is_empty() {
             doubt.into_iter().chain(self.doubts(found)).collect()
         } else {
-            self.faults.doubts(&self.recording.times)
+            self.corners.map(of_corners).into_iter().collect()
         };
         RecordingVerdict {
             answer: if reasons.is_empty() {
@@ -207,8 +135,8 @@ impl Evidence<'_> {
     }
 
     fn doubts(&self, found: &Identification) -> Vec<String> {
-        let (recording, (extension, force)) = (self.recording, self.signals);
-        let mut doubts = self.faults.doubts(&recording.times);
+        let (extension, force) = self.signals;
+        let mut doubts: Vec<String> = self.corners.map(of_corners).into_iter().collect();
         if extension.coarse || force.coarse {
             doubts.push(
                 "the motion is sampled too coarsely to distinguish it from its noise".to_owned(),
@@ -223,11 +151,6 @@ impl Evidence<'_> {
                     .to_owned(),
             );
         }
-        let parts = [
-            wanted_parts(extension, force),
-            bridged_parts(&recording.times),
-        ];
-        doubts.extend(gap(recording, parts));
         doubts.extend(negative(found));
         doubts
     }

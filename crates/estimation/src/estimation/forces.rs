@@ -146,28 +146,8 @@ impl NearestField<'_> {
         sum[0].hypot(sum[1]) / largest.max(f64::MIN_POSITIVE)
     }
 
-    /// The edges that the data have refused as free though hardly any force can act on them, according to the forces with their intervals.
-    pub(super) fn idle(&self, edges: &[Edge], forces: &[EdgeForce]) -> Vec<bool> {
-        /// Half an interval relative to the largest force.
-        const SMALL: f64 = 0.05;
-        let size = |force: &EdgeForce| force.force[0].value.hypot(force.force[1].value);
-        let most = forces.iter().map(size).fold(0.0, f64::max);
-        let is_nothing = |force: &EdgeForce| {
-            force.force.iter().all(|along| {
-                let [low, high] = along.interval;
-                low <= 0.0 && high >= 0.0 && high - low <= 2.0 * SMALL * most
-            })
-        };
-        let bodies = || self.equations.bodies.iter().zip(forces);
-        let idle = |(index, edge): (usize, &Edge)| {
-            let own = bodies().find(|(body, _)| body.edges.contains(&index));
-            edge.tested && edge.is_loaded() && own.is_some_and(|(_, force)| is_nothing(force))
-        };
-        edges.iter().enumerate().map(idle).collect()
-    }
-
-    /// ∮ Ψ ds/∫ Ψ dA along the free edges and the idle ones.
-    pub(super) fn growth(&self, edges: &[Edge], idle: &[bool]) -> f64 {
+    /// ∮ Ψ ds/∫ Ψ dA along the free edges.
+    pub(super) fn growth(&self, edges: &[Edge]) -> f64 {
         let mesh = self.equations.task.specimen.mesh;
         let energy = |cell: usize, local: [f64; 2]| {
             let gradient = PlaneTensor::from(mesh.gradient_at(&self.field, cell, local));
@@ -181,8 +161,7 @@ impl NearestField<'_> {
                 .sum()
         };
         let whole: f64 = (0..mesh.cell_count()).map(over).sum();
-        let free = edges.iter().zip(idle);
-        let free = free.filter(|(edge, idle)| !edge.is_loaded() || **idle);
+        let free = edges.iter().filter(|edge| !edge.is_loaded());
         let along = |pair: &[usize]| {
             let [a, b] = [mesh.nodes[pair[0]], mesh.nodes[pair[1]]];
             let middle = [0, 1].map(|axis| (a[axis] + b[axis]) / 2.0);
@@ -190,7 +169,7 @@ impl NearestField<'_> {
             (b[0] - a[0]).hypot(b[1] - a[1]) * energy(cell, local)
         };
         let around = free
-            .flat_map(|(edge, _)| edge.segment.nodes.windows(2))
+            .flat_map(|edge| edge.segment.nodes.windows(2))
             .map(along);
         around.sum::<f64>() / whole.max(f64::MIN_POSITIVE)
     }

@@ -18,7 +18,6 @@ use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
 mod alternatives;
 mod linear_model;
 mod rows;
-mod whiteness;
 
 use alternatives::Granted;
 pub use linear_model::{Model, Reference};
@@ -41,8 +40,6 @@ const INDEPENDENT: f64 = 100.0;
 /// The noise that was found, and the verdict.
 #[derive(Default)]
 pub struct Judgement {
-    /// The trust of the markers on the mesh, zero for gross errors.
-    pub sound: Vec<f64>,
     /// The correlation of the noise with the equations as they are, the likeliest first; nothing for white noise. Where the data
     /// cannot judge, those that are hardly less likely follow.
     pub noises: Vec<CorrelatedNoise>,
@@ -68,10 +65,7 @@ pub fn judge(
         None => soundness(weights, &found.fit, &found.variances),
     };
     let Some(rows) = Rows::new(found, &sound, own) else {
-        return Ok(Judgement {
-            sound,
-            ..Judgement::default()
-        });
+        return Ok(Judgement::default());
     };
     let granted = found.granted(edges)?;
     let base = Model::of_search(&rows, found).granting(&rows, &granted);
@@ -128,7 +122,6 @@ pub fn judge(
         trials,
     };
     Ok(Judgement {
-        sound,
         noises,
         verdict,
         contradiction,

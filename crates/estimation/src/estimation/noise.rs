@@ -6,12 +6,10 @@
 //!
 //! The field remains the one nearest to the data; its covariance is that of this field under the noise that was found.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::input::{Edge, Observations};
 use super::judge::Judgement;
 use super::outcome::MarkerEstimate;
-use super::regression::{MarkerRows, VarianceComponents};
+use super::regression::MarkerRows;
 use super::search::NearestField;
 use crate::error::Error;
 use crate::statistics::{Sites, Unevenness, extremes, robust_deviation};
@@ -168,19 +166,6 @@ impl NearestField<'_> {
     pub(super) fn deviation(&self) -> f64 {
         let weights = &self.observations().weights;
         (self.variances.sound * weights.len() as f64 / weights.iter().sum::<f64>()).sqrt()
-    }
-
-    /// The slope of the penalties on the parameters, which at the best fit is that of the data: −AᵀWr/v.
-    pub(super) fn slope(
-        &self,
-        design: &DMatrix<f64>,
-        residual: &DVector<f64>,
-        variances: &VarianceComponents,
-    ) -> DVector<f64> {
-        let weights = &self.observations().weights;
-        let weight = |row: usize| variances.weight(weights, row) / variances.variance;
-        let pull = DVector::from_fn(residual.len(), |row, _| -weight(row) * residual[row]);
-        design.tr_mul(&pull)
     }
 
     /// Sets the covariance under the noise that was found, including what smoothing takes away; returns the degrees

@@ -5,7 +5,6 @@ mod verdict;
 
 pub use field_estimate::{
     Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, FoundParameter,
-    MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing, StressEstimate, VariogramBin,
-    Whiteness,
+    MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing, StressEstimate,
 };
 pub use verdict::{Alternative, Answer, NoiseCorrelation, Reason, Trial, Verdict, Worst};

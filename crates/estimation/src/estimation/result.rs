@@ -28,11 +28,9 @@ impl NearestField<'_> {
         let own = mesh_error.as_ref();
         let judged = judge(&mut self, edges, own)?;
         let markers = self.markers();
-        let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
         let begun = self.take_uncertainty(edges, own, &judged)?;
-        let idle = self.idle(edges, &begun.forces);
         let larger = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
@@ -43,10 +41,9 @@ impl NearestField<'_> {
             cells: self.cells(own)?,
             holds_mesh_error: own.is_some(),
             imbalance: self.imbalance(),
-            growth: self.growth(edges, &idle),
+            growth: self.growth(edges),
             verdict: judged.verdict.with_forces(&begun.force_checks),
             contradiction: judged.contradiction,
-            whiteness,
             markers,
             noise: (larger * self.variances.sound / mean).sqrt(),
             noise_range: self.deviations(larger).filter(|_| is_noise),
@@ -59,11 +56,7 @@ impl NearestField<'_> {
                 None => RULE.into(),
             },
             interior_forces: self.equations.forces.clone(),
-            edges: edges
-                .iter()
-                .zip(&idle)
-                .map(|(edge, idle)| edge.outcome(*idle))
-                .collect(),
+            edges: edges.iter().map(Edge::outcome).collect(),
             steps: self.steps,
             reactions: self.reactions(),
             multipliers: self.multipliers,
@@ -270,14 +263,13 @@ impl NearestField<'_> {
 }
 
 impl Edge {
-    /// Its condition, and whether it is idle.
-    pub(super) fn outcome(&self, idle: bool) -> EdgeOutcome {
+    /// Its condition.
+    pub(super) fn outcome(&self) -> EdgeOutcome {
         EdgeOutcome {
             edge: self.segment.name.clone(),
             length: self.segment.length(),
             condition: self.condition,
             probability: self.probability,
-            idle,
         }
     }
 }

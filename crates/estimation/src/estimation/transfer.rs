@@ -87,7 +87,7 @@ pub fn transfer(
         markers: differences(mesh, &field, given, displacement),
         known_noise: true,
         rule: RULE.into(),
-        edges: edges.iter().map(|edge| edge.outcome(false)).collect(),
+        edges: edges.iter().map(Edge::outcome).collect(),
         steps,
         reactions,
         multipliers,

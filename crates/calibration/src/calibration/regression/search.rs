@@ -5,12 +5,8 @@ use rayon::prelude::*;
 
 use super::elastic::Elastic;
 use super::misfit::Misfit;
-use crate::calibration::least_squares::{
-    Precision, Residuals, descend, lower, minimise, sum_of_squares,
-};
-use crate::error::{Error, SolveFault};
+use crate::calibration::least_squares::{Precision, Residuals, descend, minimise, sum_of_squares};
 use crate::material::parameters::Parameter;
-use crate::material::registry::Law;
 
 /// Points above this number are thinned while starts are compared; the last improvement uses all of them.
 const THINNED: usize = 400;
@@ -20,7 +16,7 @@ const REFINED: usize = 3;
 const DRAWS: usize = 80;
 
 /// Parameters with their sum of squares.
-pub type Candidate = (f64, Vec<f64>);
+type Candidate = (f64, Vec<f64>);
 
 /// The rough minima that are reached from some starts, the best first.
 pub fn improved(
@@ -182,25 +178,6 @@ impl Search<'_> {
         });
         apart.any(|apart| apart)
     }
-}
-
-/// Refuses values at which the sum of squares still falls.
-pub fn check_minimum(
-    model: &dyn Residuals,
-    law: &Law,
-    parameters: &[Parameter],
-    values: &[f64],
-    bounds: &[[f64; 2]],
-) -> Result<(), Error> {
-    if lower(model, values, bounds).is_none() {
-        return Ok(());
-    }
-    let keys: Vec<&str> = parameters.iter().map(|parameter| parameter.key).collect();
-    Err(Error::Solve {
-        model: format!("fit of {}", law.name),
-        step: format!("{} = {values:.4?}", keys.join(", ")),
-        fault: SolveFault::NoMinimum,
-    })
 }
 
 /// Terms of a sum of powers in the order of their exponents, where bounds allow it: the same fit always has the same face. Values behind

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use crate::calibration::data::{Observation, TestData};
-use crate::calibration::least_squares::Residuals;
-use crate::calibration::regression::{Misfit, Response, Row};
+use crate::calibration::regression::{Response, Row};
 use crate::calibration::settings::MEASURE;
 use crate::document::Bound;
 use crate::material::parameters::Parameter;
@@ -130,20 +129,5 @@ impl Response for Softens<'_> {
             data.observations.iter().map(stress).collect()
         };
         self.tests.iter().map(of_test).collect()
-    }
-}
-
-/// The residuals of the same law without softening.
-pub struct WithoutSoftening<'a>(pub &'a Misfit<Softens<'a>>);
-
-impl Residuals for WithoutSoftening<'_> {
-    fn count(&self) -> usize {
-        self.0.count()
-    }
-
-    fn evaluate(&self, values: &[f64], residuals: &mut [f64]) -> bool {
-        // η = 1 − erf(…)/r
-        let none = [f64::INFINITY, 1.0, 0.0];
-        self.0.evaluate(&[values, &none].concat(), residuals)
     }
 }

@@ -24,31 +24,6 @@ fn other_size(rows: &[Row], residual: &DVector<f64>, weighting: Weighting) -> DV
     modelled.map(|stress| stress.max(least))
 }
 
-/// A measured and a fitted stress in MPa, and their difference.
-struct Deviation {
-    measured: f64,
-    fitted: f64,
-    absolute: f64,
-    /// Over the measured stress; zero below the least one that counts.
-    relative: f64,
-}
-
-impl Deviation {
-    fn of(measured: f64, fitted: f64, least: f64) -> Self {
-        let absolute = (measured - fitted).abs();
-        Self {
-            measured,
-            fitted,
-            absolute,
-            relative: if measured.abs() > least {
-                absolute / measured.abs()
-            } else {
-                0.0
-            },
-        }
-    }
-}
-
 /// What the residuals of a fit are.
 pub struct Judged {
     /// Which values a bound holds.
@@ -140,12 +115,6 @@ impl Judged {
             .is_some_and(|verdict| verdict.answer.has_intervals())
     }
 
-    /// The number of independent points that tell as much of the noise as so many do.
-    pub fn effective(&self, points: f64) -> f64 {
-        self.verdict
-            .map_or(points, |verdict| verdict.effective_points)
-    }
-
     /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
     pub fn estimates(&self, values: &[f64]) -> (Vec<Estimate>, DMatrix<f64>) {
         let size = values.len();
@@ -180,24 +149,31 @@ impl Judged {
         predicted: &[Vec<f64>],
         (estimates, correlation): (Vec<Estimate>, DMatrix<f64>),
     ) -> Quality {
-        let of_test = |(test, predicted): (&TestData, &Vec<f64>)| -> Vec<Deviation> {
-            let least = SMALLEST_SHARE * test.largest_stress;
-            let rows = test.observations.iter().zip(predicted);
-            rows.map(|(one, fitted)| Deviation::of(one.stress, *fitted, least))
-                .collect()
-        };
-        let all: Vec<Deviation> = tests.iter().zip(predicted).flat_map(of_test).collect();
-        let sum = |value: &dyn Fn(&Deviation) -> f64| all.iter().map(value).sum::<f64>();
-        let (points, squares) = (all.len() as f64, sum(&|one| one.absolute.powi(2)));
-        let mean = sum(&|one| one.measured) / points;
-        let sizes = sum(&|one| one.measured.abs()).max(sum(&|one| one.fitted.abs()));
-        let relative = all.iter().map(|one| one.relative).fold(0.0, f64::max);
+        let pairs = tests.iter().zip(predicted);
+        let all: Vec<[f64; 3]> = pairs
+            .flat_map(|(test, predicted)| {
+                let least = SMALLEST_SHARE * test.largest_stress;
+                let rows = test.observations.iter().zip(predicted);
+                rows.map(move |(one, fitted)| [one.stress, *fitted, least])
+            })
+            .collect();
+        let sum = |value: &dyn Fn(&[f64; 3]) -> f64| all.iter().map(value).sum::<f64>();
+        let absolute = |[measured, fitted, _]: &[f64; 3]| (measured - fitted).abs();
+        let (points, squares) = (all.len() as f64, sum(&|one| absolute(one).powi(2)));
+        let mean = sum(&|one| one[0]) / points;
+        let sizes = sum(&|one| one[0].abs()).max(sum(&|one| one[1].abs()));
+        let counting = all
+            .iter()
+            .filter(|[measured, _, least]| measured.abs() > *least);
+        let relative = counting
+            .map(|one| absolute(one) / one[0].abs())
+            .fold(0.0, f64::max);
         Quality {
             points: all.len(),
             sum_of_squares: squares,
             rmse: (squares / points).sqrt(),
-            nmad_percent: 100.0 * sum(&|one| one.absolute) / sizes,
-            r_squared: 1.0 - squares / sum(&|one| (one.measured - mean).powi(2)),
+            nmad_percent: 100.0 * sum(&absolute) / sizes,
+            r_squared: 1.0 - squares / sum(&|one| (one[0] - mean).powi(2)),
             aicc: self.aicc(),
             largest_relative_error_percent: 100.0 * relative,
             verdict: self.verdict,

@@ -14,6 +14,9 @@ const CLEARLY: f64 = 3.29;
 /// Fewer rows tell nothing of either.
 const FEWEST: usize = 10;
 
+/// The law's stresses at the rows of a protocol, and how far the measured ones are from them, both by the weights of the fit.
+type Pairs = Vec<[f64; 2]>;
+
 /// The warnings of a fit whose residuals are judged: noise that grows where they are noise, and specimens that differ in any case.
 pub fn noise_warnings(
     quality: &Quality,
@@ -25,15 +28,10 @@ pub fn noise_warnings(
         return Vec::new();
     }
     let has_intervals = quality.has_intervals();
-    let residuals = WeightedResiduals { law, weighting };
     let uneven = has_intervals.then(|| uneven(quality, weighting)).flatten();
-    let specimens = residuals.specimens(tests, has_intervals);
+    let protocols = |test: &TestData| pairs(test, law, weighting);
+    let specimens = specimens(tests, protocols, has_intervals);
     uneven.into_iter().chain(specimens).collect()
-}
-
-struct WeightedResiduals<'a> {
-    law: &'a dyn HyperelasticLaw,
-    weighting: Weighting,
 }
 
 /// The warning about weights that do not suit the noise.
@@ -49,113 +47,93 @@ fn uneven(quality: &Quality, weighting: Weighting) -> Option<String> {
     })
 }
 
-impl WeightedResiduals<'_> {
-    /// The law's stress at an observation, and how far it is from the measured one, both by the weights of the fit.
-    fn fitted_and_residual(&self, test: &TestData, one: &Observation) -> [f64; 2] {
-        let fitted = test.stress_of(self.law, one);
-        let weight = self.weighting.weight_of(test, fitted);
+/// The pairs of each protocol of a test, a part that was pulled one way.
+fn pairs(test: &TestData, law: &dyn HyperelasticLaw, weighting: Weighting) -> Vec<Pairs> {
+    let pair = |one: &Observation| {
+        let fitted = test.stress_of(law, one);
+        let weight = weighting.weight_of(test, fitted);
         [weight * fitted, weight * (one.stress - fitted)]
-    }
+    };
+    let protocols = test.protocols().into_iter();
+    let protocols = protocols.filter(|rows| rows.len() >= FEWEST);
+    protocols
+        .map(|rows| rows.iter().map(pair).collect())
+        .collect()
+}
 
-    /// How many times the law's stress was measured in some protocols, and its variance by the noise of their own, neighbours of which
-    /// may correlate.
-    fn factor(&self, protocols: &[Protocol]) -> Option<[f64; 2]> {
-        let rows = protocols
-            .iter()
-            .flat_map(|own| own.rows.iter().map(|one| (own.test, one)));
-        let pairs: Vec<[f64; 2]> = rows
-            .map(|(test, one)| self.fitted_and_residual(test, one))
-            .collect();
-        let square: f64 = pairs.iter().map(|[fitted, _]| fitted * fitted).sum();
-        let along: f64 = pairs.iter().map(|[fitted, left]| fitted * left).sum();
-        let factor = along / square;
-        let rest: Vec<f64> = pairs
-            .iter()
-            .map(|[fitted, left]| left - factor * fitted)
-            .collect();
-        let squares: f64 = rest.iter().map(|left| left * left).sum();
-        let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
-        let correlation = (products / squares).clamp(0.0, 0.99);
-        let fewer = (1.0 + correlation) / (1.0 - correlation);
-        let variance = fewer * squares / (pairs.len() as f64 - 1.0) / square;
-        (pairs.len() >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
+/// Whether specimens, or protocols, of one kind of test differ from the law by more than their noise. Only a user knows which of them are
+/// one specimen: a wrong law and specimens that differ make alike residuals.
+fn specimens(
+    tests: &[TestData],
+    protocols: impl Fn(&TestData) -> Vec<Pairs>,
+    has_intervals: bool,
+) -> Option<String> {
+    let alike = |test: &TestData| (test.test, &test.axes) == (tests[0].test, &tests[0].axes);
+    if !tests.iter().all(alike) {
+        return None;
     }
-
-    /// Whether specimens, or protocols, of one kind of test differ from the law by more than their noise. Only a user knows which of them are
-    /// one specimen: a wrong law and specimens that differ make alike residuals.
-    fn specimens(&self, tests: &[TestData], has_intervals: bool) -> Option<String> {
-        let alike = |test: &&TestData| (test.test, &test.axes) == (tests[0].test, &tests[0].axes);
-        if !tests.iter().all(|test| alike(&test)) {
-            return None;
-        }
-        let protocols: Vec<Protocol> = tests.iter().flat_map(Protocol::of).collect();
-        let names: BTreeSet<_> = tests
-            .iter()
-            .filter_map(|test| test.specimen.as_ref())
-            .collect();
-        let is_stated = tests.iter().all(|test| test.specimen.is_some());
-        let what = match tests[0].test {
-            Test::Biaxial => "protocols",
-            _ => "tests",
+    let names: BTreeSet<_> = tests
+        .iter()
+        .filter_map(|test| test.specimen.as_ref())
+        .collect();
+    let is_stated = tests.iter().all(|test| test.specimen.is_some());
+    if is_stated && names.len() > 1 {
+        let of = |name: &&String| {
+            let own = tests
+                .iter()
+                .filter(|test| test.specimen.as_ref() == Some(name));
+            own.flat_map(&protocols).flatten().collect()
         };
-        match (is_stated, names.len()) {
-            (true, 2..) => {
-                let of = |name: &&String| {
-                    let own = protocols
-                        .iter()
-                        .filter(|one| one.test.specimen.as_ref() == Some(name));
-                    own.copied().collect()
-                };
-                let groups: Vec<Vec<Protocol>> = names.iter().map(of).collect();
-                Some(specimens_differ(&self.differing(&groups)?, has_intervals))
-            }
-            (stated, _) => {
-                let each: Vec<Vec<Protocol>> = protocols.into_iter().map(|own| vec![own]).collect();
-                let factors = listed(&self.differing(&each)?);
-                let differ = format!(
-                    "the stresses of the {} {what} are {factors} times those of the law, which is more than the noise of each",
-                    each.len()
-                );
-                Some(if stated {
-                    format!("this law does not explain the specimen: {differ}; try another law")
-                } else {
-                    format!(
-                        "{differ}. Either this law does not explain them, or they are specimens that differ: the residuals of both look alike. State \
-                     which: `--one-specimen`, or `# specimen name: NAME` in each file"
-                    )
-                })
-            }
-        }
+        let groups: Vec<Pairs> = names.iter().map(of).collect();
+        return Some(specimens_differ(&differing(&groups)?, has_intervals));
     }
-
-    /// The factors of some groups of protocols where they differ by more than chance.
-    fn differing(&self, groups: &[Vec<Protocol>]) -> Option<Vec<f64>> {
-        if groups.len() < 2 {
-            return None;
-        }
-        let factors: Option<Vec<[f64; 2]>> = groups.iter().map(|own| self.factor(own)).collect();
-        let factors = factors?;
-        let freedom = factors.len() as f64 - 1.0;
-        // χ² by Wilson's and Hilferty's cube root.
-        let deviate = ((cochran(&factors) / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
-            / (2.0 / (9.0 * freedom)).sqrt();
-        (deviate > CLEARLY).then(|| factors.iter().map(|[factor, _]| *factor).collect())
-    }
+    let what = match tests[0].test {
+        Test::Biaxial => "protocols",
+        _ => "tests",
+    };
+    let each: Vec<Pairs> = tests.iter().flat_map(protocols).collect();
+    let differ = format!(
+        "the stresses of the {} {what} are {} times those of the law, which is more than the noise of each",
+        each.len(),
+        listed(&differing(&each)?)
+    );
+    Some(if is_stated {
+        format!("this law does not explain the specimen: {differ}; try another law")
+    } else {
+        format!(
+            "{differ}. Either this law does not explain them, or they are specimens that differ: the residuals of both look alike. State \
+             which: `--one-specimen`, or `# specimen name: NAME` in each file"
+        )
+    })
 }
 
-/// A part of a test that was pulled one way.
-#[derive(Clone, Copy)]
-struct Protocol<'a> {
-    test: &'a TestData,
-    rows: &'a [Observation],
+/// The factors of some groups of protocols where they differ by more than chance.
+fn differing(groups: &[Pairs]) -> Option<Vec<f64>> {
+    if groups.len() < 2 {
+        return None;
+    }
+    let factors: Option<Vec<[f64; 2]>> = groups.iter().map(factor).collect();
+    let factors = factors?;
+    let freedom = factors.len() as f64 - 1.0;
+    // χ² by Wilson's and Hilferty's cube root.
+    let deviate = ((cochran(&factors) / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
+        / (2.0 / (9.0 * freedom)).sqrt();
+    (deviate > CLEARLY).then(|| factors.iter().map(|[factor, _]| *factor).collect())
 }
 
-impl<'a> Protocol<'a> {
-    fn of(test: &'a TestData) -> impl Iterator<Item = Self> {
-        let all = test.protocols().into_iter();
-        all.filter(|rows| rows.len() >= FEWEST)
-            .map(move |rows| Self { test, rows })
-    }
+/// How many times the law's stress was measured, and its variance by the noise of the rows, neighbours of which may correlate.
+fn factor(pairs: &Pairs) -> Option<[f64; 2]> {
+    let square: f64 = pairs.iter().map(|[fitted, _]| fitted * fitted).sum();
+    let along: f64 = pairs.iter().map(|[fitted, left]| fitted * left).sum();
+    let factor = along / square;
+    let rest = pairs.iter().map(|[fitted, left]| left - factor * fitted);
+    let rest: Vec<f64> = rest.collect();
+    let squares: f64 = rest.iter().map(|left| left * left).sum();
+    let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    let correlation = (products / squares).clamp(0.0, 0.99);
+    let fewer = (1.0 + correlation) / (1.0 - correlation);
+    let variance = fewer * squares / (pairs.len() as f64 - 1.0) / square;
+    (pairs.len() >= FEWEST && variance > 0.0).then_some([1.0 + factor, variance])
 }
 
 /// Numbers of three decimals.

@@ -122,28 +122,6 @@ fn what_smooth_functions_go_past_is_named() {
     assert_eq!(asked_for(&found), None);
 }
 
-#[test]
-fn spikes_of_force_and_extension_are_told() {
-    let spiked = |signal: fn(&mut Recording) -> &mut Vec<f64>, by: f64| {
-        let mut recording = swinging(|_| 0.2, |_| 0.004);
-        let values = signal(&mut recording);
-        (0..24).for_each(|i| values[20 + 49 * i] += by);
-        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
-        found.verdict.doubts.join("; ")
-    };
-    let force = spiked(|own| &mut own.force, 0.6);
-    assert!(
-        force.contains("the force has 24 spikes, the first at 0.10000 s"),
-        "{force}"
-    );
-    let extension = spiked(|own| &mut own.extension, 3.0);
-    assert!(
-        extension.contains("the extension has 24 spikes"),
-        "{extension}"
-    );
-    assert!(!extension.contains("corners"), "{extension}");
-}
-
 /// What a recording asks for by its verdict.
 fn asked_for(found: &Identification) -> Option<String> {
     let first = found.verdict.reasons.first()?;

@@ -4,7 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::alternatives::{Column, Granted};
 use super::rows::Rows;
+use crate::estimation::equations::{Equations, Linear};
 use crate::estimation::outcome::{Alternative, Trial};
+use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::{NearestField, Scored};
 use crate::estimation::uncertainty::MeshError;
 use crate::statistics::{
@@ -58,33 +60,34 @@ struct Likelihood {
 }
 
 impl Model {
-    /// That of a search, about its field.
-    pub fn of_search(rows: &Rows, found: &NearestField) -> Self {
+    /// That of a regression about the field that was found, with its conditions or others.
+    fn new(
+        rows: &Rows,
+        equations: &Equations,
+        linear: &Linear,
+        fit: &Fit,
+        variances: &VarianceComponents,
+    ) -> Self {
+        let residual = DMatrix::from_columns(std::slice::from_ref(&fit.residual));
         Self {
-            design: rows.scaled(&found.linear.design),
-            residual: rows.residual.clone(),
-            held: found.fit.held.clone(),
-            slope: found.slope(&found.linear.design, &found.fit.residual, &found.variances),
+            design: rows.scaled(&linear.design),
+            residual: rows.scaled(&residual).column(0).into_owned(),
+            held: fit.held.clone(),
+            // At the best fit the slope of the penalties is that of the data: −AᵀWr/v.
+            slope: equations.target_of(fit.residual.as_slice(), linear, variances),
         }
+    }
+
+    /// That of a search.
+    pub fn of_search(rows: &Rows, found: &NearestField) -> Self {
+        let (linear, fit, variances) = (&found.linear, &found.fit, &found.variances);
+        Self::new(rows, &found.equations, linear, fit, variances)
     }
 
     /// That of one regression with other conditions.
     pub fn of_score(rows: &Rows, found: &NearestField, scored: &Scored) -> Self {
-        let left = DMatrix::from_column_slice(
-            scored.fit.residual.len(),
-            1,
-            scored.fit.residual.as_slice(),
-        );
-        Self {
-            design: rows.scaled(&scored.linear.design),
-            residual: rows.scaled(&left).column(0).into_owned(),
-            held: scored.fit.held.clone(),
-            slope: found.slope(
-                &scored.linear.design,
-                &scored.fit.residual,
-                &scored.variances,
-            ),
-        }
+        let (linear, fit, variances) = (&scored.linear, &scored.fit, &scored.variances);
+        Self::new(rows, &found.equations, linear, fit, variances)
     }
 
     /// The model with further columns without penalty.

@@ -1,6 +1,6 @@
 //! The rows of sound markers in the last regression, over the noise.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::estimation::regression::{Fit, VarianceComponents, squares};
 use crate::estimation::search::NearestField;
@@ -18,8 +18,6 @@ pub struct Rows {
     pub sites: Sites,
     /// √(w ω)/s of each, s the noise's standard deviation.
     scales: Vec<f64>,
-    /// r √(w ω)/s, of variance one where the noise is white.
-    pub residual: DVector<f64>,
     /// Difference of the largest and the smallest coordinates, in mm.
     pub extent: [f64; 2],
     /// √(area of the box over the number of markers), in mm.
@@ -57,14 +55,12 @@ impl Rows {
             weights.map(|weight| (weight * trust / found.variances.sound).sqrt())
         };
         let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
-        let left = |row: usize| scales[row] * found.fit.residual[2 * chosen[row / 2] + row % 2];
         let places: Vec<[f64; 2]> = chosen.iter().map(|row| observations.places[*row]).collect();
         let extent = [0, 1].map(|axis| {
             let [low, high] = extremes(places.iter().map(|place| place[axis]));
             (high - low).max(f64::MIN_POSITIVE)
         });
         Some(Self {
-            residual: DVector::from_fn(2 * chosen.len(), |row, _| left(row)),
             sites: Sites::new(places),
             spacing: (extent[0] * extent[1] / chosen.len() as f64).sqrt(),
             extent,

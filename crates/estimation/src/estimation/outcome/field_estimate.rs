@@ -82,8 +82,6 @@ pub struct FieldEstimate {
     pub force_checks: Vec<ForceCheck>,
     /// The statements on the edges that the data contradict.
     pub contradiction: Option<Contradiction>,
-    /// The correlation of the residuals of neighbouring markers, where there are enough of them.
-    pub whiteness: Option<Whiteness>,
     /// Whether law, thickness and conditions explain the data.
     pub verdict: Verdict,
 }
@@ -187,9 +185,6 @@ pub struct EdgeOutcome {
     pub condition: EdgeCondition,
     /// Where the data have chosen between free and loaded: the probability of the misfit if the edge is free.
     pub probability: Option<f64>,
-    /// Whether its force is zero within an interval that is small compared with the largest force, though the data
-    /// have refused it as a free edge: such an edge lies elsewhere.
-    pub idle: bool,
 }
 
 /// The residual of a marker.
@@ -225,40 +220,4 @@ pub struct Contradiction {
     pub probability: f64,
     /// The edges that contradict on their own, each with this probability; empty where they do so only together.
     pub edges: Vec<(String, f64)>,
-}
-
-/// The correlation of the residuals of neighbouring markers.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Whiteness {
-    /// Moran's I of both components together.
-    pub correlation: f64,
-    /// Its expected value for white noise.
-    pub expected: f64,
-    /// Its standard deviation for white noise.
-    pub deviation: f64,
-    /// I of ux and of uy.
-    pub of_components: [f64; 2],
-    /// Half the mean squared difference of residuals over the noise, by distance: 1 everywhere for white noise.
-    pub variogram: Vec<VariogramBin>,
-}
-
-/// The variogram at about one distance.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub struct VariogramBin {
-    /// The mean distance in mm.
-    pub distance: f64,
-    /// The number of pairs of markers.
-    pub pairs: usize,
-    /// The variogram of ux and of uy.
-    pub of_components: [f64; 2],
-}
-
-impl Whiteness {
-    /// Whether the residuals are white: their correlation is within four standard deviations of that of white noise, or hardly any.
-    pub fn is_white(&self) -> bool {
-        const SURE: f64 = 4.0;
-        const LITTLE: f64 = 0.05;
-        let more = self.correlation - self.expected;
-        more <= (SURE * self.deviation).max(LITTLE)
-    }
 }

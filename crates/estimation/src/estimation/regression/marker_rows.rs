@@ -30,7 +30,7 @@ impl MarkerRows<'_> {
     }
 
     /// Ã.
-    pub fn scaled(&self) -> DMatrix<f64> {
+    fn scaled(&self) -> DMatrix<f64> {
         let scale = |row: usize| {
             let weight = self.variances.weight(self.weights, row);
             (weight / self.variances.variance).sqrt()

@@ -73,19 +73,6 @@ fn standard_errors_are_the_scatter_over_seeds() {
     });
     let held = held.count();
     assert!(held >= 34, "{held} of 40 intervals of the force hold it");
-    // Moran's I of white noise: its mean and its scatter are as its null distribution says.
-    let standardised = |found: &FieldEstimate| {
-        let white = found.whiteness.clone().unwrap();
-        assert!(white.is_white(), "{white:?}");
-        (white.correlation - white.expected) / white.deviation
-    };
-    let standardised: Vec<f64> = all.iter().map(standardised).collect();
-    let square = mean(standardised.iter().map(|z| z * z).collect());
-    let centre = mean(standardised);
-    assert!(
-        centre.abs() < 0.63 && square > 0.4 && square < 1.9,
-        "{centre} {square}"
-    );
     // One of a thousand sound markers is taken for an outlier: 9.2 of 9240.
     let outliers = all.iter().flat_map(|found| found.markers.iter().flatten());
     let outliers = outliers.filter(|marker| marker.outlier).count();
@@ -195,6 +182,5 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
         &with_grips(EdgeCondition::Rigid),
     )
     .unwrap();
-    let white = found.whiteness.clone().unwrap();
-    assert!(!white.is_white() && white.correlation > 0.1, "{white:?}");
+    assert_ne!(found.verdict.answer, Answer::Explained);
 }

@@ -17,9 +17,8 @@ use crate::units::{decimals, number};
 type Doubt = (String, &'static str);
 
 /// The rules that each frame is checked by, the likeliest cause of others first.
-const RULES: [fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>; 10] = [
+const RULES: [fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>; 9] = [
     unknown_edge,
-    |_, estimate| idle_edges(estimate),
     |_, estimate| contradicted_edges(estimate),
     |_, estimate| contradicted_force(estimate),
     |_, estimate| not_explained(estimate),
@@ -118,25 +117,6 @@ fn unknown_edge(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> 
             "give the edges and holes with --outline or --mesh, or set --edge-gap if the report estimates how far the free edges lie from those of the mesh",
         )
     })
-}
-
-/// Edges that are free, but not at the mesh's position.
-fn idle_edges(estimate: &FieldEstimate) -> Option<Doubt> {
-    let idle = estimate.edges.iter().filter(|edge| edge.idle);
-    let names: Vec<&str> = idle.map(|edge| edge.edge.as_str()).collect();
-    let words = match names.len() {
-        0 => return None,
-        1 => "carries no force, but the data reject a free edge there",
-        _ => "carry no force, but the data reject free edges there",
-    };
-    let message = format!(
-        "{} {words}: the specimen probably ends elsewhere, and forces correspond to the mesh's width",
-        names.join(", ")
-    );
-    Some((
-        message,
-        "state how far the edges lie outside the markers with --edge-gap, or give them with --outline or --mesh",
-    ))
 }
 
 fn contradicted_edges(estimate: &FieldEstimate) -> Option<Doubt> {

@@ -89,18 +89,6 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
         "steps": estimate.steps,
         "errors_hold_the_mesh": estimate.holds_mesh_error,
         "mesh_error_dominates_area_percent": 100.0 * estimate.coarse_share(&field.mesh),
-        "residual_correlation": estimate.whiteness.as_ref().map(|found| json!({
-            "of_neighbours": found.correlation,
-            "of_components": found.of_components,
-            "of_white_noise": found.expected,
-            "standard_deviation": found.deviation,
-            "is_white": found.is_white(),
-            "variogram": found.variogram.iter().map(|bin| json!({
-                "distance_mm": bin.distance,
-                "pairs": bin.pairs,
-                "of_components": bin.of_components,
-            })).collect::<Vec<_>>(),
-        })),
         "forces_are_given_the_card": estimate.is_given_the_law,
         "measured_forces": checks.collect::<Vec<_>>(),
         "forces": forces(estimate),

@@ -179,15 +179,9 @@ fn frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> [Block; 2] {
         "residual [mm]",
         "effective parameters",
         "largest standard error [mm]",
-        "residual correlation of neighbours (expected for white noise)",
         "steps",
     ];
     let rows = frames.map(|(frame, estimate)| {
-        let whiteness = estimate.whiteness.as_ref();
-        let correlation = whiteness.map(|white| {
-            let (expected, deviation) = (white.expected, white.deviation);
-            format!("{:.2} ({expected:.2} ± {deviation:.2})", white.correlation)
-        });
         let noise = match estimate.noise_ratio {
             _ if estimate.known_noise => "given",
             Some(_) => "given, scaled",
@@ -205,7 +199,6 @@ fn frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> [Block; 2] {
             decimals(residual_rms(estimate), 5),
             format!("{:.1}", estimate.effective_parameters),
             error.unwrap_or_else(|| "no interval".to_owned()),
-            correlation.unwrap_or_default(),
             estimate.steps.to_string(),
         ]
     });

@@ -205,23 +205,7 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         blocks.push(Block::table(&head, rows));
         blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));
     }
-    blocks.extend(estimates.last().and_then(variogram));
     blocks
-}
-
-/// Half the mean squared difference of residuals, by distance.
-fn variogram(estimate: &FieldEstimate) -> Option<Block> {
-    let rows = estimate.whiteness.as_ref()?.variogram.iter().map(|bin| {
-        let [x, y] = bin.of_components.map(|value| format!("{value:.3}"));
-        vec![decimals(bin.distance, 4), bin.pairs.to_string(), x, y]
-    });
-    let head = [
-        "distance [mm]",
-        "pairs",
-        "variogram of ux",
-        "variogram of uy",
-    ];
-    Some(Block::table(&head, rows))
 }
 
 /// The verdict for machines.
