@@ -36,9 +36,9 @@ mod tests;
 mod way;
 
 pub use crate::problem::RigidMotion;
+use fall::Fall;
 pub use grid::{Field, Grid};
-pub use level::Work;
-use level::{Ending, Iteration, Level};
+use level::{Ending, Level};
 pub use mesh::between_nodes;
 pub use path::{Grips, Interactive};
 pub(super) use ratios::{Ratios, geometric_tail};
@@ -85,8 +85,6 @@ pub struct ClimbSolution {
     pub error_is_sure: bool,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
-    /// The work of the iteration on each grid, coarse to fine: number of nodes, and work.
-    pub work: Vec<(usize, Work)>,
     /// The way to the field.
     pub way: Way,
 }
@@ -217,16 +215,16 @@ impl<'a> Climb<'a> {
         index: usize,
         field: &mut Field,
         enough: &dyn Fn(f64, f64) -> bool,
-    ) -> Result<Iteration, SolveFault> {
+    ) -> Result<Fall, SolveFault> {
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
-        let mut whole: Option<Iteration> = None;
+        let mut whole: Option<Fall> = None;
         self.check_operators()?;
         for _ in 0..LINEARISATIONS {
             let level = &mut self.levels[index];
             level
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
-            let first = whole.as_ref().map(|whole| whole.fall.first());
+            let first = whole.as_ref().map(Fall::first);
             let ending = Ending {
                 most,
                 weakest: self.weakest,
@@ -235,18 +233,17 @@ impl<'a> Climb<'a> {
             let mut reached = level
                 .iterate(sheet, field, &mut self.multigrid, &ending)
                 .map_err(|Inverted| inverted())?;
-            reached.work.linearisations += 1;
             if let Some(whole) = whole.take() {
                 reached = whole.followed_by(reached);
             }
-            if enough(reached.fall.first(), reached.fall.left()) {
+            if enough(reached.first(), reached.left()) {
                 return Ok(reached);
             }
             whole = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.fall.left() / whole.fall.first()),
+            residual: whole.map_or(f64::NAN, |whole| whole.left() / whole.first()),
             tolerance: self.settings.tolerance,
         })
     }

@@ -30,26 +30,6 @@ pub struct Level {
     correction: Field,
 }
 
-/// The work of an iteration.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Work {
-    /// Evaluations of F on this grid.
-    pub evaluations: usize,
-    /// Linearisations of F on this grid.
-    pub linearisations: usize,
-    /// V-cycles that began on this grid.
-    pub cycles: usize,
-}
-
-impl Work {
-    /// Adds other work on the same grid.
-    pub fn add(&mut self, other: Self) {
-        self.evaluations += other.evaluations;
-        self.linearisations += other.linearisations;
-        self.cycles += other.cycles;
-    }
-}
-
 /// A correction z = M⁻¹ r.
 #[derive(Clone, Copy, Debug)]
 struct Preconditioned {
@@ -57,26 +37,6 @@ struct Preconditioned {
     steepness: f64,
     /// Root mean square of z over the nodes in mm.
     size: f64,
-}
-
-/// The result of an iteration.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Iteration {
-    /// Its corrections: the first shows how far away the start was, the last one has been applied.
-    pub fall: Fall,
-    /// Its work.
-    pub work: Work,
-}
-
-impl Iteration {
-    /// This iteration and its continuation as one.
-    pub fn followed_by(mut self, more: Self) -> Self {
-        self.work.add(more.work);
-        Self {
-            fall: self.fall.followed_by(more.fall),
-            work: self.work,
-        }
-    }
 }
 
 /// The stopping criteria of an iteration.
@@ -149,14 +109,9 @@ impl Level {
         u: &mut Field,
         multigrid: &mut Multigrid,
         ending: &Ending,
-    ) -> Result<Iteration, Inverted> {
-        let mut work = Work {
-            evaluations: 1,
-            ..Work::default()
-        };
+    ) -> Result<Fall, Inverted> {
         self.evaluate_residual(sheet, u)?;
         let mut found = self.precondition(multigrid);
-        work.cycles += 1;
         let mut fall = Fall::new(found.size, ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
@@ -166,15 +121,14 @@ impl Level {
             if (ending.enough)(fall.first(), fall.left()) {
                 break;
             }
-            let length = self.step(sheet, u, share, &mut work)?;
+            let length = self.step(sheet, u, share)?;
             let before = found.steepness;
             found = self.precondition(multigrid);
-            work.cycles += 1;
             share = found.steepness / before;
             fall.push(found.size, length, share);
         }
         u.add(-1.0, &self.correction);
-        Ok(Iteration { fall, work })
+        Ok(fall)
     }
 
     /// The correction z = M⁻¹ r of the residual, which is zero at the grips.
@@ -296,17 +250,10 @@ impl Level {
     }
 
     /// Turns the direction, p = β p − z, and goes along it until the residual is orthogonal to it; returns how far.
-    fn step(
-        &mut self,
-        sheet: Sheet,
-        u: &mut Field,
-        share: f64,
-        work: &mut Work,
-    ) -> Result<f64, Inverted> {
+    fn step(&mut self, sheet: Sheet, u: &mut Field, share: f64) -> Result<f64, Inverted> {
         self.turn(u, share);
         let mut length = 1.0;
         loop {
-            work.evaluations += 1;
             let done = sheet.forces(&self.grid, &self.trial, &mut self.trial_residual);
             match done {
                 Ok(()) => break,
