@@ -78,11 +78,10 @@ pub struct ClimbSolution {
     pub field: Field,
     /// Force on the moving grip in N.
     pub force: f64,
-    /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only.
+    /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only. It is known
+    /// within a factor of about two where the finest grid has twice as many cells along both axes as the one before, and that one at least
+    /// four elements; otherwise its order is right, and it is mostly too large.
     pub discretisation_error: f64,
-    /// Whether the discretisation error is known within a factor of about two: this takes a finest grid with twice as many cells along both
-    /// axes as the one before, and at least four elements in that one. Otherwise its order is right, and it is mostly too large.
-    pub error_is_sure: bool,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
     /// The way to the field.

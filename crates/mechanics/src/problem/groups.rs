@@ -1,7 +1,7 @@
 //! Groups of a mesh: found by their names, and means over them.
 
 use crate::error::Diagnostic;
-use crate::mesh::{Group, Mesh};
+use crate::mesh::{GAUSS_3, Group, Mesh};
 
 /// The group of a name.
 ///
@@ -76,13 +76,8 @@ pub fn mean(shares: &[(usize, f64)], of_node: &dyn Fn(usize, usize) -> f64) -> [
 
 /// The share of an edge's length that belongs to each of its nodes, in mm.
 pub fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
-    const GAUSS: [(f64, f64); 3] = [
-        (-0.774_596_669_241_483_4, 5.0 / 9.0),
-        (0.0, 8.0 / 9.0),
-        (0.774_596_669_241_483_4, 5.0 / 9.0),
-    ];
     let mut shares: Vec<(usize, f64)> = edge.iter().map(|node| (*node, 0.0)).collect();
-    for (x, weight) in GAUSS {
+    for (x, weight) in GAUSS_3 {
         let (values, slopes) = edge_functions(edge.len(), x);
         let tangent = [0, 1].map(|axis| {
             let nodes = edge.iter().zip(&slopes);

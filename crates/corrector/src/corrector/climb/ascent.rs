@@ -88,11 +88,6 @@ impl Ascent {
         (self.index, self.field, self.change) = (index, field, Some(interpolated));
     }
 
-    /// Whether a change is known, and all changes are between consecutive grids.
-    fn follows_all_grids(&self) -> bool {
-        self.change.is_some() && self.way.by_load_path.is_empty()
-    }
-
     /// The sum of d q + d q² + … that all finer grids would add.
     fn discretisation_error(&self) -> f64 {
         geometric_tail(self.size, self.ratio)
@@ -122,20 +117,10 @@ impl Climb<'_> {
         Ok(ClimbSolution {
             force,
             discretisation_error: ascent.discretisation_error(),
-            error_is_sure: ascent.follows_all_grids() && self.tells_error(),
             field: ascent.field,
             corrections: ascent.corrections,
             way: ascent.way,
         })
-    }
-
-    /// Whether the finest grids determine the discretisation error: see [`ClimbSolution::error_is_sure`].
-    fn tells_error(&self) -> bool {
-        let [.., coarse, fine] = &self.levels[..] else {
-            return false;
-        };
-        let [coarse, fine] = [coarse, fine].map(|level| level.grid.cells());
-        (0..2).all(|axis| fine[axis] == 2 * coarse[axis] && coarse[axis] >= 4 * self.scheme.side())
     }
 
     /// Climbs one grid by the iteration: from the expected change, otherwise from zero change.

@@ -58,7 +58,6 @@ impl ClimbSolution {
             field,
             force,
             discretisation_error,
-            error_is_sure: false,
             corrections: reached.corrections,
             way: Way::from_start(Start::StatesBefore, cells),
         }
