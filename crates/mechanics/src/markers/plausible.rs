@@ -29,9 +29,6 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
 }
 
 /// Checks that the data have displacements that are consistent with the places.
-///
-/// # Errors
-/// [`Error::Input`] when there is no displacement, or one in another unit.
 pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<(), Error> {
     if series.frames.is_empty() {
         return Err(Error::input(

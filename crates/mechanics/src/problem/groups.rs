@@ -4,9 +4,6 @@ use crate::error::Diagnostic;
 use crate::mesh::{GAUSS_3, Group, Mesh};
 
 /// The group of a name.
-///
-/// # Errors
-/// A [`Diagnostic`] about a support or a load, `what`, when the mesh has no such group.
 pub fn named<'a>(what: &str, mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
     let groups = mesh.groups();
     groups.get(name).ok_or_else(|| {

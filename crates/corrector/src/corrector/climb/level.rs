@@ -76,17 +76,11 @@ impl Level {
     }
 
     /// Writes F(u) in N at all nodes to [`Self::residual`]; at the grips these are the reactions.
-    ///
-    /// # Errors
-    /// [`Inverted`].
     pub fn evaluate_residual(&mut self, sheet: Sheet, u: &Field) -> Result<(), Inverted> {
         sheet.forces(&self.grid, u, &mut self.residual)
     }
 
     /// Assembles the operator at `u`.
-    ///
-    /// # Errors
-    /// [`Inverted`].
     pub fn linearise(
         &self,
         sheet: Sheet,
@@ -100,9 +94,6 @@ impl Level {
 
     /// Moves the free nodes of `u` towards F(u) = 0 by conjugate gradients, whose products with the Jacobian are
     /// differences of F and whose preconditioner is one V-cycle with the operators assembled before.
-    ///
-    /// # Errors
-    /// [`Inverted`] when `u` or every step from it turns a cell inside out.
     pub fn iterate(
         &mut self,
         sheet: Sheet,

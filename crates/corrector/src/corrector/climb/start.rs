@@ -37,9 +37,6 @@ const FIRST_TOLERANCE: f64 = 0.05;
 impl Climb<'_> {
     /// The corrected field on the first grid: the first of all starts that can be corrected there, or Newton's method
     /// along a path of load steps, there or on the next finer grid on which it finds an equilibrium.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] with the reason on the finest grid.
     pub(super) fn first_field(&mut self, stretch: f64) -> Result<Ascent, Error> {
         for steps in [1].into_iter().chain(LOAD_STEPS) {
             if let Some(first) = self.correct_springs(steps, stretch) {

@@ -29,9 +29,6 @@ pub(in crate::corrector) enum Form {
 }
 
 /// δ and ψ of the system with the curvature C of the conditions: [W + C, Bᵀ; B, 0] [δ; ψ] = [W (ū − u); −c].
-///
-/// # Errors
-/// [`FactorFault`] when the system is singular to working precision.
 pub(in crate::corrector) fn project_curved(
     jacobian: &SparseRows,
     weights: &[f64],
@@ -87,9 +84,6 @@ pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, Fact
 }
 
 /// Q (n × m, orthonormal columns) and R (m × m) of W^(−½) Bᵀ = Q R.
-///
-/// # Errors
-/// [`FactorFault`] when rows of B depend on each other.
 pub(in crate::corrector) fn weighted_qr(
     jacobian: &SparseRows,
     weights: &[f64],
