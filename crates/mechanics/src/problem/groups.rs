@@ -27,24 +27,22 @@ pub fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
 ///
 /// An unweighted mean over nodes would depend on where they lie.
 pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
-    let Group {
-        nodes,
-        edges,
-        lines,
-        cells,
-    } = group;
     let along = |sides: &[Vec<usize>]| -> Vec<(usize, f64)> {
         let sides = sides.iter();
         sides.flat_map(|side| edge_lengths(mesh, side)).collect()
     };
-    let measures: Vec<(usize, f64)> = match [edges.is_empty(), cells.is_empty(), lines.is_empty()] {
-        [false, ..] => along(edges),
+    let measures: Vec<(usize, f64)> = match [
+        group.edges.is_empty(),
+        group.cells.is_empty(),
+        group.lines.is_empty(),
+    ] {
+        [false, ..] => along(&group.edges),
         [_, false, _] => {
-            let cells = cells.iter();
+            let cells = group.cells.iter();
             cells.flat_map(|cell| mesh.area_parts(*cell)).collect()
         }
-        [_, _, false] => along(lines),
-        _ => nodes.iter().map(|node| (*node, 1.0)).collect(),
+        [_, _, false] => along(&group.lines),
+        _ => group.nodes.iter().map(|node| (*node, 1.0)).collect(),
     };
     let whole: f64 = measures.iter().map(|(_, measure)| measure).sum();
     let shares = measures.into_iter();

@@ -30,15 +30,6 @@ pub struct Level {
     correction: Field,
 }
 
-/// A correction z = M⁻¹ r.
-#[derive(Clone, Copy, Debug)]
-struct Preconditioned {
-    /// r · z.
-    steepness: f64,
-    /// Root mean square of z over the nodes in mm.
-    size: f64,
-}
-
 /// The stopping criteria of an iteration.
 pub struct Ending<'a> {
     /// Most iterations.
@@ -102,8 +93,8 @@ impl Level {
         ending: &Ending,
     ) -> Result<Fall, Inverted> {
         self.evaluate_residual(sheet, u)?;
-        let mut found = self.precondition(multigrid);
-        let mut fall = Fall::new(found.size, ending.weakest);
+        let [mut steepness, size] = self.precondition(multigrid);
+        let mut fall = Fall::new(size, ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
         }
@@ -113,17 +104,17 @@ impl Level {
                 break;
             }
             let length = self.step(sheet, u, share)?;
-            let before = found.steepness;
-            found = self.precondition(multigrid);
-            share = found.steepness / before;
-            fall.push(found.size, length, share);
+            let [next, size] = self.precondition(multigrid);
+            share = next / steepness;
+            steepness = next;
+            fall.push(size, length, share);
         }
         u.add(-1.0, &self.correction);
         Ok(fall)
     }
 
-    /// The correction z = M⁻¹ r of the residual, which is zero at the grips.
-    fn precondition(&mut self, multigrid: &mut Multigrid) -> Preconditioned {
+    /// The correction z = M⁻¹ r of the residual, which is zero at the grips: r · z, and the root mean square of z over the nodes in mm.
+    fn precondition(&mut self, multigrid: &mut Multigrid) -> [f64; 2] {
         let width = self.residual.width;
         let residual = &self.residual;
         let right = multigrid.right_hand_side(self.index);
@@ -162,10 +153,7 @@ impl Level {
             product += own;
             squares += square;
         }
-        Preconditioned {
-            steepness: product,
-            size: (squares / self.grid.nodes() as f64).sqrt(),
-        }
+        [product, (squares / self.grid.nodes() as f64).sqrt()]
     }
 
     /// p = β p − z, and the trial u + p.
@@ -202,8 +190,7 @@ impl Level {
         let mut image = Field::zeros(&self.grid);
         self.residual.clone_from(b);
         self.residual.scale(-1.0);
-        let mut found = self.precondition(multigrid);
-        let first = found.size;
+        let [mut steepness, first] = self.precondition(multigrid);
         self.direction.scale(0.0);
         let mut share = 0.0;
         for _ in 0..LINEAR_ITERATIONS {
@@ -223,10 +210,10 @@ impl Level {
             x.add(length, &self.direction);
             image.add(length, &self.trial_residual);
             self.residual.add(length, &self.trial_residual);
-            let before = found.steepness;
-            found = self.precondition(multigrid);
-            share = found.steepness / before;
-            if found.size <= tolerance * first {
+            let [next, size] = self.precondition(multigrid);
+            share = next / steepness;
+            steepness = next;
+            if size <= tolerance * first {
                 let free = u.free();
                 for (axis, x) in x.components.iter_mut().enumerate() {
                     let held = (0..x.len()).filter(|node| !free.contains(node));
