@@ -76,12 +76,6 @@ impl<'a> Sum<'a> {
         Self::new(energy, forces)
     }
 
-    fn of_second(&self, fault: Inadmissible) -> Inadmissible {
-        Inadmissible {
-            element: self.first.elements() + fault.element,
-        }
-    }
-
     /// The part to which an element belongs, and its number there.
     fn part(&self, element: usize) -> (&dyn Potential, usize) {
         match element.checked_sub(self.first.elements()) {
@@ -116,7 +110,10 @@ impl Potential for Sum<'_> {
                 (first, self.second.evaluate(u, forces, Some(&mut own)))
             }
         };
-        Ok(first + second.map_err(|fault| self.of_second(fault))?)
+        let of_second = |fault: Inadmissible| Inadmissible {
+            element: before + fault.element,
+        };
+        Ok(first + second.map_err(of_second)?)
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
