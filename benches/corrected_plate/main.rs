@@ -39,7 +39,7 @@ use gelbench_report::output;
 use peak_alloc::PeakAlloc;
 use rayon::ThreadPoolBuilder;
 
-use measure::{Bench, SCHEMES};
+use measure::Bench;
 use reference::{PUBLISHED_FORCE, Reference};
 use table::Row;
 use verdict::Verdicts;
@@ -161,13 +161,6 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
     verdicts.equal_accuracy(&runs);
     if !equal_accuracy {
         verdicts.rows(&rows);
-        let stretches: Vec<f64> = (1..=100).map(|percent| 0.01 * f64::from(percent)).collect();
-        let path = Layout::equal([60, 20]);
-        for scheme in SCHEMES.into_iter().filter(|scheme| path.suits(*scheme)) {
-            let error = table::own_error(&runs, [60, 20], scheme);
-            let path = || states::path(&problem, [60, 20], scheme, &stretches, error);
-            verdicts.path(&pools[0].install(path)?);
-        }
         verdicts.frames(&pools[0].install(|| states::frames(&problem, [180, 60], 100))?);
     }
     let missed = verdicts.print();

@@ -137,16 +137,6 @@ impl<'a> Opponent<'a> {
         squares.sum::<f64>().sqrt()
     }
 
-    /// Moves the grip of a field to another stretch.
-    pub fn impose(&self, stretch: f64, u: &mut [f64]) {
-        let mesh = &self.mesh;
-        for (node, u) in u.chunks_exact_mut(2).enumerate() {
-            if let Some(held) = self.problem.grip_displacement(mesh, node, stretch) {
-                u.copy_from_slice(&held);
-            }
-        }
-    }
-
     /// Force on the moving grip in N: the virtual work of all forces in a uniform stretch, which feels what the
     /// iteration left far less than the sum of the reactions does.
     pub fn force(&self, u: &[f64]) -> f64 {

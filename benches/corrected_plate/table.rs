@@ -9,7 +9,7 @@ use super::columns::{Columns, number, ratio};
 use super::lines;
 use super::measure::Run;
 use super::opponent::Guess;
-use super::way::{Layout, Way, element_name, scheme_name};
+use super::way::{Way, element_name, scheme_name};
 
 /// The climb on one grid beside its opponents; times in s.
 pub struct Row<'a> {
@@ -128,16 +128,6 @@ impl<'a> Row<'a> {
             ("same_bits_as_one_thread", climb.same_bits.to_string()),
         ]
     }
-}
-
-/// The finite elements' own error on a grid of nodes, relative to the departure from affine.
-pub fn own_error(runs: &[Run], cells: [usize; 2], scheme: DifferenceScheme) -> f64 {
-    let way = Way::FiniteElements(scheme, Guess::Affine);
-    let layout = Layout::equal(cells);
-    let found = runs
-        .iter()
-        .find(|run| run.way == way && run.layout == layout);
-    0.01 * found.expect("measured").departure_percent
 }
 
 /// One run as soon as it is measured.

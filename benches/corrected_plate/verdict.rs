@@ -4,7 +4,7 @@ use super::lines::{Lines, exponent};
 use super::measure::{Run, SCHEMES};
 use super::opponent::Guess;
 use super::reference::{PUBLISHED_FORCE, Reference};
-use super::states::{Frames, PathTimes};
+use super::states::Frames;
 use super::table::{Row, best};
 use super::way::{Way, scheme_name};
 use gelbench::corrector::DifferenceScheme;
@@ -197,27 +197,6 @@ impl Verdicts {
             points.len()
         );
         self.lines.put(slope <= 1.05, text);
-    }
-
-    /// The path of many states: built-in and tuned opponents.
-    pub fn path(&mut self, path: &PathTimes) {
-        let scheme = scheme_name(path.scheme);
-        for (name, seconds) in [("built-in", path.built_in), ("tuned", path.tuned)] {
-            let ratio = seconds / path.climb;
-            let text = format!(
-                "times faster over {} states at 60 × 20 cells, {scheme}, {name} finite elements: {ratio:.1} (at least 20); \
-                 {:.1} ms against {:.1} ms",
-                path.states,
-                1e3 * path.climb,
-                1e3 * seconds
-            );
-            self.lines.put(ratio >= 20.0, text);
-        }
-        println!(
-            "path, {scheme}: {} Newton iterations of the tuned finite elements in {} states, largest deviation of the \
-             climb's force from theirs {:.1e} %",
-            path.iterations, path.states, path.force_percent
-        );
     }
 
     /// Grips in the hand.

@@ -6,7 +6,6 @@ use std::time::Instant;
 use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings};
 use gelbench::error::Error;
-use gelbench::finite_element::Element;
 use gelbench::problem::ClampedPlate;
 use gelbench_corrector::corrector::climb::{Field, Grid};
 
@@ -97,14 +96,6 @@ pub fn element_name(scheme: DifferenceScheme) -> &'static str {
     ["Q1", "Q2", "Q3"][scheme.side() - 1]
 }
 
-/// The built-in finite elements with the same equations.
-pub fn built_in(scheme: DifferenceScheme) -> Element {
-    match scheme.side() {
-        1 => Element::Q1,
-        _ => Element::Q2,
-    }
-}
-
 /// What a way came to.
 pub struct Found {
     pub grid: Grid,
@@ -166,7 +157,7 @@ pub fn go(
     Ok(Found {
         grid: climb.grid().clone(),
         force: climbed.force,
-        iterations: climbed.work.last().map_or(0, |(_, work)| work.cycles),
+        iterations: climbed.corrections.len(),
         field: climbed.field,
         seconds,
         evaluation,

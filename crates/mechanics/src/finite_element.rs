@@ -54,7 +54,6 @@ pub struct FiniteElements {
     /// The element.
     pub element: Element,
     energy: SheetEnergy,
-    linear_solver: LinearSolver,
 }
 
 impl FiniteElements {
@@ -72,24 +71,13 @@ impl FiniteElements {
             mesh,
             element,
             energy,
-            linear_solver: LinearSolver::Automatic,
-        }
-    }
-
-    /// The same model with another linear solver.
-    #[must_use]
-    pub fn solved_by(self, linear_solver: LinearSolver) -> Self {
-        Self {
-            linear_solver,
-            ..self
         }
     }
 
     /// The plate on this mesh.
     pub fn model(&self, plate: &ClampedPlate) -> Model<'_> {
         let name = format!("finite elements ({})", self.describe());
-        let model = plate.on(&self.mesh, &self.energy).named(name);
-        model.solved_by(self.linear_solver)
+        plate.on(&self.mesh, &self.energy).named(name)
     }
 
     /// The strain energy.
@@ -124,7 +112,7 @@ impl FiniteElements {
         states: &[State],
         recovery: &Recovery,
     ) -> Vec<Result<ErrorEstimate, SolveFault>> {
-        let quarter = Quarter::of(plate, &self.mesh, self.linear_solver);
+        let quarter = Quarter::of(plate, &self.mesh, LinearSolver::Automatic);
         let by_quarter = quarter.and_then(|quarter| quarter.influences(states));
         let of_whole = || self.model(plate).influences(states, Side::Right.name(), 0);
         let influences = by_quarter.unwrap_or_else(of_whole);

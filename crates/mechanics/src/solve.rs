@@ -37,7 +37,8 @@ pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow};
 pub use pattern::SymmetricPattern;
 pub use potential::{
-    Inadmissible, Local, Potential, Remembering, SkewCoupling, Take, evaluate_by_elements,
+    Evaluated, Inadmissible, Local, Potential, Remembering, SkewCoupling, Take,
+    evaluate_by_elements,
 };
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};

@@ -46,7 +46,6 @@ pub const TARGETS: &[(&str, Entry)] = &[
     ("pvd", readers::pvd),
     ("frd", readers::frd),
     ("recording", readers::recording),
-    ("factor", readers::factor),
     ("run", studies::run),
     ("correct", data::correct),
     ("fit", data::fit),

@@ -3,17 +3,13 @@
 use std::path::Path;
 
 use gelbench::budget::Budget;
-use gelbench::corrector::Linear;
-use gelbench::corrector::{Corrector, CorrectorSettings, Solver};
 use gelbench::document::{Statements, Table};
 use gelbench::identification::Recording;
 use gelbench::kinds::{kind_of, read_as};
 use gelbench::markers::{ReadSettings, read};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, MeshReading, Outline, import};
-use gelbench::solve::SparseRows;
 use gelbench::studies::plate;
-use gelbench_corrector::corrector::retained;
 use gelbench_mechanics::markers::read_lines;
 use gelbench_mechanics::mesh::import_series;
 
@@ -138,46 +134,4 @@ pub fn recording(bytes: &[u8]) -> Became {
     Recording::of_table(&table, &Statements::new())
         .is_ok()
         .into()
-}
-
-/// A small corrector: two rows over four unknowns.
-fn corrector() -> Corrector<'static> {
-    let mut rows = SparseRows::new(4);
-    rows.push([(0, 1.0), (1, -2.0)]);
-    rows.push([(1, 0.5), (3, 1.0)]);
-    let condition = Linear::new("pins", rows, vec![0.5, -1.0]);
-    let settings = CorrectorSettings {
-        solver: Solver::Cholesky,
-        ..CorrectorSettings::default()
-    };
-    Corrector::new(
-        vec![Box::new(condition)],
-        vec![1.0, 2.0, 1.0, 4.0],
-        settings,
-    )
-}
-
-/// A kept factor is read and applied. Its checksum is made right first, so that what stands behind it is reached.
-pub fn factor(bytes: &[u8]) -> Became {
-    let corrector = corrector();
-    let _ = retained::from_bytes(bytes, &corrector);
-    let mut forged = bytes.to_vec();
-    if let Some(content) = forged.len().checked_sub(4) {
-        let checksum = checksum(&forged[..content]);
-        forged[content..].copy_from_slice(&checksum.to_le_bytes());
-    }
-    match retained::from_bytes(&forged, &corrector) {
-        Ok(mut factor) => {
-            let _ = factor.project(&[0.25, 1.0], &[0.0, 1.0, -1.0, 0.5]);
-            Became::Complete
-        }
-        Err(_) => Became::Refused,
-    }
-}
-
-/// CRC-32 as in zlib.
-fn checksum(bytes: &[u8]) -> u32 {
-    let step = |crc: u32, _: u32| (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
-    let byte = |crc: u32, byte: &u8| (0..8).fold(crc ^ u32::from(*byte), step);
-    !bytes.iter().fold(!0, byte)
 }

@@ -7,8 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::case::{Check, Computation, Outcome, check, largest, section};
-use super::plate::CORRECTOR;
-use crate::corrector::{CorrectionMatrix, Corrector, Factor, Linear, Projection, Solver, retained};
+use crate::corrector::{CorrectionMatrix, Factor, Projection, Solver};
 use crate::document::Section;
 use crate::error::Error;
 use crate::solve::{FactorFault, SparseRows};
@@ -87,10 +86,6 @@ fn compute(settings: Settings) -> Result<Outcome, FactorFault> {
     ));
     let symmetric = symmetric(&mut random, unknowns)?;
     checks.push(same_projection("symmetric form", symmetric));
-    checks.push(same_projection(
-        "retained factor, written and read,",
-        system.retained()?,
-    ));
     checks.push(at_most(
         "multipliers compared with the derivative of the minimum",
         1e-6,
@@ -168,20 +163,6 @@ impl System {
             same_projection("sparse Cholesky", cholesky),
             same_projection("sparse KKT", kkt),
         ])
-    }
-
-    /// Distance of a factor that was written and read to the dense form and to itself.
-    fn retained(&self) -> Result<f64, FactorFault> {
-        let mut kept = self.factor(Solver::Cholesky)?;
-        let conditions = Linear::new("rows", self.rows.clone(), vec![0.0; self.rows.len()]);
-        let weights = vec![1.0; self.pull.len()];
-        let corrector = Corrector::new(vec![Box::new(conditions)], weights, CORRECTOR);
-        let bytes = retained::to_bytes(&kept, &corrector);
-        let read = retained::from_bytes(&bytes, &corrector);
-        let mut read = read.map_err(|_| FactorFault::NotPositiveDefinite)?;
-        let found = read.project(&self.values, &self.pull)?;
-        let before = kept.project(&self.values, &self.pull)?;
-        Ok(far(&found, &self.project(Solver::Dense)?).max(far(&found, &before)))
     }
 
     /// Largest relative difference of −ψ and the derivatives of ½ ‖δ − pull‖² with respect to the right-hand sides.

@@ -21,11 +21,11 @@ mod ascent;
 mod fall;
 mod forces;
 mod grid;
+mod interactive;
 mod level;
 mod load_path;
 mod mesh;
 mod multipliers;
-mod path;
 mod ratios;
 mod sheet;
 mod start;
@@ -36,11 +36,11 @@ mod tests;
 mod way;
 
 pub use crate::problem::RigidMotion;
+use fall::Fall;
 pub use grid::{Field, Grid};
-pub use level::Work;
-use level::{Ending, Iteration, Level};
+pub use interactive::{Grips, Interactive};
+use level::{Ending, Level};
 pub use mesh::between_nodes;
-pub use path::{Grips, Interactive};
 pub(super) use ratios::{Ratios, geometric_tail};
 use sheet::{Inverted, Sheet};
 pub use way::{Start, Way};
@@ -79,15 +79,12 @@ pub struct ClimbSolution {
     pub field: Field,
     /// Force on the moving grip in N.
     pub force: f64,
-    /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only.
+    /// The estimated discretisation error of the field, root mean square over the nodes in mm; NaN where there is one grid only. It is known
+    /// within a factor of about two where the finest grid has twice as many cells along both axes as the one before, and that one at least
+    /// four elements; otherwise its order is right, and it is mostly too large.
     pub discretisation_error: f64,
-    /// Whether the discretisation error is known within a factor of about two: this takes a finest grid with twice as many cells along both
-    /// axes as the one before, and at least four elements in that one. Otherwise its order is right, and it is mostly too large.
-    pub error_is_sure: bool,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
-    /// The work of the iteration on each grid, coarse to fine: number of nodes, and work.
-    pub work: Vec<(usize, Work)>,
     /// The way to the field.
     pub way: Way,
 }
@@ -218,16 +215,16 @@ impl<'a> Climb<'a> {
         index: usize,
         field: &mut Field,
         enough: &dyn Fn(f64, f64) -> bool,
-    ) -> Result<Iteration, SolveFault> {
+    ) -> Result<Fall, SolveFault> {
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
-        let mut whole: Option<Iteration> = None;
+        let mut whole: Option<Fall> = None;
         self.check_operators()?;
         for _ in 0..LINEARISATIONS {
             let level = &mut self.levels[index];
             level
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
-            let first = whole.as_ref().map(|whole| whole.fall.first());
+            let first = whole.as_ref().map(Fall::first);
             let ending = Ending {
                 most,
                 weakest: self.weakest,
@@ -236,18 +233,17 @@ impl<'a> Climb<'a> {
             let mut reached = level
                 .iterate(sheet, field, &mut self.multigrid, &ending)
                 .map_err(|Inverted| inverted())?;
-            reached.work.linearisations += 1;
             if let Some(whole) = whole.take() {
                 reached = whole.followed_by(reached);
             }
-            if enough(reached.fall.first(), reached.fall.left()) {
+            if enough(reached.first(), reached.left()) {
                 return Ok(reached);
             }
             whole = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.fall.left() / whole.fall.first()),
+            residual: whole.map_or(f64::NAN, |whole| whole.left() / whole.first()),
             tolerance: self.settings.tolerance,
         })
     }

@@ -29,7 +29,7 @@ use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
 
-use super::sampling::{LinedPlate, Rule};
+use super::sampling::{self, Rule};
 
 /// Where in a cell the differences are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,14 +111,10 @@ impl DifferenceScheme {
         problem: &ClampedPlate,
         coordinates: &[Vec<f64>; 2],
     ) -> SheetEnergy {
-        let plate = LinedPlate {
-            problem,
-            coordinates,
-        };
         match self {
-            Self::Gauss => plate.energy(Rule::linear()),
-            Self::Biquadratic => plate.energy(Rule::quadratic()),
-            Self::Bicubic => plate.energy(Rule::cubic()),
+            Self::Gauss => sampling::energy(problem, coordinates, Rule::linear()),
+            Self::Biquadratic => sampling::energy(problem, coordinates, Rule::quadratic()),
+            Self::Bicubic => sampling::energy(problem, coordinates, Rule::cubic()),
         }
     }
 

@@ -25,20 +25,16 @@
 //!
 //! **Unknowns without data** have weight zero: parameters of the conditions that are found with the field.
 
-use serde::{Deserialize, Serialize};
-
-use crate::solve::{Cholesky, FactorFault, SparseLu, SparseRows};
+use crate::solve::{FactorFault, SparseLu, SparseRows};
 
 mod forms;
 
-use forms::{
-    Form, Symmetric, cholesky, dense, kkt, normal, project_cholesky, project_dense, project_kkt,
-};
+use forms::{Form, Symmetric, cholesky, dense, kkt, project_cholesky, project_dense, project_kkt};
 pub use forms::{Projection, row_scales};
 pub(super) use forms::{project_curved, weighted_qr};
 
 /// Which form of the projection is used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
     /// By size and kind.
     Automatic,
@@ -192,85 +188,5 @@ impl Factor {
         let mut column = lu.solve(&right)?;
         column.truncate(self.weights.len());
         Ok(column)
-    }
-
-    /// What is stored to keep the factor: B, W, the unknowns of the rows, and the values of a Cholesky form.
-    pub(super) fn parts(&self) -> FactorParts {
-        let (unknowns, cholesky) = match &self.form {
-            Form::Symmetric(symmetric) => {
-                (Some(symmetric.unknowns.clone()), Some(&symmetric.cholesky))
-            }
-            Form::Cholesky { cholesky, .. } => (None, Some(cholesky)),
-            _ => (None, None),
-        };
-        FactorParts {
-            jacobian: self.jacobian.clone(),
-            weights: self.weights.clone(),
-            unknowns,
-            solver: self.solver(),
-            cholesky: cholesky.map(|cholesky| {
-                let (values, factor) = cholesky.parts();
-                (values.to_vec(), factor.to_vec())
-            }),
-        }
-    }
-
-    /// Restores a factor, without factorising where its values were kept.
-    pub(super) fn from_parts(parts: FactorParts) -> Result<Self, FactorFault> {
-        let FactorParts {
-            jacobian,
-            weights,
-            unknowns,
-            solver,
-            cholesky,
-        } = parts;
-        let form = match (solver, cholesky) {
-            (Solver::Symmetric, Some((values, factor))) => {
-                let mut symmetric = Symmetric::analyse(
-                    &jacobian,
-                    unknowns.ok_or(FactorFault::NotPositiveDefinite)?,
-                )?
-                .0;
-                symmetric.cholesky.restore(values, factor)?;
-                Form::Symmetric(symmetric)
-            }
-            (Solver::Cholesky, Some((values, factor))) => {
-                let (scaled, scales, pattern, _) = normal(&jacobian, &weights);
-                let mut cholesky = Cholesky::analyse(pattern)?;
-                cholesky.restore(values, factor)?;
-                Form::Cholesky {
-                    scaled,
-                    scales,
-                    cholesky,
-                }
-            }
-            _ => return Self::new(jacobian, weights, unknowns, solver),
-        };
-        Ok(Self {
-            jacobian,
-            weights,
-            form,
-        })
-    }
-}
-
-/// A factor as it is kept in a file.
-#[derive(Serialize, Deserialize)]
-pub(super) struct FactorParts {
-    pub jacobian: SparseRows,
-    pub weights: Vec<f64>,
-    pub unknowns: Option<Vec<usize>>,
-    pub solver: Solver,
-    pub cholesky: Option<(Vec<f64>, Vec<f64>)>,
-}
-
-impl FactorParts {
-    /// Whether all numbers are finite, and those of B stand where B has places.
-    pub fn is_sound(&self) -> bool {
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        let kept = self.cholesky.as_ref();
-        self.jacobian.is_sound()
-            && finite(&self.weights)
-            && kept.is_none_or(|(values, factor)| finite(values) && finite(factor))
     }
 }

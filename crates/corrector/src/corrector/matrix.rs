@@ -49,9 +49,6 @@ impl CorrectionMatrix {
     }
 
     /// S, one row and column for each row of B.
-    ///
-    /// # Panics
-    /// Never: independent rows have an invertible R.
     pub fn s(&self) -> DMatrix<f64> {
         let rows = self.r.nrows();
         let inverse = self

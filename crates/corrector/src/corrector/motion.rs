@@ -68,16 +68,6 @@ struct Interval {
     links: Vec<Link>,
 }
 
-/// The contribution of an instant to an equation.
-struct Term {
-    /// The instant's number.
-    instant: usize,
-    /// Factor of M u/h².
-    inertia: f64,
-    /// Factor of g.
-    elastic: f64,
-}
-
 /// Why the equation of motion between three instants is not valid for a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MotionFault {
@@ -261,20 +251,15 @@ impl<'a> EquationOfMotion<'a> {
         })
     }
 
-    /// The terms of a row's equation for each instant; row 0 is the start.
-    fn terms(&self, row: usize) -> Vec<Term> {
+    /// The terms of a row's equation for each instant: its number, and the factors of M u/h² and of g. Row 0 is the start.
+    fn terms(&self, row: usize) -> Vec<(usize, f64, f64)> {
         let beta = self.weight;
-        let term = |instant, inertia, elastic| Term {
-            instant,
-            inertia,
-            elastic,
-        };
         match row {
-            0 => vec![term(0, -1.0, 0.5 - beta), term(1, 1.0, beta)],
+            0 => vec![(0, -1.0, 0.5 - beta), (1, 1.0, beta)],
             _ => vec![
-                term(row - 1, 1.0, beta),
-                term(row, -2.0, 1.0 - 2.0 * beta),
-                term(row + 1, 1.0, beta),
+                (row - 1, 1.0, beta),
+                (row, -2.0, 1.0 - 2.0 * beta),
+                (row + 1, 1.0, beta),
             ],
         }
     }
@@ -282,12 +267,7 @@ impl<'a> EquationOfMotion<'a> {
     /// F of a row; without the start's velocity.
     fn value(&self, row: usize, interval: &Interval, states: &[Vec<f64>]) -> Vec<f64> {
         let mut sum = vec![0.0; self.assembly.free().len()];
-        for Term {
-            instant,
-            inertia,
-            elastic,
-        } in self.terms(row)
-        {
+        for (instant, inertia, elastic) in self.terms(row) {
             let own = states[instant].iter().zip(&interval.frames[instant].force);
             for ((sum, unknown), (u, force)) in sum.iter_mut().zip(self.assembly.free()).zip(own) {
                 *sum += inertia * self.inertia(*unknown) * u + elastic * force;
@@ -302,10 +282,7 @@ impl<'a> EquationOfMotion<'a> {
     /// ∂F/∂u of a row with respect to one of its instants, on the pattern of the stiffness: symmetric.
     fn block(&self, row: usize, instant: usize, interval: &Interval) -> Vec<f64> {
         let mut terms = self.terms(row).into_iter();
-        let Some(Term {
-            inertia, elastic, ..
-        }) = terms.find(|own| own.instant == instant)
-        else {
+        let Some((_, inertia, elastic)) = terms.find(|own| own.0 == instant) else {
             return vec![0.0; self.assembly.pattern().entries()];
         };
         let mut values: Vec<f64> = interval.frames[instant]

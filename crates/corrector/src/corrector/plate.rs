@@ -14,7 +14,7 @@ use super::{Corrector, CorrectorSettings, Describe, DifferenceScheme, Multiplier
 use crate::error::{Error, SolveFault};
 use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{ClampedPlate, Measures, Model, Work};
+use crate::problem::{ClampedPlate, Measures, Model};
 use crate::solve::vector::largest;
 use crate::solve::{Assembly, Convergence, Remembering, Stage, State};
 
@@ -48,10 +48,6 @@ pub struct CorrectedState {
     pub state: State,
     /// The measures of the field.
     pub measures: Measures,
-    /// The resultant of all forces and moments together, relative to the largest of them.
-    pub balance: f64,
-    /// The work done on the material; `None` where it has no memory.
-    pub work: Option<Work>,
     /// The start and the field after each step of the direct method; empty where the field climbed.
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
@@ -243,8 +239,6 @@ impl<'a> PlateCorrector<'a> {
     fn corrected(model: &Model, state: State) -> CorrectedState {
         CorrectedState {
             measures: Measures::of(model.mesh, &state),
-            balance: model.reactions(&state).balance().relative(),
-            work: model.work(&state),
             state,
             steps: Vec::new(),
             multipliers: Vec::new(),

@@ -89,59 +89,40 @@ fn lagrange<const NODES: usize>(nodes: &[f64], place: f64) -> [[f64; 2]; NODES] 
     })
 }
 
-/// A plate with the lines of its nodes, whose numbers run line by line along Y.
-pub struct LinedPlate<'a> {
-    /// The plate.
-    pub problem: &'a ClampedPlate,
-    /// The places of the lines along X and Y in mm.
-    pub coordinates: &'a [Vec<f64>; 2],
-}
-
-impl LinedPlate<'_> {
-    /// Π = Σ t hx hy wₐ w_b Ψ(H) over the points (a, b) of all elements.
-    ///
-    /// # Panics
-    /// When the number of cells is no multiple of those of an element.
-    pub fn energy<const NODES: usize>(&self, rule: &Rule<NODES>) -> SheetEnergy {
-        let order = NODES - 1;
-        let [x, y] = self.coordinates;
-        let [columns, rows] = [x, y].map(|places| {
-            assert!(
-                (places.len() - 1).is_multiple_of(order),
-                "cells taken together"
-            );
-            (places.len() - 1) / order
-        });
-        let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
-        let mut energy = SheetEnergy::new(Arc::clone(&self.problem.law), x.len() * y.len());
-        let table = energy.push_table(rule.table());
-        for [column, row] in (0..columns).flat_map(|column| (0..rows).map(move |row| [column, row]))
-        {
-            let first = [column * order, row * order];
-            let sides = [0, 1].map(|axis| {
-                let places = &self.coordinates[axis];
-                places[first[axis] + order] - places[first[axis]]
-            });
-            let on_line =
-                |line: usize| (first[1]..=first[1] + order).map(move |j| line * y.len() + j);
-            let nodes: Vec<usize> = (first[0]..=first[0] + order).flat_map(on_line).collect();
-            energy.push_cell(&nodes, table, self.points(rule, sides));
-        }
-        energy.complete(nodes)
-    }
-
-    /// The points of an element with given sides, which are the units of its natural coordinates.
-    fn points<const NODES: usize>(
-        &self,
-        rule: &Rule<NODES>,
-        [hx, hy]: [f64; 2],
-    ) -> impl Iterator<Item = PointMap> {
-        let area = self.problem.thickness * hx * hy;
-        pairs::<NODES>().map(move |[a, b]| PointMap {
+/// Π = Σ t hx hy wₐ w_b Ψ(H) over the points (a, b) of all elements of a plate between the lines of its nodes along X and Y in mm, whose
+/// numbers run line by line along Y.
+///
+/// # Panics
+/// When the number of cells is no multiple of those of an element.
+pub fn energy<const NODES: usize>(
+    problem: &ClampedPlate,
+    coordinates: &[Vec<f64>; 2],
+    rule: &Rule<NODES>,
+) -> SheetEnergy {
+    let order = NODES - 1;
+    let [x, y] = coordinates;
+    let cells = [x, y].map(|places| places.len() - 1);
+    assert!(cells.iter().all(|cells| cells.is_multiple_of(order)));
+    let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
+    let mut energy = SheetEnergy::new(Arc::clone(&problem.law), x.len() * y.len());
+    let table = energy.push_table(rule.table());
+    let rows = (0..cells[1]).step_by(order);
+    for (i, j) in (0..cells[0])
+        .step_by(order)
+        .flat_map(|i| rows.clone().map(move |j| (i, j)))
+    {
+        // The sides of an element are the units of its natural coordinates.
+        let (hx, hy) = (x[i + order] - x[i], y[j + order] - y[j]);
+        let on_line = |line: usize| (j..=j + order).map(move |j| line * y.len() + j);
+        let nodes: Vec<usize> = (i..=i + order).flat_map(on_line).collect();
+        let area = problem.thickness * hx * hy;
+        let points = pairs::<NODES>().map(|[a, b]| PointMap {
             inverse: [[1.0 / hx, 0.0], [0.0, 1.0 / hy]],
             volume: area * rule.weights[a] * rule.weights[b],
-        })
+        });
+        energy.push_cell(&nodes, table, points);
     }
+    energy.complete(nodes)
 }
 
 /// Pairs of points or nodes along both axes.

@@ -69,9 +69,6 @@ pub fn correct(
 
 /// The state of a model that is nearest to a displacement field under a corrector's conditions. Where these are all that is known of the
 /// model, the state is stable.
-///
-/// # Errors
-/// A [`SolveFault`] when no corrected field was found.
 pub(super) fn correct_by(
     corrector: &Corrector,
     model: &Model,
@@ -95,9 +92,6 @@ pub(super) fn correct_by(
 }
 
 /// A displacement field as a state of a model, with its energy and residual.
-///
-/// # Errors
-/// [`SolveFault::Inverted`].
 pub(super) fn state_at(
     model: &Model,
     stage: Stage<'_>,

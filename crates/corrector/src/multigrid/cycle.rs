@@ -95,38 +95,28 @@ impl Multigrid {
 
     fn descend(&mut self, index: usize) {
         let (coarser, finer) = self.levels.split_at_mut(index);
-        let Level {
-            transfer,
-            stencil,
-            lines,
-            x,
-            b,
-            r,
-        } = &mut finer[0];
-        let Some(transfer) = transfer else {
+        let own = &mut finer[0];
+        let (Some(transfer), Some(below)) = (&own.transfer, coarser.last_mut()) else {
             let factor = self.coarsest.as_mut();
-            factor.expect("the coarsest grid has a factor").solve(b, x);
+            let factor = factor.expect("the coarsest grid has a factor");
+            factor.solve(&own.b, &mut own.x);
             return;
         };
-        x.clear();
-        stencil.smooth(x, b, |line| lines.holds(line), Sweep::DownFromZero);
-        lines.factorise(stencil);
-        lines.smooth(stencil, x, b, false);
-        stencil.residual(x, b, r);
-        transfer.restrict(r, &mut coarser[index - 1].b);
+        own.x.clear();
+        let is_held = |line| own.lines.holds(line);
+        (own.stencil).smooth(&mut own.x, &own.b, is_held, Sweep::DownFromZero);
+        own.lines.factorise(&own.stencil);
+        (own.lines).smooth(&own.stencil, &mut own.x, &own.b, false);
+        own.stencil.residual(&own.x, &own.b, &mut own.r);
+        transfer.restrict(&own.r, &mut below.b);
         self.descend(index - 1);
         let (coarser, finer) = self.levels.split_at_mut(index);
-        let Level {
-            transfer,
-            stencil,
-            lines,
-            x,
-            b,
-            ..
-        } = &mut finer[0];
-        let transfer = transfer.as_ref().expect("not the coarsest grid");
-        transfer.prolong(&coarser[index - 1].x, x);
-        lines.smooth(stencil, x, b, true);
-        stencil.smooth(x, b, |line| lines.holds(line), Sweep::Up);
+        let own = &mut finer[0];
+        if let Some(transfer) = &own.transfer {
+            transfer.prolong(&coarser[index - 1].x, &mut own.x);
+        }
+        (own.lines).smooth(&own.stencil, &mut own.x, &own.b, true);
+        let is_held = |line| own.lines.holds(line);
+        own.stencil.smooth(&mut own.x, &own.b, is_held, Sweep::Up);
     }
 }

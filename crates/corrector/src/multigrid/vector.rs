@@ -38,34 +38,12 @@ impl Lines {
     }
 }
 
-/// One component of all nodes, line by line.
-#[derive(Clone, Debug)]
-pub struct Component {
-    lines: Lines,
-    values: Vec<f32>,
-}
-
-impl Component {
-    fn zeros(lines: Lines) -> Self {
-        Self {
-            lines,
-            values: vec![0.0; lines.count * lines.stride()],
-        }
-    }
-
-    /// A line with its two ends.
-    #[inline(always)]
-    pub fn line(&self, line: usize) -> &[f32] {
-        let stride = self.lines.stride();
-        &self.values[self.lines.place(line) * stride..][..stride]
-    }
-}
-
 /// A vector on a grid: ux and uy, or forces along both axes.
 #[derive(Clone, Debug)]
 pub struct Vector {
     lines: Lines,
-    components: [Component; 2],
+    /// Each line by line, with its two ends.
+    components: [Vec<f32>; 2],
 }
 
 /// A line of both components with its two ends.
@@ -94,9 +72,10 @@ impl<'a> Neighbours<'a> {
 impl Vector {
     /// Zeros.
     pub fn zeros(lines: Lines) -> Self {
+        let zeros = vec![0.0; lines.count * lines.stride()];
         Self {
             lines,
-            components: [Component::zeros(lines), Component::zeros(lines)],
+            components: [zeros.clone(), zeros],
         }
     }
 
@@ -110,19 +89,21 @@ impl Vector {
         let (stride, threaded) = (self.lines.stride(), self.lines.threaded());
         for component in &mut self.components {
             if threaded {
-                let lines = component.values.par_chunks_mut(stride).with_min_len(8);
+                let lines = component.par_chunks_mut(stride).with_min_len(8);
                 lines.for_each(|line| line.fill(0.0));
             } else {
-                component.values.fill(0.0)
+                component.fill(0.0)
             }
         }
     }
 
-    /// A line of both components.
+    /// A line of both components with its two ends.
     #[inline(always)]
     pub fn line(&self, line: usize) -> Pair<'_> {
+        let stride = self.lines.stride();
+        let begin = self.lines.place(line) * stride;
         let [x, y] = &self.components;
-        [x.line(line), y.line(line)]
+        [&x[begin..][..stride], &y[begin..][..stride]]
     }
 
     /// Calls `write` with each free line's number and its two components.
@@ -142,8 +123,8 @@ impl Vector {
         let stride = lines.stride();
         let even = lines.count.div_ceil(2) * stride;
         let [x, y] = &mut self.components;
-        let (even_x, odd_x) = x.values.split_at_mut(even);
-        let (even_y, odd_y) = y.values.split_at_mut(even);
+        let (even_x, odd_x) = x.split_at_mut(even);
+        let (even_y, odd_y) = y.split_at_mut(even);
         let (x, y, beside) = match parity {
             0 => (even_x, even_y, [&*odd_x, &*odd_y]),
             _ => (odd_x, odd_y, [&*even_x, &*even_y]),

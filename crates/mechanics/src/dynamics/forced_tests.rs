@@ -77,7 +77,7 @@ fn settled(integrator: Integrator, h: f64) -> Vec<Instant> {
                 frequency: OMEGA / TAU,
             },
         }],
-        start: Start::at_rest(1),
+        start: Start::held_at(vec![0.0; 1]),
         describe: Box::new(|_| "the spring".into()),
     };
     let settings = TimeSettings {
@@ -172,7 +172,7 @@ fn a_support_carries_inertia_spring_and_dashpot_less_the_load() {
             force: vec![load],
             time: TimeFunction::Constant(1.0),
         }],
-        start: Start::at_rest(1),
+        start: Start::held_at(vec![0.0; 1]),
         describe: Box::new(|_| "the spring".into()),
     };
     for integrator in [Integrator::VelocityVerlet, alpha(0.8)] {
@@ -264,7 +264,7 @@ fn kinks_between_instants_are_met_and_not_told() {
         },
         until: None,
     }];
-    motion.start = Start::at_rest(1);
+    motion.start = Start::held_at(vec![0.0; 1]);
     let history = run(&motion, every(alpha(1.0), 1.0, 0.25, 0.25));
     assert_eq!(history.times(), [0.0, 0.25, 0.5, 0.75, 1.0]);
     let speeds: Vec<f64> = history.instants.iter().map(|now| now.velocity[0]).collect();

@@ -180,7 +180,7 @@ mod tests {
             mass: lumped_mass(&elements.mesh, DENSITY, problem.thickness),
             supports: vec![clamp(&elements.mesh)],
             forces: Vec::new(),
-            start: Start::at_rest(size),
+            start: Start::held_at(vec![0.0; size]),
             describe: Box::new(|element| element.to_string()),
         };
         let stretched = solved(&problem, &elements.mesh, elements.energy(), 0.3);

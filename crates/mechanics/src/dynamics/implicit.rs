@@ -84,15 +84,10 @@ impl Implicit {
 
     /// Factorises K + γ/(β h) C + (1 − αₘ)/((1 − α_f) β h²) M at a state.
     fn factorise(&mut self, motion: &Motion, at: &BodyState, step: f64) -> Result<(), SolveFault> {
-        let Constants {
-            alpha_m,
-            alpha_f,
-            beta,
-            gamma,
-        } = self.constants;
+        let c = self.constants;
         let (assembly, cholesky) = self.system.as_mut().expect("prepared");
-        let mut values = motion.tangent(assembly, at, step, gamma / (beta * step))?;
-        let inertia = (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step);
+        let mut values = motion.tangent(assembly, at, step, c.gamma / (c.beta * step))?;
+        let inertia = (1.0 - c.alpha_m) / ((1.0 - c.alpha_f) * c.beta * step * step);
         for (i, place) in assembly.free().iter().zip(assembly.pattern().diagonal()) {
             values[*place] += inertia * motion.mass[*i];
         }

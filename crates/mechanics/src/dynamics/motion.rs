@@ -57,11 +57,6 @@ pub struct Start {
 }
 
 impl Start {
-    /// The undeformed body at rest.
-    pub fn at_rest(unknowns: usize) -> Self {
-        Self::held_at(vec![0.0; unknowns])
-    }
-
     /// A body that has been held at a displacement for long.
     pub fn held_at(displacement: Vec<f64>) -> Self {
         Self {

@@ -1,6 +1,8 @@
 //! The viscous forces of a sheet of finite elements.
 
 use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
+use nalgebra::Matrix4;
+
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
@@ -14,12 +16,6 @@ use crate::solve::Inadmissible;
 pub struct SheetViscosity<'a> {
     energy: &'a SheetEnergy,
     material: &'a ViscousMaterial,
-}
-
-/// The viscous stress at a point, and its derivatives with respect to F and Ḟ.
-struct PointStress {
-    stress: PlaneTensor,
-    tangents: Option<[nalgebra::Matrix4<f64>; 2]>,
 }
 
 impl<'a> SheetViscosity<'a> {
@@ -36,6 +32,7 @@ impl<'a> SheetViscosity<'a> {
         }
     }
 
+    /// The viscous stress at a point, and its derivatives with respect to F and Ḟ.
     fn point_stress(
         &self,
         kinematics: &Kinematics,
@@ -43,10 +40,10 @@ impl<'a> SheetViscosity<'a> {
         memory: &[f64],
         elapsed: f64,
         with_tangents: bool,
-    ) -> PointStress {
+    ) -> (PlaneTensor, Option<[Matrix4<f64>; 2]>) {
         let (law, material) = (self.energy.law(), self.material);
         let mut stress = material.newtonian_stress(kinematics, rate);
-        let mut by_displacement = nalgebra::Matrix4::zeros();
+        let mut by_displacement = Matrix4::zeros();
         if !material.relaxation.is_empty() {
             let (long, tangent) = if with_tangents {
                 let response = law.response(kinematics);
@@ -64,11 +61,8 @@ impl<'a> SheetViscosity<'a> {
                 by_displacement = takes * tangent + geometric_tangent(rest);
             }
         }
-        PointStress {
-            stress,
-            tangents: with_tangents
-                .then(|| [by_displacement, material.newtonian_tangent(kinematics)]),
-        }
+        let tangents = || [by_displacement, material.newtonian_tangent(kinematics)];
+        (stress, with_tangents.then(tangents))
     }
 
     /// Sampling points of an element with their kinematics and their part of the element's memory.
@@ -108,15 +102,15 @@ impl Viscosity for SheetViscosity<'_> {
     ) -> Result<(), Inadmissible> {
         let points = self.points(element, motion.displacement)?;
         for (index, (point, kinematics)) in points.into_iter().enumerate() {
-            let own = self.point_stress(
+            let (stress, tangents) = self.point_stress(
                 &kinematics,
                 &point.gradient(motion.velocity),
                 self.part(motion.memory, index),
                 motion.elapsed,
                 local.tangents.is_some(),
             );
-            point.add_force(&own.stress, local.force);
-            if let (Some(sums), Some(tangents)) = (&mut local.tangents, own.tangents) {
+            point.add_force(&stress, local.force);
+            if let (Some(sums), Some(tangents)) = (&mut local.tangents, tangents) {
                 for (sum, tangent) in sums.iter_mut().zip(tangents) {
                     point.add_stiffness(tangent.as_slice(), sum);
                 }

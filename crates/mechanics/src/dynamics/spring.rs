@@ -1,7 +1,7 @@
 //! A single spring with a dashpot: one unknown, of which closed forms are known.
 
 use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
-use crate::solve::{Connectivity, Inadmissible, Local, Potential};
+use crate::solve::{Connectivity, Evaluated, Inadmissible, Local, Potential};
 
 /// One unknown with the energy ½ k u² + ¼ q u⁴, in mJ, and a dashpot of constant c in N·s/mm.
 pub struct Spring {
@@ -18,12 +18,7 @@ impl Potential for Spring {
         Connectivity::single()
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         let u = u[0];
         if u.abs() > 1e6 {
             return Err(Inadmissible { element });

@@ -181,13 +181,9 @@ impl Motion<'_> {
 
     /// ü = M⁻¹ (f − ∂Π/∂u − f_v) of the free unknowns.
     pub(super) fn accelerate(&self, at: &mut BodyState, held: &[bool]) -> Result<(), SolveFault> {
-        let Forces {
-            elastic,
-            viscous,
-            external,
-        } = &at.forces;
+        let f = &at.forces;
         for i in (0..held.len()).filter(|i| !held[*i]) {
-            at.acceleration[i] = (external[i] - elastic[i] - viscous[i]) / self.mass[i];
+            at.acceleration[i] = (f.external[i] - f.elastic[i] - f.viscous[i]) / self.mass[i];
         }
         if at.acceleration.iter().all(|value| value.is_finite()) {
             Ok(())
@@ -233,14 +229,9 @@ impl Motion<'_> {
     }
 
     fn forces_of_supports(&self, at: &BodyState) -> Vec<[f64; 2]> {
-        let Forces {
-            elastic,
-            viscous,
-            external,
-        } = &at.forces;
-        let reaction = |unknown: usize| {
-            self.mass[unknown] * at.acceleration[unknown] + elastic[unknown] + viscous[unknown]
-                - external[unknown]
+        let f = &at.forces;
+        let reaction = |i: usize| {
+            self.mass[i] * at.acceleration[i] + f.elastic[i] + f.viscous[i] - f.external[i]
         };
         let force = |support: &MovingSupport| {
             let mut sum = [0.0; 2];
@@ -310,13 +301,12 @@ impl Motion<'_> {
 impl BodyState {
     /// Moves the held unknowns according to [`Motion::impose`].
     pub fn impose(&mut self, motion: &Motion, time: f64, within: f64) {
-        let Self {
-            displacement,
-            velocity,
-            acceleration,
-            ..
-        } = self;
-        motion.impose(time, within, [displacement, velocity, acceleration]);
+        let (u, v, a) = (
+            &mut self.displacement,
+            &mut self.velocity,
+            &mut self.acceleration,
+        );
+        motion.impose(time, within, [u, v, a]);
     }
 
     /// The state a step later as far as supports determine it; everything else is as before.

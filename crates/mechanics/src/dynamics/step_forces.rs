@@ -1,7 +1,9 @@
 //! The forces of a body in a time step, and their tangent.
 
 use super::viscosity::{ElementMotion, Memory, Viscosity, ViscousLocal};
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, Take, evaluate_by_elements};
+use crate::solve::{
+    Connectivity, Evaluated, Inadmissible, Local, Potential, Take, evaluate_by_elements,
+};
 
 /// The forces of a body at given velocities as if they were those of a potential: ∂Π/∂u where it is elastic, and f_v.
 pub struct StepForces<'a> {
@@ -58,19 +60,14 @@ impl Potential for StepForces<'_> {
         self.energy.connectivity()
     }
 
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         match (self.elastic, self.viscosity) {
             (true, None) => self.energy.evaluate(u, forces, take),
             _ => evaluate_by_elements(self, u, forces, take),
         }
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        mut local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], mut local: Local<'_>) -> Evaluated {
         let mut energy = 0.0;
         if self.elastic {
             let own = Local {

@@ -240,7 +240,7 @@ fn loss(
             },
         ],
         forces: Vec::new(),
-        start: Start::at_rest(energy.unknowns()),
+        start: Start::held_at(vec![0.0; energy.unknowns()]),
         describe: Box::new(|element| element.to_string()),
     };
     let period = 1.0 / frequency;

@@ -60,9 +60,6 @@ pub fn series(stem: &str) -> Option<&str> {
 }
 
 /// Reads the two matrices of a frame.
-///
-/// # Errors
-/// [`Error::Input`] with the file, the fault and the remedy.
 pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let Some(step) = reading.grid else {
         return Err(Error::input(

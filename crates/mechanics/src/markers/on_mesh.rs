@@ -8,9 +8,6 @@ use crate::error::Error;
 use crate::mesh::import_series;
 
 /// Reads a field on a mesh, with all its steps as frames.
-///
-/// # Errors
-/// [`Error::Input`] with the file and the fault.
 pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let unit = reading.unit.unwrap_or(1.0);
     let series = import_series(path, unit, reading.array.as_deref()).map_err(|reason| {

@@ -3,7 +3,7 @@
 use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
-use crate::mesh::geometry::check_size;
+use crate::mesh::geometry::{bounding_box, check_size};
 use crate::units::{decimals, extents, implausible_sheet};
 
 /// Displacements of more than so many sizes of the specimen are taken to be in another unit.
@@ -29,9 +29,6 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
 }
 
 /// Checks that the data have displacements that are consistent with the places.
-///
-/// # Errors
-/// [`Error::Input`] when there is no displacement, or one in another unit.
 pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<(), Error> {
     if series.frames.is_empty() {
         return Err(Error::input(
@@ -157,12 +154,6 @@ pub fn unit_ratio(ratio: f64) -> Option<f64> {
 
 /// Length and width of the box around places.
 fn extent(places: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    let (low, high) = places.fold(start, |(low, high), place| {
-        (
-            [0, 1].map(|axis| low[axis].min(place[axis])),
-            [0, 1].map(|axis| high[axis].max(place[axis])),
-        )
-    });
+    let [low, high] = bounding_box(places);
     [high[0] - low[0], high[1] - low[1]]
 }

@@ -19,9 +19,6 @@ use crate::error::{Diagnostic, Error};
 const HINT: &str = "markers are a table with the columns x [mm], y [mm], ux [mm], uy [mm]";
 
 /// Reads the markers of one table.
-///
-/// # Errors
-/// [`Error::Input`] with file, line and reason.
 pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let mut table = Table::read_as(path, reading.encoding, HINT)?;
     table.name_by_remark();

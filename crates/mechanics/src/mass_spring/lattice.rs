@@ -7,7 +7,7 @@ use super::spring_law::SpringLaw;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::polygon_area;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, Remembering};
+use crate::solve::{Connectivity, Evaluated, Inadmissible, Local, Potential, Remembering};
 
 /// The energy of a lattice: springs, then cells.
 #[derive(Clone, Debug)]
@@ -176,12 +176,7 @@ impl Potential for Lattice {
         &self.connectivity
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         self.evaluate_after(element, u, local, &[])
     }
 
@@ -201,7 +196,7 @@ impl Remembering for Lattice {
         u: &[f64],
         local: Local<'_>,
         history: &[f64],
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         let energy = match element.checked_sub(self.springs.len()) {
             None => Some(self.evaluate_spring(element, u, local, history)),
             Some(cell) => self.evaluate_cell(cell, u, local),

@@ -85,9 +85,7 @@ impl Ogden {
             terms: KEYS[..N].iter().map(|keys| term(*keys)).collect(),
         })
     }
-}
 
-impl Ogden {
     /// T of every term.
     fn powers(&self, z: f64) -> Powers {
         Powers::new(self.terms.iter().map(|[_, alpha]| 0.5 * alpha), z)

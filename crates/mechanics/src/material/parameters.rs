@@ -63,9 +63,7 @@ impl StressMeasure {
             Self::Cauchy => nominal * (1.0 + x),
         }
     }
-}
 
-impl StressMeasure {
     /// Its name at the beginning of a title.
     pub fn title(self) -> &'static str {
         match self {

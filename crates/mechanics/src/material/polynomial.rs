@@ -76,23 +76,17 @@ impl InvariantLaw for Polynomial {
     }
 
     fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
-        let Self {
-            c10,
-            c01,
-            c20,
-            c11,
-            c02,
-        } = *self;
-        let [a, b] = [("c10", c10), ("c01", c01)];
-        let [x, y, z] = [("c20", c20), ("c11", c11), ("c02", c02)];
+        let [a, b] = [("c10", self.c10), ("c01", self.c01)];
+        let [x, y, z] = [("c20", self.c20), ("c11", self.c11), ("c02", self.c02)];
         let (febio, d) = (code == Code::FeBio, 2.0 / bulk);
-        match [c20, c11, c02] == [0.0; 3] {
+        match [x, y, z].map(|own| own.1) == [0.0; 3] {
             false if febio => CodeLaw::named("polynomial", [a, b, x, y, z, ("D1", bulk / 2.0)]),
             false => CodeLaw::named("POLYNOMIAL, N=2", [a, b, x, y, z, ("D1", d), ("D2", d)]),
-            true if febio => {
-                CodeLaw::named("Mooney-Rivlin", [("c1", c10), ("c2", c01), ("k", bulk)])
-            }
-            true if c01 == 0.0 => CodeLaw::named("NEO HOOKE", [a, ("D1", d)]),
+            true if febio => CodeLaw::named(
+                "Mooney-Rivlin",
+                [("c1", self.c10), ("c2", self.c01), ("k", bulk)],
+            ),
+            true if self.c01 == 0.0 => CodeLaw::named("NEO HOOKE", [a, ("D1", d)]),
             true => CodeLaw::named("MOONEY-RIVLIN", [a, b, ("D1", d)]),
         }
     }

@@ -104,9 +104,6 @@ pub fn card(law: &str, parameters: &str) -> Card {
 }
 
 /// All shipped cards and a card of each of [`SAMPLES`].
-///
-/// # Panics
-/// Never: the battery of law tests reads all of them.
 pub fn cards() -> Vec<Card> {
     let shipped =
         |(name, _): &(&str, &str)| Card::load(name, Path::new(".")).expect("a shipped card");
@@ -117,9 +114,6 @@ pub fn cards() -> Vec<Card> {
 }
 
 /// The laws of all [`cards`] by name.
-///
-/// # Panics
-/// Never, as [`cards`].
 pub fn all() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>)> {
     let names = CARDS.iter().chain(SAMPLES).map(|(name, _)| *name);
     names
@@ -128,9 +122,6 @@ pub fn all() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>)> {
 }
 
 /// A card of each of [`CHANGING_VOLUME`].
-///
-/// # Panics
-/// Never, as [`cards`].
 pub fn changing_volume() -> Vec<Card> {
     let samples = CHANGING_VOLUME.iter();
     samples

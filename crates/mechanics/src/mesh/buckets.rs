@@ -1,7 +1,7 @@
 //! Boxes sorted by the squares of a coarse grid.
 
 /// The cells of a mesh by the squares of a coarse grid that their boxes touch.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Buckets {
     low: [f64; 2],
     step: f64,

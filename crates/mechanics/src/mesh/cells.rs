@@ -170,11 +170,8 @@ impl Mesh {
 
     /// The edges that belong to one cell alone, each with the specimen to its left.
     pub fn boundary(&self) -> &[Vec<usize>] {
-        self.boundary.get_or_init(|| self.lonely_edges())
-    }
-
-    fn lonely_edges(&self) -> Vec<Vec<usize>> {
-        self.sides_of(|cells| cells == 1)
+        self.boundary
+            .get_or_init(|| self.sides_of(|cells| cells == 1))
     }
 
     /// The sides that cells share.

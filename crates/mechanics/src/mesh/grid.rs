@@ -28,6 +28,16 @@ impl Side {
             Self::Top => "top",
         }
     }
+
+    /// Whether a place in mm lies on the side of a plate of a size.
+    pub(super) fn holds(self, size: [f64; 2], [x, y]: [f64; 2]) -> bool {
+        match self {
+            Self::Left => x == 0.0,
+            Self::Right => x == size[0],
+            Self::Bottom => y == 0.0,
+            Self::Top => y == size[1],
+        }
+    }
 }
 
 /// A rectangle of cells between lines; nodes are numbered along Y first.
@@ -162,14 +172,5 @@ impl Grid {
         };
         let ((i, x), (j, y)) = (place(0), place(1));
         (i * self.cells[1] + j, [x, y])
-    }
-
-    pub(super) fn is_on(self, side: Side, [x, y]: [f64; 2]) -> bool {
-        match side {
-            Side::Left => x == 0.0,
-            Side::Right => x == self.size[0],
-            Side::Bottom => y == 0.0,
-            Side::Top => y == self.size[1],
-        }
     }
 }

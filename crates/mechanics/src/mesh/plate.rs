@@ -32,24 +32,33 @@ impl Mesh {
             "a grid of nodes"
         );
         let degree = shape.degree();
-        let steps = cells.map(|cells| cells * degree);
-        let coordinate = |axis: usize, i: usize| grid.node_line(axis, i, degree);
-        let nodes = (0..=steps[0])
-            .flat_map(|i| (0..=steps[1]).map(move |j| [coordinate(0, i), coordinate(1, j)]))
-            .collect();
-        let all = (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| (i, j)));
-        let cell = |(i, j): (usize, usize)| {
-            let node = |[x, y]: &[f64; 2]| {
-                let step = |x: f64| ((x + 1.0) * degree as f64 / 2.0) as usize;
-                let (column, row) = (i * degree + step(*x), j * degree + step(*y));
-                column * (steps[1] + 1) + row
+        let lines = |axis: usize| -> Vec<f64> {
+            let nodes = 0..=cells[axis] * degree;
+            nodes.map(|i| grid.node_line(axis, i, degree)).collect()
+        };
+        let mut mesh = Self::of_lines(&[lines(0), lines(1)], shape);
+        mesh.grid = Some(grid);
+        mesh
+    }
+
+    /// A plate between the lines of its nodes, whose places along X and Y in mm begin at zero; its groups are the sides `left`, `right`,
+    /// `bottom`, `top`.
+    pub fn of_lines([x, y]: &[Vec<f64>; 2], shape: CellShape) -> Self {
+        let degree = shape.degree();
+        let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
+        let steps = |lines: &[f64]| (0..lines.len() - 1).step_by(degree);
+        let all = steps(x).flat_map(|i| steps(y).map(move |j| [i, j]));
+        let cell = |[i, j]: [usize; 2]| {
+            let node = |[a, b]: &[f64; 2]| {
+                let step = |natural: f64| ((natural + 1.0) * degree as f64 / 2.0) as usize;
+                (i + step(*a)) * y.len() + j + step(*b)
             };
             (shape, shape.natural_nodes().iter().map(node).collect())
         };
         let mut mesh = Self::new(nodes, all.map(cell));
-        mesh.grid = Some(grid);
+        let size = [x, y].map(|lines| lines[lines.len() - 1]);
         for side in Side::ALL {
-            mesh.name_boundary(side.name(), |node| grid.is_on(side, node));
+            mesh.name_boundary(side.name(), |place| side.holds(size, place));
         }
         mesh
     }
@@ -113,7 +122,7 @@ impl Mesh {
     /// # Panics
     /// As [`Self::grid`].
     pub fn on(&self, side: Side, node: usize) -> bool {
-        self.grid().is_on(side, self.nodes[node])
+        side.holds(self.grid().size, self.nodes[node])
     }
 
     /// Whether a node lies on a grip of the plate: the left or the right side.

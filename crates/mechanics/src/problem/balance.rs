@@ -1,6 +1,7 @@
 //! The balance of all forces on a body, and of their moments.
 
 use crate::mesh::Mesh;
+use crate::mesh::geometry::bounding_box;
 use crate::statistics::larger;
 
 /// Forces and their moment about a point.
@@ -90,11 +91,7 @@ impl Body {
     pub fn new(mesh: &Mesh, displacement: &[f64]) -> Self {
         let moved = mesh.nodes.iter().zip(displacement.chunks_exact(2));
         let places: Vec<[f64; 2]> = moved.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]).collect();
-        let limit = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
-            places.iter().map(|place| place[axis]).fold(start, pick)
-        };
-        let low = [0, 1].map(|axis| limit(axis, f64::min, f64::INFINITY));
-        let high = [0, 1].map(|axis| limit(axis, f64::max, f64::NEG_INFINITY));
+        let [low, high] = bounding_box(places.iter().copied());
         let (centre, middle) = (
             [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])),
             mesh.middle(),

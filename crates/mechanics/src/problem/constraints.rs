@@ -150,9 +150,6 @@ impl Holder {
 
 impl Constraints {
     /// The effects of supports, by group, on the unknowns of a mesh; supports must agree on nodes that they share.
-    ///
-    /// # Errors
-    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group does not suit its support.
     pub fn of(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
         let mut all = Self::each(mesh, supports)?;
         for (group, slide) in std::mem::take(&mut all.slides) {
@@ -164,9 +161,6 @@ impl Constraints {
     }
 
     /// The same without the nodes that slide along inclined lines, which other supports may hold too.
-    ///
-    /// # Errors
-    /// As [`Self::of`].
     pub fn each(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
         let mut all = Self::default();
         for (name, support) in supports {

@@ -25,9 +25,6 @@ enum Conflict {
 }
 
 /// Every pair of supports that contradict each other, with the place of the first node.
-///
-/// # Errors
-/// The [`Diagnostic`] of a support that does not suit its group.
 pub fn contradictions(
     supports: &[(String, Support)],
     mesh: &Mesh,
@@ -67,9 +64,6 @@ pub fn contradictions(
 }
 
 /// The effects of all supports on the unknowns of a mesh.
-///
-/// # Errors
-/// The first contradiction, or the [`Diagnostic`] of a support that does not suit its group.
 pub fn agreeing(supports: &[(String, Support)], mesh: &Mesh) -> Result<Constraints, Diagnostic> {
     match contradictions(supports, mesh)?.into_iter().next() {
         Some(fault) => Err(fault),

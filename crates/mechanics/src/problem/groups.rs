@@ -1,12 +1,9 @@
 //! Groups of a mesh: found by their names, and means over them.
 
 use crate::error::Diagnostic;
-use crate::mesh::{Group, Mesh};
+use crate::mesh::{GAUSS_3, Group, Mesh};
 
 /// The group of a name.
-///
-/// # Errors
-/// A [`Diagnostic`] about a support or a load, `what`, when the mesh has no such group.
 pub fn named<'a>(what: &str, mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
     let groups = mesh.groups();
     groups.get(name).ok_or_else(|| {
@@ -30,24 +27,22 @@ pub fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
 ///
 /// An unweighted mean over nodes would depend on where they lie.
 pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
-    let Group {
-        nodes,
-        edges,
-        lines,
-        cells,
-    } = group;
     let along = |sides: &[Vec<usize>]| -> Vec<(usize, f64)> {
         let sides = sides.iter();
         sides.flat_map(|side| edge_lengths(mesh, side)).collect()
     };
-    let measures: Vec<(usize, f64)> = match [edges.is_empty(), cells.is_empty(), lines.is_empty()] {
-        [false, ..] => along(edges),
+    let measures: Vec<(usize, f64)> = match [
+        group.edges.is_empty(),
+        group.cells.is_empty(),
+        group.lines.is_empty(),
+    ] {
+        [false, ..] => along(&group.edges),
         [_, false, _] => {
-            let cells = cells.iter();
+            let cells = group.cells.iter();
             cells.flat_map(|cell| mesh.area_parts(*cell)).collect()
         }
-        [_, _, false] => along(lines),
-        _ => nodes.iter().map(|node| (*node, 1.0)).collect(),
+        [_, _, false] => along(&group.lines),
+        _ => group.nodes.iter().map(|node| (*node, 1.0)).collect(),
     };
     let whole: f64 = measures.iter().map(|(_, measure)| measure).sum();
     let shares = measures.into_iter();
@@ -76,13 +71,8 @@ pub fn mean(shares: &[(usize, f64)], of_node: &dyn Fn(usize, usize) -> f64) -> [
 
 /// The share of an edge's length that belongs to each of its nodes, in mm.
 pub fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
-    const GAUSS: [(f64, f64); 3] = [
-        (-0.774_596_669_241_483_4, 5.0 / 9.0),
-        (0.0, 8.0 / 9.0),
-        (0.774_596_669_241_483_4, 5.0 / 9.0),
-    ];
     let mut shares: Vec<(usize, f64)> = edge.iter().map(|node| (*node, 0.0)).collect();
-    for (x, weight) in GAUSS {
+    for (x, weight) in GAUSS_3 {
         let (values, slopes) = edge_functions(edge.len(), x);
         let tangent = [0, 1].map(|axis| {
             let nodes = edge.iter().zip(&slopes);

@@ -29,9 +29,6 @@ pub struct Loads {
 
 impl Loads {
     /// Loads by group on a mesh.
-    ///
-    /// # Errors
-    /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
     pub fn of(mesh: &Mesh, loads: &[(String, Load)], thickness: f64) -> Result<Self, Diagnostic> {
         let mut sum = Self {
             forces: vec![0.0; 2 * mesh.nodes.len()],
@@ -117,9 +114,6 @@ impl Loads {
 }
 
 /// The forces in N of a dead load of a group on the unknowns of a mesh; a pressure has none.
-///
-/// # Errors
-/// A [`Diagnostic`] when the mesh has no such group, or when it cannot carry the load.
 pub fn dead_forces(
     mesh: &Mesh,
     (name, load): &(String, Load),

@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Resultant;
 use crate::mesh::{Group, Mesh};
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling};
+use crate::solve::{Connectivity, Evaluated, Local, Potential, SkewCoupling};
 
 /// Share of the line load at an end below which it counts as rounding of a zero sum.
 const NOTHING: f64 = 1e-12;
@@ -161,12 +161,7 @@ impl Potential for PressurePotential<'_> {
         &self.connectivity
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         let Pressures { edges, ends } = self.pressures;
         Ok(match edges.get(element) {
             Some(edge) => edge.evaluate(self.factor, u, local),

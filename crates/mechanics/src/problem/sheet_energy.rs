@@ -9,7 +9,8 @@ use crate::material::HyperelasticLaw;
 use crate::material::stability::is_stable;
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::{
-    Connectivity, Inadmissible, Local, Potential, Remembering, Take, evaluate_by_elements,
+    Connectivity, Evaluated, Inadmissible, Local, Potential, Remembering, Take,
+    evaluate_by_elements,
 };
 
 /// Π(u) = Σ V Ψ(H(u)) over the sampling points of all cells, in mJ.
@@ -151,16 +152,11 @@ impl Potential for SheetEnergy {
         &self.connectivity
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         self.evaluate_after(element, u, local, &self.history)
     }
 
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         if self.history.is_empty() {
             self.evaluate_virgin(u, forces, take)
         } else {
@@ -185,7 +181,7 @@ impl Remembering for SheetEnergy {
         u: &[f64],
         mut local: Local<'_>,
         history: &[f64],
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         let softening = self.law.softening().filter(|_| !history.is_empty());
         let softening = softening.map(|own| (own, &history[self.points_of(element)]));
         let mut energy = 0.0;

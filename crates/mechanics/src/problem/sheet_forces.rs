@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::sheet_energy::SheetEnergy;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::COMPONENTS;
-use crate::solve::{Inadmissible, Potential, Take};
+use crate::solve::{Evaluated, Inadmissible, Potential, Take};
 
 /// Least number of points that are evaluated together.
 const BLOCK: usize = 256;
@@ -21,15 +21,12 @@ struct Points {
 
 impl SheetEnergy {
     /// As [`Potential::evaluate`], of a body without a history.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted cell.
     pub(super) fn evaluate_virgin(
         &self,
         u: &[f64],
         forces: &mut [f64],
         mut take: Take<'_>,
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         let (mut energy, mut stiffness) = (0.0, Vec::new());
         self.in_blocks(u, |points, cells| {
             let mut place = 0;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::constraints::Tie;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling, Take};
+use crate::solve::{Connectivity, Evaluated, Local, Potential, SkewCoupling, Take};
 
 /// Π(u) with uᵢ = s uₖ for every tie (i, k) of the share s: elements depend on the k alone, and there is no equation for an i.
 ///
@@ -72,8 +72,8 @@ impl TiedPotential<'_> {
         &self,
         v: &[f64],
         forces: &mut [f64],
-        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<f64, Inadmissible>,
-    ) -> Result<f64, Inadmissible> {
+        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Evaluated,
+    ) -> Evaluated {
         let (mut u, mut untied) = (v.to_vec(), vec![0.0; v.len()]);
         for (unknown, tie) in self.ties {
             u[*unknown] = tie.share * v[tie.master];
@@ -119,12 +119,7 @@ impl Potential for TiedPotential<'_> {
         .collect()
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         let Some(places) = self.places.get(&element) else {
             return self.potential.evaluate_element(element, u, local);
         };
@@ -147,7 +142,7 @@ impl Potential for TiedPotential<'_> {
         Ok(energy)
     }
 
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         let Some(take) = take else {
             return self.untied(u, forces, |u, untied| {
                 self.potential.evaluate(u, untied, None)

@@ -12,14 +12,8 @@ use crate::mesh::Mesh;
 /// Displacements further from those of a rigid body than this share of its size strain it.
 const ROUNDING: f64 = 1e-9;
 
-/// A displacement along an axis that a support prescribes.
-struct Prescribed {
-    /// The place relative to the middle of the mesh, over the size of the mesh.
-    place: [f64; 2],
-    axis: usize,
-    /// Over the size of the mesh.
-    displacement: f64,
-}
+/// A displacement that a support prescribes, over the size of the mesh: the place relative to the middle, the axis, and the displacement.
+type Prescribed = ([f64; 2], usize, f64);
 
 impl BoundaryProblem {
     /// What is to be said where nothing strains the sheet, so that all forces are zero and any comparison passes: an error where its supports
@@ -67,11 +61,8 @@ fn is_rigid(mesh: &Mesh, constraints: &Constraints, factor: f64) -> bool {
     let size = (high[0] - low[0]).hypot(high[1] - low[1]);
     let prescribed = constraints.held.iter().map(|(unknown, motion)| {
         let at = mesh.nodes[unknown / 2];
-        Prescribed {
-            place: [0, 1].map(|axis| (at[axis] - middle[axis]) / size),
-            axis: unknown % 2,
-            displacement: motion.at(factor) / size,
-        }
+        let place = [0, 1].map(|axis| (at[axis] - middle[axis]) / size);
+        (place, unknown % 2, motion.at(factor) / size)
     });
     let prescribed: Vec<_> = prescribed.collect();
     let mut turns = constraints.held.values().map(|motion| motion.angle());
@@ -97,12 +88,7 @@ fn nearest_motion(prescribed: &[Prescribed], start: f64) -> Option<[f64; 2]> {
         let (sine, cosine) = motion[2].sin_cos();
         let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
         largest = 0.0;
-        for Prescribed {
-            place: [x, y],
-            axis,
-            displacement,
-        } in prescribed
-        {
+        for ([x, y], axis, displacement) in prescribed {
             let turned = [cosine * x - sine * y, sine * x + cosine * y];
             let residual = motion[*axis] + turned[*axis] - [x, y][*axis] - displacement;
             let mut slope = Vector3::new(0.0, 0.0, [-turned[1], turned[0]][*axis]);

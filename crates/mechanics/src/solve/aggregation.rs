@@ -14,17 +14,7 @@
 //!
 //! All sums run in an order that does not depend on the number of threads.
 //!
-//! A strip with a hole (100 × 40 mm, radius 8 mm, 10 % PVA, stretched by 15 % in one load step, one thread of an Intel Xeon) takes less of
-//! both than the sparse factor in the order of nested dissection, processor time and largest resident memory:
-//!
-//! | cells | nodes | factor | aggregation |
-//! |---|---|---|---|
-//! | bilinear | 96,390 | 4.2 s, 0.34 GB | 2.8 s, 0.20 GB |
-//! | bilinear | 302,560 | 15 s, 1.15 GB | 9.9 s, 0.65 GB |
-//! | bilinear | 992,670 | 65 s, 3.97 GB | 31 s, 2.05 GB |
-//! | biquadratic | 96,032 | 4.5 s, 0.43 GB | 4.1 s, 0.32 GB |
-//! | biquadratic | 303,840 | 19 s, 1.48 GB | 12 s, 0.95 GB |
-//! | biquadratic | 991,512 | 84 s, 5.27 GB | 43 s, 2.97 GB |
+//! Times and memory beside those of a sparse factor are in `guide::performance`.
 //!
 //! # References
 //! P. Vaněk, J. Mandel, M. Brezina, Computing 56, 179 (1996), doi:10.1007/BF02238511

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::connectivity::Connectivity;
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
-use super::potential::{ElementTerms, Inadmissible, Potential};
+use super::potential::{ElementTerms, Evaluated, Inadmissible, Potential};
 use super::scatter::{NOWHERE, Scatter};
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, moved, norm};
@@ -105,11 +105,7 @@ impl Assembly {
     ///
     /// # Errors
     /// [`Inadmissible`] with the first inverted element.
-    pub fn residual(
-        potential: &dyn Potential,
-        u: &[f64],
-        residual: &mut [f64],
-    ) -> Result<f64, Inadmissible> {
+    pub fn residual(potential: &dyn Potential, u: &[f64], residual: &mut [f64]) -> Evaluated {
         residual.fill(0.0);
         potential.evaluate(u, residual, None)
     }
@@ -153,7 +149,7 @@ impl Assembly {
         u: &[f64],
         residual: &mut [f64],
         stiffness: &mut Vec<f64>,
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         residual.fill(0.0);
         stiffness.clear();
         let (pattern, scatter) = self.sparse();

@@ -2,7 +2,8 @@
 
 use super::connectivity::Connectivity;
 use super::potential::{
-    Inadmissible, Local, Potential, Remembering, SkewCoupling, Take, evaluate_by_elements,
+    Evaluated, Inadmissible, Local, Potential, Remembering, SkewCoupling, Take,
+    evaluate_by_elements,
 };
 
 /// An energy of a body with a history, which is empty where the body was never loaded or has no memory.
@@ -23,12 +24,7 @@ impl Potential for After<'_> {
         self.energy.connectivity()
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         if self.history.is_empty() {
             self.energy.evaluate_element(element, u, local)
         } else {
@@ -37,7 +33,7 @@ impl Potential for After<'_> {
         }
     }
 
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         if self.history.is_empty() {
             self.energy.evaluate(u, forces, take)
         } else {
@@ -80,12 +76,6 @@ impl<'a> Sum<'a> {
         Self::new(energy, forces)
     }
 
-    fn of_second(&self, fault: Inadmissible) -> Inadmissible {
-        Inadmissible {
-            element: self.first.elements() + fault.element,
-        }
-    }
-
     /// The part to which an element belongs, and its number there.
     fn part(&self, element: usize) -> (&dyn Potential, usize) {
         match element.checked_sub(self.first.elements()) {
@@ -100,18 +90,13 @@ impl Potential for Sum<'_> {
         &self.connectivity
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         let (part, own) = self.part(element);
         let energy = part.evaluate_element(own, u, local);
         energy.map_err(|_| Inadmissible { element })
     }
 
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         let before = self.first.elements();
         let (first, second) = match take {
             None => {
@@ -125,7 +110,10 @@ impl Potential for Sum<'_> {
                 (first, self.second.evaluate(u, forces, Some(&mut own)))
             }
         };
-        Ok(first + second.map_err(|fault| self.of_second(fault))?)
+        let of_second = |fault: Inadmissible| Inadmissible {
+            element: before + fault.element,
+        };
+        Ok(first + second.map_err(of_second)?)
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -166,12 +154,7 @@ impl Potential for DeadForces {
         &self.connectivity
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         let force = self.forces[element];
         local.residual[0] = -force;
         Ok(-force * u[0])

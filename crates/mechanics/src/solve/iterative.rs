@@ -3,7 +3,7 @@
 use super::aggregation::Hierarchy;
 use super::assembly::Assembly;
 use super::nodal::{NodalMatrix, Nodes, Solution, conjugate_gradients};
-use super::potential::{Inadmissible, Potential};
+use super::potential::{Evaluated, Potential};
 use super::sparse::FactorFault;
 
 /// How systems with the tangent are solved.
@@ -20,7 +20,7 @@ pub enum LinearSolver {
 }
 
 /// Number of unknowns from which multigrid is taken: it saves a third of a factor's time and memory there on a strip with a hole, and half
-/// of both at four times as many unknowns, see `solve::aggregation`; on plates of equal quadratic cells it takes longer.
+/// of both at four times as many unknowns, see `guide::performance`; on plates of equal quadratic cells it takes longer.
 pub const WORTH_MULTIGRID: usize = 500_000;
 
 /// Most iterations of a system.
@@ -87,15 +87,12 @@ impl Iterative {
 
     /// Takes the tangent of a potential at another state; returns the energy there, and ∂Π/∂u at all unknowns. There
     /// is no tangent at a state that is not admissible.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted element.
     pub fn linearise(
         &mut self,
         potential: &dyn Potential,
         u: &[f64],
         residual: &mut [f64],
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         let energy = self.matrix.linearise(potential, u, residual);
         // Aggregation is costly, and also serves for tangents near its own.
         if self.made == Made::ForThese {
@@ -115,9 +112,6 @@ impl Iterative {
     }
 
     /// x of K x = b, until the residual has fallen by `reduction` in the norm of the preconditioner.
-    ///
-    /// # Errors
-    /// [`FactorFault`] where K is not positive definite, or the iteration does not get there.
     pub fn solve(&mut self, b: &[f64], reduction: f64) -> Result<Vec<f64>, FactorFault> {
         let b = self.nodes.spread(b);
         loop {

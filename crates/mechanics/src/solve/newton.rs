@@ -75,6 +75,15 @@ const SADDLE: f64 = 1e-5;
 /// Relative residual at which a stagnating iteration counts as converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-11;
 
+/// A potential, the unknowns on their way to its minimum, and ∂Π/∂u there.
+struct Descent<'a> {
+    potential: &'a dyn Potential,
+    u: &'a mut [f64],
+    residual: &'a mut [f64],
+    settings: NewtonSettings,
+    log: Convergence,
+}
+
 /// The state of the iteration.
 struct Iterate {
     energy: f64,
@@ -138,47 +147,48 @@ impl Newton {
         describe: Describe,
     ) -> Result<Convergence, SolveFault> {
         self.indefinite = None;
+        let mut descent = Descent {
+            potential,
+            u,
+            residual,
+            settings,
+            log: Convergence::default(),
+        };
         if self.tangent.iterative.is_some() {
-            let start = u.to_vec();
-            if let Some(log) = self.solve_inexactly(potential, u, residual, settings) {
-                return Ok(log);
+            let start = descent.u.to_vec();
+            if self.solve_inexactly(&mut descent).is_some() {
+                return Ok(descent.log);
             }
-            u.copy_from_slice(&start);
-            let log = self.solve_directly(potential, u, residual, settings, describe)?;
+            descent.u.copy_from_slice(&start);
+            descent.log = Convergence::default();
+            self.solve_directly(&mut descent, describe)?;
             // A factor solves from the same start what multigrid did not: multigrid does not suit these cells.
             self.tangent.iterative = None;
-            return Ok(log);
+        } else {
+            self.solve_directly(&mut descent, describe)?;
         }
-        self.solve_directly(potential, u, residual, settings, describe)
+        Ok(descent.log)
     }
 
     /// Newton's method with a factor for every tangent.
-    fn solve_directly(
-        &mut self,
-        potential: &dyn Potential,
-        u: &mut [f64],
-        residual: &mut [f64],
-        settings: NewtonSettings,
-        describe: Describe,
-    ) -> Result<Convergence, SolveFault> {
-        let mut log = Convergence::default();
+    fn solve_directly(&mut self, to: &mut Descent, describe: Describe) -> Result<(), SolveFault> {
+        let settings = to.settings;
         let mut stiffness = Vec::new();
         loop {
-            let linearised =
-                (self.tangent.assembly).linearise(potential, u, residual, &mut stiffness);
+            let assembly = &self.tangent.assembly;
+            let linearised = assembly.linearise(to.potential, to.u, to.residual, &mut stiffness);
             let energy = linearised.map_err(|fault| inverted(fault, describe))?;
-            let stiffest = self.tangent.assembly.stiffest(&stiffness);
-            let mut now = self.measure(u, residual, energy, stiffest, &mut log)?;
-            self.tangent.take_skew(potential);
+            let mut now = self.measure(to, energy, assembly.stiffest(&stiffness))?;
+            self.tangent.take_skew(to.potential);
             if self.shifts {
                 now.shifted = self.tangent.factorise(&mut stiffness)?;
             } else {
                 self.tangent.factorise_unshifted(&mut stiffness)?;
             }
             if now.shifted && self.indefinite.is_none() {
-                self.indefinite = Some(u.to_vec());
+                self.indefinite = Some(to.u.to_vec());
             }
-            let before = log.residuals.iter().rev().nth(1);
+            let before = to.log.residuals.iter().rev().nth(1);
             let stagnant = before.is_some_and(|before| now.relative > 0.5 * before);
             let converged =
                 now.relative <= settings.tolerance || (stagnant && now.relative < ROUNDING_FLOOR);
@@ -186,129 +196,100 @@ impl Newton {
                 return Err(SolveFault::NotPositiveDefinite);
             }
             if converged {
-                return Ok(log);
+                return Ok(());
             }
-            if log.iterations() >= settings.max_iterations {
+            if to.log.iterations() >= settings.max_iterations {
                 return Err(SolveFault::Stalled {
-                    iterations: log.iterations(),
+                    iterations: to.log.iterations(),
                     residual: now.relative,
                     tolerance: settings.tolerance,
                 });
             }
-            log.shifted_steps += usize::from(now.shifted);
-            let step = self.tangent.step(residual)?;
-            let (length, energy) = self
-                .search(potential, u, residual, now.energy, &step)
-                .map_err(|fault| inverted(fault, describe))?;
-            log.cut_steps += usize::from(length < 1.0);
+            to.log.shifted_steps += usize::from(now.shifted);
+            let step = self.tangent.step(to.residual)?;
+            let searched = self.search(to, now.energy, &step);
+            let (length, energy) = searched.map_err(|fault| inverted(fault, describe))?;
+            to.log.cut_steps += usize::from(length < 1.0);
             if now.shifted || now.relative > SMALL {
                 continue;
             }
-            let near = Iterate { energy, ..now };
-            if self.hold_tangent(potential, u, residual, near, settings, &mut log) {
-                return Ok(log);
+            if self.hold_tangent(to, Iterate { energy, ..now }) {
+                return Ok(());
             }
         }
     }
 
     /// Takes steps with the tangent taken last, which was positive definite nearby, while each reduces the residual
     /// enough: such steps cost a fraction of a factor. Returns whether the residual has come below the tolerance.
-    fn hold_tangent(
-        &mut self,
-        potential: &dyn Potential,
-        u: &mut [f64],
-        residual: &mut [f64],
-        near: Iterate,
-        settings: NewtonSettings,
-        log: &mut Convergence,
-    ) -> bool {
+    fn hold_tangent(&mut self, to: &mut Descent, near: Iterate) -> bool {
         let (mut before, mut energy) = (near.relative, near.energy);
         loop {
-            let after = self.relative_residual(residual, near.negligible * largest(u));
-            if after <= settings.tolerance {
-                log.residuals.push(after);
-                log.energy = energy;
+            let after = self.relative_residual(to.residual, near.negligible * largest(to.u));
+            if after <= to.settings.tolerance {
+                to.log.residuals.push(after);
+                to.log.energy = energy;
                 return true;
             }
-            let serves = after <= SERVES * before && log.iterations() + 1 < settings.max_iterations;
-            let Some(step) = serves.then(|| self.tangent.step(residual).ok()).flatten() else {
+            let more = to.log.iterations() + 1 < to.settings.max_iterations;
+            let serves = after <= SERVES * before && more;
+            let step = serves.then(|| self.tangent.step(to.residual).ok());
+            let Some(step) = step.flatten() else {
                 return false;
             };
-            let (start, forces) = (u.to_vec(), residual.to_vec());
-            match self.search(potential, u, residual, energy, &step) {
+            let (start, forces) = (to.u.to_vec(), to.residual.to_vec());
+            match self.search(to, energy, &step) {
                 Ok((1.0, lower)) => energy = lower,
                 _ => {
-                    u.copy_from_slice(&start);
-                    residual.copy_from_slice(&forces);
+                    to.u.copy_from_slice(&start);
+                    to.residual.copy_from_slice(&forces);
                     return false;
                 }
             }
-            log.residuals.push(after);
+            to.log.residuals.push(after);
             before = after;
         }
     }
 
     /// Newton's method with steps by multigrid, each solved as exactly as its stage requires. `None` where anything
     /// fails: Newton's method with factors then finds the solution, or the fault.
-    fn solve_inexactly(
-        &mut self,
-        potential: &dyn Potential,
-        u: &mut [f64],
-        residual: &mut [f64],
-        settings: NewtonSettings,
-    ) -> Option<Convergence> {
-        let mut log = Convergence::default();
+    fn solve_inexactly(&mut self, to: &mut Descent) -> Option<()> {
+        let settings = to.settings;
         loop {
             let iterative = self.tangent.iterative.as_mut()?;
-            let energy = iterative.linearise(potential, u, residual).ok()?;
+            let energy = iterative.linearise(to.potential, to.u, to.residual).ok()?;
             let stiffest = iterative.stiffest();
-            let now = self.measure(u, residual, energy, stiffest, &mut log);
-            let now = now.ok()?;
-            let Tangent {
-                assembly,
-                iterative,
-                ..
-            } = &mut self.tangent;
-            let iterative = iterative.as_mut()?;
+            let now = self.measure(to, energy, stiffest).ok()?;
+            let iterative = self.tangent.iterative.as_mut()?;
             if now.relative <= settings.tolerance {
-                return iterative.is_definite().then_some(log);
+                return iterative.is_definite().then_some(());
             }
-            if log.iterations() >= settings.max_iterations {
+            if to.log.iterations() >= settings.max_iterations {
                 return None;
             }
-            let mut right = gather(assembly.free(), residual);
+            let mut right = gather(self.tangent.assembly.free(), to.residual);
             scale(&mut right, -1.0);
-            let step = iterative.solve(&right, forcing(&log, settings.tolerance));
-            let step = step.ok()?;
-            let searched = self.search(potential, u, residual, now.energy, &step);
-            let (length, energy) = searched.ok()?;
-            log.cut_steps += usize::from(length < 1.0);
-            let after = self.relative_residual(residual, now.negligible * largest(u));
+            let step = iterative.solve(&right, forcing(&to.log, settings.tolerance));
+            let (length, energy) = self.search(to, now.energy, &step.ok()?).ok()?;
+            to.log.cut_steps += usize::from(length < 1.0);
+            let after = self.relative_residual(to.residual, now.negligible * largest(to.u));
             if now.relative <= SMALL && after <= settings.tolerance {
-                log.residuals.push(after);
-                log.energy = energy;
+                to.log.residuals.push(after);
+                to.log.energy = energy;
                 let iterative = self.tangent.iterative.as_mut()?;
-                return iterative.is_definite().then_some(log);
+                return iterative.is_definite().then_some(());
             }
         }
     }
 
     /// Records a linearised state.
-    fn measure(
-        &self,
-        u: &[f64],
-        residual: &[f64],
-        energy: f64,
-        stiffest: f64,
-        log: &mut Convergence,
-    ) -> Result<Iterate, SolveFault> {
+    fn measure(&self, to: &mut Descent, energy: f64, stiffest: f64) -> Result<Iterate, SolveFault> {
         let negligible = NEGLIGIBLE * stiffest;
-        let relative = self.relative_residual(residual, negligible * largest(u));
+        let relative = self.relative_residual(to.residual, negligible * largest(to.u));
         if !relative.is_finite() {
             return Err(SolveFault::NotFinite("the residual".into()));
         }
-        log.energy = energy;
-        log.residuals.push(relative);
+        to.log.energy = energy;
+        to.log.residuals.push(relative);
         Ok(Iterate {
             energy,
             relative,
@@ -340,13 +321,12 @@ impl Newton {
     /// energy there; `residual` is that of the new state.
     fn search(
         &self,
-        potential: &dyn Potential,
-        u: &mut [f64],
-        residual: &mut [f64],
+        to: &mut Descent,
         energy: f64,
         step: &[f64],
     ) -> Result<(f64, f64), Inadmissible> {
         const SHORTEST: f64 = 1e-6;
+        let (u, residual) = (&mut *to.u, &mut *to.residual);
         let free = self.free();
         let start = gather(free, u);
         let slope = dot(&gather(free, residual), step);
@@ -356,7 +336,7 @@ impl Newton {
             for ((i, start), step) in free.iter().zip(&start).zip(step) {
                 u[*i] = start + length * step;
             }
-            let outcome = Assembly::residual(potential, u, residual);
+            let outcome = Assembly::residual(to.potential, u, residual);
             if let Ok(moved) = outcome {
                 let falls =
                     moved <= energy + 1e-4 * length * slope || self.imbalance(residual) < before;

@@ -123,9 +123,6 @@ pub struct Solution {
 }
 
 /// x of A x = b by conjugate gradients with a preconditioner z = M r, for so many iterations, or until the residual has fallen by `reduction`.
-///
-/// # Errors
-/// [`FactorFault::NotPositiveDefinite`] where a direction has no positive stiffness.
 pub fn conjugate_gradients(
     matrix: &NodalMatrix,
     mut precondition: impl FnMut(&[[f64; 2]], &mut [[f64; 2]]),

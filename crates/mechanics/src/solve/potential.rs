@@ -10,6 +10,9 @@ pub struct Inadmissible {
     pub element: usize,
 }
 
+/// An energy in mJ, or the first element that is inverted.
+pub type Evaluated = Result<f64, Inadmissible>;
+
 /// Where an element writes its derivatives: residual rᵢ = ∂Π/∂uᵢ and stiffness Kᵢₖ = ∂²Π/∂uᵢ∂uₖ,
 /// row by row, both set to zero before the call. Without `stiffness` only the residual is wanted.
 #[derive(Debug)]
@@ -46,18 +49,13 @@ pub trait Potential: Sync {
     ///
     /// # Errors
     /// [`Inadmissible`] when the element is inverted.
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible>;
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated;
 
     /// Π; adds ∂Π/∂u at all unknowns, and passes on the stiffnesses of all elements where they are wanted.
     ///
     /// # Errors
     /// [`Inadmissible`] with an element that is inverted.
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         evaluate_by_elements(self, u, forces, take)
     }
 
@@ -102,7 +100,7 @@ pub trait Remembering: Potential {
         u: &[f64],
         local: Local<'_>,
         history: &[f64],
-    ) -> Result<f64, Inadmissible>;
+    ) -> Evaluated;
 
     /// Adds the state `u` to a history, which stays empty where the material has no memory.
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]);
@@ -125,7 +123,7 @@ pub fn evaluate_by_elements<P: Potential + ?Sized>(
     u: &[f64],
     forces: &mut [f64],
     mut take: Take<'_>,
-) -> Result<f64, Inadmissible> {
+) -> Evaluated {
     let mut own = ElementTerms::default();
     let mut energy = 0.0;
     for element in 0..potential.elements() {
@@ -161,7 +159,7 @@ impl ElementTerms {
         element: usize,
         u: &[f64],
         with_stiffness: bool,
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         let unknowns = potential.element_unknowns(element);
         let size = unknowns.len();
         self.values.clear();
@@ -186,16 +184,11 @@ impl<P: Potential + ?Sized> Potential for &P {
         (**self).connectivity()
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         (**self).evaluate_element(element, u, local)
     }
 
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
         (**self).evaluate(u, forces, take)
     }
 

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
-use serde::{Deserialize, Serialize};
 
 use super::pattern::SymmetricPattern;
 
 /// A sparse matrix by rows, of any shape.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SparseRows {
     columns: usize,
     rows: Vec<Vec<(usize, f64)>>,
@@ -30,16 +29,6 @@ impl SparseRows {
             *merged.entry(column).or_insert(0.0) += value;
         }
         self.rows.push(merged.into_iter().collect());
-    }
-
-    /// Whether its structure is that of [`Self::push`] and its numbers are finite: a matrix from a file may be malformed.
-    pub fn is_sound(&self) -> bool {
-        let ascending = |row: &Vec<(usize, f64)>| row.windows(2).all(|pair| pair[0].0 < pair[1].0);
-        let within = |row: &Vec<(usize, f64)>| {
-            let mut entries = row.iter();
-            entries.all(|(column, value)| *column < self.columns && value.is_finite())
-        };
-        self.rows.iter().all(|row| ascending(row) && within(row))
     }
 
     /// Number of rows.

@@ -138,23 +138,6 @@ impl Cholesky {
         &self.pattern
     }
 
-    /// The values of the factorised matrix and of its factor.
-    pub fn parts(&self) -> (&[f64], &[f64]) {
-        (&self.values, &self.factor)
-    }
-
-    /// Restores a factor that was kept elsewhere, in place of a factorisation.
-    ///
-    /// # Errors
-    /// [`FactorFault`] when the parts do not belong to this pattern.
-    pub fn restore(&mut self, values: Vec<f64>, factor: Vec<f64>) -> Result<(), FactorFault> {
-        if values.len() != self.pattern.entries() || factor.len() != self.factor.len() {
-            return Err(FactorFault::NotPositiveDefinite);
-        }
-        (self.values, self.factor) = (values, factor);
-        Ok(())
-    }
-
     /// Factorises the matrix with these `values`.
     ///
     /// # Errors

@@ -248,9 +248,6 @@ impl Tangent {
     }
 
     /// Factorises the stiffness as it is.
-    ///
-    /// # Errors
-    /// [`SolveFault::NotPositiveDefinite`] where it is not, nor stable with its skew part.
     pub(super) fn factorise_unshifted(&mut self, stiffness: &mut [f64]) -> Result<(), SolveFault> {
         let factorised = self.factorise_braced(stiffness);
         factorised.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))

@@ -1,9 +1,7 @@
 //! The climb of a field from grid to grid.
 
 use super::ratios::{Ratios, geometric_tail};
-use super::{
-    Climb, ClimbSolution, Field, Inverted, Iteration, Level, Way, Work, at_stretch, inverted,
-};
+use super::{Climb, ClimbSolution, Fall, Field, Inverted, Level, Way, at_stretch, inverted};
 use crate::error::{Error, SolveFault};
 
 /// The iteration's error on all grids but the finest, relative to that allowed there.
@@ -26,20 +24,12 @@ pub(super) struct Ascent {
     ratio: f64,
     ratios: Ratios,
     corrections: Vec<f64>,
-    work: Vec<(usize, Work)>,
     way: Way,
 }
 
 impl Ascent {
-    /// A corrected field on the first grid, the remaining error of its correction in mm, and its work.
-    pub fn new(
-        index: usize,
-        ratios: Ratios,
-        way: Way,
-        field: Field,
-        left: f64,
-        work: Vec<(usize, Work)>,
-    ) -> Self {
+    /// A corrected field on the first grid, and the remaining error of its correction in mm.
+    pub fn new(index: usize, ratios: Ratios, way: Way, field: Field, left: f64) -> Self {
         Self {
             index,
             corrections: vec![field.size(), left],
@@ -48,7 +38,6 @@ impl Ascent {
             size: f64::NAN,
             ratio: ratios.first,
             ratios,
-            work,
             way,
         }
     }
@@ -99,11 +88,6 @@ impl Ascent {
         (self.index, self.field, self.change) = (index, field, Some(interpolated));
     }
 
-    /// Whether a change is known, and all changes are between consecutive grids.
-    fn follows_all_grids(&self) -> bool {
-        self.change.is_some() && self.way.by_load_path.is_empty()
-    }
-
     /// The sum of d q + d q² + … that all finer grids would add.
     fn discretisation_error(&self) -> f64 {
         geometric_tail(self.size, self.ratio)
@@ -130,27 +114,13 @@ impl Climb<'_> {
                 force.map_err(|Inverted| at_stretch(stretch)(inverted()))?
             }
         };
-        if let Some((_, work)) = ascent.work.last_mut() {
-            work.evaluations += 1;
-        }
         Ok(ClimbSolution {
             force,
             discretisation_error: ascent.discretisation_error(),
-            error_is_sure: ascent.follows_all_grids() && self.tells_error(),
             field: ascent.field,
             corrections: ascent.corrections,
-            work: ascent.work,
             way: ascent.way,
         })
-    }
-
-    /// Whether the finest grids determine the discretisation error: see [`ClimbSolution::error_is_sure`].
-    fn tells_error(&self) -> bool {
-        let [.., coarse, fine] = &self.levels[..] else {
-            return false;
-        };
-        let [coarse, fine] = [coarse, fine].map(|level| level.grid.cells());
-        (0..2).all(|axis| fine[axis] == 2 * coarse[axis] && coarse[axis] >= 4 * self.scheme.side())
     }
 
     /// Climbs one grid by the iteration: from the expected change, otherwise from zero change.
@@ -167,12 +137,9 @@ impl Climb<'_> {
             found = self.settle(index, ascent, &interpolated, &mut field);
         }
         let reached = found?;
-        self.weakest = reached.fall.weakest;
+        self.weakest = reached.weakest;
         ascent.take(&self.levels, index, field, interpolated);
-        ascent.corrections = reached.fall.corrections;
-        ascent
-            .work
-            .push((self.levels[index].grid.nodes(), reached.work));
+        ascent.corrections = reached.corrections;
         Ok(())
     }
 
@@ -184,7 +151,7 @@ impl Climb<'_> {
         ascent: &Ascent,
         interpolated: &Field,
         field: &mut Field,
-    ) -> Result<Iteration, SolveFault> {
+    ) -> Result<Fall, SolveFault> {
         let finest = index + 1 == self.levels.len();
         let tolerance = if finest {
             self.settings.tolerance
@@ -201,10 +168,10 @@ impl Climb<'_> {
             let pair = [ascent.index, index].map(|index| &self.levels[index]);
             let [change, ratio] = ascent.change_to(pair, field, interpolated);
             let limit = SURE * tolerance * geometric_tail(change, ratio);
-            if reached.fall.left() <= limit {
+            if reached.left() <= limit {
                 break;
             }
-            self.weakest = reached.fall.slowest();
+            self.weakest = reached.slowest();
             let more = self.solve(index, field, &|_, left| left <= limit)?;
             reached = reached.followed_by(more);
         }
@@ -218,7 +185,6 @@ impl Climb<'_> {
         let [coarse, fine] = [ascent.index, found.index].map(|index| &self.levels[index].grid);
         let interpolated = ascent.field.onto(coarse, fine);
         ascent.take(&self.levels, found.index, found.field, interpolated);
-        ascent.work.push((fine.nodes(), Work::default()));
         ascent.note_load_path(found.left, fine.cells());
         Ok(())
     }

@@ -41,11 +41,7 @@ impl Grid {
 
     /// A grid of equal cells.
     pub fn even(size: [f64; 2], cells: [usize; 2]) -> Self {
-        let boundaries = [0, 1].map(|axis| -> Vec<f64> {
-            let at = |node: usize| size[axis] * node as f64 / cells[axis] as f64;
-            (0..=cells[axis]).map(at).collect()
-        });
-        Self::new(boundaries.each_ref().map(|places| &places[..]), 1)
+        Self::graded(size, cells, 1.0)
     }
 
     /// A grid of cells that become smaller towards the corners; see [`mesh::Grid`].

@@ -30,55 +30,6 @@ pub struct Level {
     correction: Field,
 }
 
-/// The work of an iteration.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Work {
-    /// Evaluations of F on this grid.
-    pub evaluations: usize,
-    /// Linearisations of F on this grid.
-    pub linearisations: usize,
-    /// V-cycles that began on this grid.
-    pub cycles: usize,
-}
-
-impl Work {
-    /// Adds other work on the same grid.
-    pub fn add(&mut self, other: Self) {
-        self.evaluations += other.evaluations;
-        self.linearisations += other.linearisations;
-        self.cycles += other.cycles;
-    }
-}
-
-/// A correction z = M⁻¹ r.
-#[derive(Clone, Copy, Debug)]
-struct Preconditioned {
-    /// r · z.
-    steepness: f64,
-    /// Root mean square of z over the nodes in mm.
-    size: f64,
-}
-
-/// The result of an iteration.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Iteration {
-    /// Its corrections: the first shows how far away the start was, the last one has been applied.
-    pub fall: Fall,
-    /// Its work.
-    pub work: Work,
-}
-
-impl Iteration {
-    /// This iteration and its continuation as one.
-    pub fn followed_by(mut self, more: Self) -> Self {
-        self.work.add(more.work);
-        Self {
-            fall: self.fall.followed_by(more.fall),
-            work: self.work,
-        }
-    }
-}
-
 /// The stopping criteria of an iteration.
 pub struct Ending<'a> {
     /// Most iterations.
@@ -116,17 +67,11 @@ impl Level {
     }
 
     /// Writes F(u) in N at all nodes to [`Self::residual`]; at the grips these are the reactions.
-    ///
-    /// # Errors
-    /// [`Inverted`].
     pub fn evaluate_residual(&mut self, sheet: Sheet, u: &Field) -> Result<(), Inverted> {
         sheet.forces(&self.grid, u, &mut self.residual)
     }
 
     /// Assembles the operator at `u`.
-    ///
-    /// # Errors
-    /// [`Inverted`].
     pub fn linearise(
         &self,
         sheet: Sheet,
@@ -140,24 +85,16 @@ impl Level {
 
     /// Moves the free nodes of `u` towards F(u) = 0 by conjugate gradients, whose products with the Jacobian are
     /// differences of F and whose preconditioner is one V-cycle with the operators assembled before.
-    ///
-    /// # Errors
-    /// [`Inverted`] when `u` or every step from it turns a cell inside out.
     pub fn iterate(
         &mut self,
         sheet: Sheet,
         u: &mut Field,
         multigrid: &mut Multigrid,
         ending: &Ending,
-    ) -> Result<Iteration, Inverted> {
-        let mut work = Work {
-            evaluations: 1,
-            ..Work::default()
-        };
+    ) -> Result<Fall, Inverted> {
         self.evaluate_residual(sheet, u)?;
-        let mut found = self.precondition(multigrid);
-        work.cycles += 1;
-        let mut fall = Fall::new(found.size, ending.weakest);
+        let [mut steepness, size] = self.precondition(multigrid);
+        let mut fall = Fall::new(size, ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
         }
@@ -166,19 +103,18 @@ impl Level {
             if (ending.enough)(fall.first(), fall.left()) {
                 break;
             }
-            let length = self.step(sheet, u, share, &mut work)?;
-            let before = found.steepness;
-            found = self.precondition(multigrid);
-            work.cycles += 1;
-            share = found.steepness / before;
-            fall.push(found.size, length, share);
+            let length = self.step(sheet, u, share)?;
+            let [next, size] = self.precondition(multigrid);
+            share = next / steepness;
+            steepness = next;
+            fall.push(size, length, share);
         }
         u.add(-1.0, &self.correction);
-        Ok(Iteration { fall, work })
+        Ok(fall)
     }
 
-    /// The correction z = M⁻¹ r of the residual, which is zero at the grips.
-    fn precondition(&mut self, multigrid: &mut Multigrid) -> Preconditioned {
+    /// The correction z = M⁻¹ r of the residual, which is zero at the grips: r · z, and the root mean square of z over the nodes in mm.
+    fn precondition(&mut self, multigrid: &mut Multigrid) -> [f64; 2] {
         let width = self.residual.width;
         let residual = &self.residual;
         let right = multigrid.right_hand_side(self.index);
@@ -217,10 +153,7 @@ impl Level {
             product += own;
             squares += square;
         }
-        Preconditioned {
-            steepness: product,
-            size: (squares / self.grid.nodes() as f64).sqrt(),
-        }
+        [product, (squares / self.grid.nodes() as f64).sqrt()]
     }
 
     /// p = β p − z, and the trial u + p.
@@ -257,8 +190,7 @@ impl Level {
         let mut image = Field::zeros(&self.grid);
         self.residual.clone_from(b);
         self.residual.scale(-1.0);
-        let mut found = self.precondition(multigrid);
-        let first = found.size;
+        let [mut steepness, first] = self.precondition(multigrid);
         self.direction.scale(0.0);
         let mut share = 0.0;
         for _ in 0..LINEAR_ITERATIONS {
@@ -278,10 +210,10 @@ impl Level {
             x.add(length, &self.direction);
             image.add(length, &self.trial_residual);
             self.residual.add(length, &self.trial_residual);
-            let before = found.steepness;
-            found = self.precondition(multigrid);
-            share = found.steepness / before;
-            if found.size <= tolerance * first {
+            let [next, size] = self.precondition(multigrid);
+            share = next / steepness;
+            steepness = next;
+            if size <= tolerance * first {
                 let free = u.free();
                 for (axis, x) in x.components.iter_mut().enumerate() {
                     let held = (0..x.len()).filter(|node| !free.contains(node));
@@ -296,17 +228,10 @@ impl Level {
     }
 
     /// Turns the direction, p = β p − z, and goes along it until the residual is orthogonal to it; returns how far.
-    fn step(
-        &mut self,
-        sheet: Sheet,
-        u: &mut Field,
-        share: f64,
-        work: &mut Work,
-    ) -> Result<f64, Inverted> {
+    fn step(&mut self, sheet: Sheet, u: &mut Field, share: f64) -> Result<f64, Inverted> {
         self.turn(u, share);
         let mut length = 1.0;
         loop {
-            work.evaluations += 1;
             let done = sheet.forces(&self.grid, &self.trial, &mut self.trial_residual);
             match done {
                 Ok(()) => break,

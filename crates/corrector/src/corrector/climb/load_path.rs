@@ -51,9 +51,6 @@ impl GridPlate<'_> {
 
 impl Climb<'_> {
     /// The equilibrium on the first grid, from a given one upward, on which one can be found.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] with the reason on the finest grid.
     pub(super) fn along_load_path(&self, from: usize, stretch: f64) -> Result<Equilibrium, Error> {
         let mut equilibrium = self.load_path(from, stretch);
         for index in from + 1..self.levels.len() {
@@ -104,9 +101,6 @@ impl Climb<'_> {
 
     /// x with K x = b at the free nodes of the finest grid and −K x + b at the grips, by a sparse factor of the
     /// Jacobian K at `u`.
-    ///
-    /// # Errors
-    /// A [`SolveFault`] when K cannot be factorised.
     pub(super) fn solve_by_factor(&self, u: &Field, b: &Field) -> Result<Field, SolveFault> {
         let plate = self.plate_on(self.grid());
         let model = self.model(&plate, 0.0);

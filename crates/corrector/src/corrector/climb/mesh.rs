@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Climb, ClimbSolution, Field, Grid};
 use crate::corrector::DifferenceScheme;
-use crate::mesh::{CellShape, Mesh, Side};
+use crate::mesh::{CellShape, Mesh};
 use crate::problem::DeformedSheet;
 
 impl Climb<'_> {
@@ -44,31 +44,8 @@ impl Grid {
 
     /// The mesh of cells with `side` spans of the grid along each axis, one (four nodes) or two (nine nodes).
     pub(super) fn mesh(&self, side: usize) -> Mesh {
-        let [x, y] = &self.coordinates;
-        let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
         let shape = [CellShape::Quad4, CellShape::Quad9][side - 1];
-        let steps = |axis: usize| (0..self.cells()[axis]).step_by(side);
-        let cells = steps(0).flat_map(|i| steps(1).map(move |j| [i, j]));
-        let mut mesh = Mesh::new(
-            nodes,
-            cells.map(|[i, j]| {
-                let node = |[a, b]: &[f64; 2]| {
-                    let step = |natural: f64| ((natural + 1.0) * side as f64 / 2.0) as usize;
-                    (i + step(*a)) * y.len() + j + step(*b)
-                };
-                (shape, shape.natural_nodes().iter().map(node).collect())
-            }),
-        );
-        let last = [x, y].map(|places| places[places.len() - 1]);
-        for (side, axis, at) in [
-            (Side::Left, 0, 0.0),
-            (Side::Right, 0, last[0]),
-            (Side::Bottom, 1, 0.0),
-            (Side::Top, 1, last[1]),
-        ] {
-            mesh.name_boundary(side.name(), |place| place[axis] == at);
-        }
-        mesh
+        Mesh::of_lines(&self.coordinates, shape)
     }
 }
 

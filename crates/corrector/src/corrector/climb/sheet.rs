@@ -19,9 +19,6 @@ pub struct Sheet<'a> {
 
 impl Sheet<'_> {
     /// F(u) in N at all nodes of a grid.
-    ///
-    /// # Errors
-    /// [`Inverted`].
     pub fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
         let Sheet { law, thickness, .. } = self;
         let admissible = match self.scheme {

@@ -4,7 +4,7 @@
 
 use super::ascent::Ascent;
 use super::way::{Start, Way};
-use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE, Work};
+use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
 use crate::solve::NewtonSettings;
@@ -17,7 +17,6 @@ pub(super) struct First {
     away: f64,
     /// The remaining error of the correction, root mean square over the nodes in mm.
     left: f64,
-    work: Work,
 }
 
 /// The springs are a first guess, which the correction changes by some hundredths: a more exact equilibrium of them would waste time.
@@ -38,9 +37,6 @@ const FIRST_TOLERANCE: f64 = 0.05;
 impl Climb<'_> {
     /// The corrected field on the first grid: the first of all starts that can be corrected there, or Newton's method
     /// along a path of load steps, there or on the next finer grid on which it finds an equilibrium.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] with the reason on the finest grid.
     pub(super) fn first_field(&mut self, stretch: f64) -> Result<Ascent, Error> {
         for steps in [1].into_iter().chain(LOAD_STEPS) {
             if let Some(first) = self.correct_springs(steps, stretch) {
@@ -55,7 +51,6 @@ impl Climb<'_> {
         let found = self.along_load_path(self.start, stretch)?;
         self.write_operators(&found);
         let (grid, left) = (&self.levels[found.index].grid, found.left);
-        let work = vec![(grid.nodes(), Work::default())];
         let way = Way::from_start(Start::LoadPath, grid.cells());
         Ok(Ascent::new(
             found.index,
@@ -63,7 +58,6 @@ impl Climb<'_> {
             way,
             found.field,
             left,
-            work,
         ))
     }
 
@@ -73,8 +67,7 @@ impl Climb<'_> {
             away: first.away,
             ..Way::from_start(start, grid.cells())
         };
-        let work = vec![(grid.nodes(), first.work)];
-        Ascent::new(self.start, self.ratios, way, first.field, first.left, work)
+        Ascent::new(self.start, self.ratios, way, first.field, first.left)
     }
 
     /// The springs' field at the first of so many load steps, corrected and led to the stretch on the first grid; `None` where it cannot be.
@@ -85,13 +78,11 @@ impl Climb<'_> {
 
     /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip.
     fn load_steps(&mut self, mut field: Field, steps: usize) -> Result<First, SolveFault> {
-        let (mut all, mut left, mut away) = (Work::default(), f64::NAN, f64::NAN);
+        let (mut left, mut away) = (f64::NAN, f64::NAN);
         for step in 1..=steps {
             let mut guess = field.clone();
             self.weakest = 1.0;
-            let work;
-            (left, work) = self.correct_start(&mut field)?;
-            all.add(work);
+            left = self.correct_start(&mut field)?;
             if step == 1 {
                 guess.add(-1.0, &field);
                 away = guess.size();
@@ -100,32 +91,26 @@ impl Climb<'_> {
                 field.scale((step + 1) as f64 / step as f64);
             }
         }
-        Ok(First {
-            field,
-            away,
-            left,
-            work: all,
-        })
+        Ok(First { field, away, left })
     }
 
-    /// Corrects on the first grid; returns the remaining error in mm, and the work.
-    fn correct_start(&mut self, field: &mut Field) -> Result<(f64, Work), SolveFault> {
+    /// Corrects on the first grid; returns the remaining error in mm.
+    fn correct_start(&mut self, field: &mut Field) -> Result<f64, SolveFault> {
         let alone = self.start + 1 == self.levels.len();
         let tolerance = if alone {
             ONLY_GRID_TOLERANCE
         } else {
             START_TOLERANCE
         };
-        let (mut work, mut left, mut weakest) = (Work::default(), f64::NAN, 1.0);
+        let (mut left, mut weakest) = (f64::NAN, 1.0);
         for tolerance in [tolerance.max(FIRST_TOLERANCE), tolerance] {
             self.linearise_below(self.start, field)?;
             let enough = |first: f64, left: f64| left <= tolerance * first;
             let reached = self.solve(self.start, field, &enough)?;
-            (left, weakest) = (reached.fall.left(), reached.fall.weakest);
-            work.add(reached.work);
+            (left, weakest) = (reached.left(), reached.weakest);
         }
         self.weakest = weakest;
-        Ok((left, work))
+        Ok(left)
     }
 
     /// The springs in equilibrium, at the nodes of the grid at which the climb begins; `None` where they have no equilibrium.

@@ -289,36 +289,6 @@ fn all_starts_come_to_the_same_field() {
 }
 
 #[test]
-fn a_path_has_the_states_that_climbs_have() {
-    let problem = problem("pva-10", [150.0, 50.0], 1.0);
-    let cells = [60, 20];
-    let stretches: Vec<f64> = (1..=20).map(|step| f64::from(step) / 20.0).collect();
-    let scheme = DifferenceScheme::Biquadratic;
-    let mut path = Vec::new();
-    let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::FAST);
-    climb
-        .follow(&stretches, &mut |climbed| path.push(climbed.clone()))
-        .unwrap();
-    assert_eq!(path.len(), stretches.len());
-    let mut exact = Climb::even(&problem, cells, scheme, TIGHT);
-    for (state, stretch) in path.iter().zip(&stretches) {
-        let expected = exact.correct(*stretch).unwrap();
-        let mut difference = state.field.clone();
-        difference.add(-1.0, &expected.field);
-        let limit = 0.1 * state.discretisation_error;
-        assert!(
-            difference.size() < limit,
-            "{stretch}: {} mm",
-            difference.size()
-        );
-        assert!(
-            (state.force / expected.force - 1.0).abs() < 5e-5,
-            "{stretch}"
-        );
-    }
-}
-
-#[test]
 fn grips_in_the_hand_turn_the_plate_and_bring_it_back() {
     let problem = problem("pva-10", [150.0, 50.0], 0.3);
     let climb = Climb::even(&problem, [60, 20], DifferenceScheme::Gauss, TIGHT);

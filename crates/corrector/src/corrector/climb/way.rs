@@ -11,7 +11,7 @@ pub enum Start {
     LoadSteps(usize),
     /// Newton's method with a sparse factor along a path of load steps.
     LoadPath,
-    /// States found before, in [`Climb::follow`](super::Climb::follow) and [`super::Interactive`].
+    /// The state before, in [`super::Interactive`].
     StatesBefore,
 }
 

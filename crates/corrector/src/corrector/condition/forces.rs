@@ -2,23 +2,22 @@
 
 use super::{Condition, Linearisation};
 use crate::mesh::geometry::bounding_box;
-use crate::solve::vector::{largest, moved};
+use crate::solve::vector::{gather, largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
 
-/// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
+/// Balance of forces ∂Π/∂uᵢ = 0 at the chosen unknowns, in N.
 ///
 /// At inner nodes this is the governing equation F(u) = 0; at the nodes of an edge, the half cells on the
-/// inner side alone contribute, which is the edge's condition that the traction f, or none, acts on it.
+/// inner side alone contribute, which is the edge's condition that no traction acts on it.
 pub struct Equilibrium<'a> {
     name: String,
     potential: &'a dyn Potential,
     assembly: &'a Assembly,
     unknowns: Vec<usize>,
-    loads: Vec<f64>,
 }
 
 impl<'a> Equilibrium<'a> {
-    /// Equilibrium of `potential` at `unknowns` without loads; `assembly` must hold no unknown fixed.
+    /// Equilibrium of `potential` at `unknowns`; `assembly` must hold no unknown fixed.
     pub fn new(
         name: &str,
         potential: &'a dyn Potential,
@@ -29,22 +28,8 @@ impl<'a> Equilibrium<'a> {
             name: name.to_owned(),
             potential,
             assembly,
-            loads: vec![0.0; unknowns.len()],
             unknowns,
         }
-    }
-
-    /// Adds external forces in N, one a row.
-    #[must_use]
-    pub fn with_loads(self, loads: Vec<f64>) -> Self {
-        assert_eq!(loads.len(), self.unknowns.len(), "one load a row");
-        Self { loads, ..self }
-    }
-
-    fn unbalanced(&self, residual: &[f64]) -> Vec<f64> {
-        let rows = self.unknowns.iter().zip(&self.loads);
-        rows.map(|(unknown, load)| residual[*unknown] - load)
-            .collect()
     }
 }
 
@@ -64,13 +49,13 @@ impl Condition for Equilibrium<'_> {
             jacobian.push(full[*unknown].iter().copied());
         }
         Ok(Linearisation {
-            values: self.unbalanced(&residual),
+            values: gather(&self.unknowns, &residual),
             jacobian,
         })
     }
 
     fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
-        residual(self.potential, u).map(|residual| self.unbalanced(&residual))
+        residual(self.potential, u).map(|residual| gather(&self.unknowns, &residual))
     }
 
     fn curvature(

@@ -29,9 +29,6 @@ pub(in crate::corrector) enum Form {
 }
 
 /// δ and ψ of the system with the curvature C of the conditions: [W + C, Bᵀ; B, 0] [δ; ψ] = [W (ū − u); −c].
-///
-/// # Errors
-/// [`FactorFault`] when the system is singular to working precision.
 pub(in crate::corrector) fn project_curved(
     jacobian: &SparseRows,
     weights: &[f64],
@@ -87,9 +84,6 @@ pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, Fact
 }
 
 /// Q (n × m, orthonormal columns) and R (m × m) of W^(−½) Bᵀ = Q R.
-///
-/// # Errors
-/// [`FactorFault`] when rows of B depend on each other.
 pub(in crate::corrector) fn weighted_qr(
     jacobian: &SparseRows,
     weights: &[f64],
@@ -137,18 +131,11 @@ pub(super) fn project_dense(
     }
 }
 
-pub(super) type Normal = (SparseRows, Vec<f64>, SymmetricPattern, Vec<f64>);
-
-/// B with rows of unit length, their scales, and B W⁻¹ Bᵀ.
-pub(super) fn normal(jacobian: &SparseRows, weights: &[f64]) -> Normal {
+/// The factor of B W⁻¹ Bᵀ, for rows of B of unit length.
+pub(super) fn cholesky(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, FactorFault> {
     let scales = row_scales(jacobian, weights);
     let scaled = jacobian.scaled(&scales);
     let (pattern, values) = scaled.normal_matrix(weights);
-    (scaled, scales, pattern, values)
-}
-
-pub(super) fn cholesky(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, FactorFault> {
-    let (scaled, scales, pattern, values) = normal(jacobian, weights);
     let mut cholesky = Cholesky::analyse(pattern)?;
     cholesky.factorise(&values)?;
     Ok(Form::Cholesky {
@@ -189,19 +176,15 @@ pub(super) fn project_cholesky(
 /// The stiffness form.
 pub(super) struct Symmetric {
     /// The unknown of each row.
-    pub(super) unknowns: Vec<usize>,
+    unknowns: Vec<usize>,
     /// Rows that are balances of forces, and the others.
     free: Vec<usize>,
     prescribed: Vec<usize>,
-    pub(super) cholesky: Cholesky,
+    cholesky: Cholesky,
 }
 
 impl Symmetric {
-    /// Prepares the form and gives the values of B_ff.
-    pub(super) fn analyse(
-        jacobian: &SparseRows,
-        unknowns: Vec<usize>,
-    ) -> Result<(Self, Vec<f64>), FactorFault> {
+    pub(super) fn new(jacobian: &SparseRows, unknowns: Vec<usize>) -> Result<Self, FactorFault> {
         let is_free = |row: &usize| jacobian.row(*row) != [(unknowns[*row], 1.0)];
         let (free, prescribed): (Vec<usize>, Vec<usize>) = (0..unknowns.len()).partition(is_free);
         let mut free_index = vec![None; unknowns.len()];
@@ -228,23 +211,15 @@ impl Symmetric {
         let rows = columns
             .iter()
             .map(|column| column.iter().map(|(row, _)| *row).collect());
-        let cholesky = Cholesky::analyse(SymmetricPattern::new(rows))?;
-        let values = columns.iter().flatten().map(|(_, value)| *value).collect();
-        Ok((
-            Self {
-                unknowns,
-                free,
-                prescribed,
-                cholesky,
-            },
-            values,
-        ))
-    }
-
-    pub(super) fn new(jacobian: &SparseRows, unknowns: Vec<usize>) -> Result<Self, FactorFault> {
-        let (mut symmetric, values) = Self::analyse(jacobian, unknowns)?;
-        symmetric.cholesky.factorise(&values)?;
-        Ok(symmetric)
+        let mut cholesky = Cholesky::analyse(SymmetricPattern::new(rows))?;
+        let values: Vec<f64> = columns.iter().flatten().map(|(_, value)| *value).collect();
+        cholesky.factorise(&values)?;
+        Ok(Self {
+            unknowns,
+            free,
+            prescribed,
+            cholesky,
+        })
     }
 
     pub(super) fn project(

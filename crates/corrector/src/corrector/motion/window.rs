@@ -83,14 +83,6 @@ const ROUNDING_FLOOR: f64 = 1e-8;
 /// rounding of the strains is large.
 const LEAST_FORCE: f64 = 2e-6;
 
-/// When a window is solved.
-#[derive(Clone, Copy)]
-struct Accuracy {
-    settings: WindowSettings,
-    /// In N.
-    least_force: f64,
-}
-
 impl EquationOfMotion<'_> {
     /// Corrects a motion that is given at instants from time 0 on, with a known start; `progress` is called with the number of corrected instants.
     ///
@@ -135,16 +127,14 @@ impl EquationOfMotion<'_> {
             made: 0,
         };
         let velocity = self.free(&start.velocity);
-        let accuracy = Accuracy {
-            settings,
-            least_force: LEAST_FORCE * settings.size * self.largest_stiffness(&start.displacement),
-        };
+        let largest_stiffness = self.largest_stiffness(&start.displacement);
+        let least_force = LEAST_FORCE * settings.size * largest_stiffness;
         let mut steps = settings.steps.max(1);
         while corrected.displacement.len() < data.len() {
             let done = corrected.displacement.len();
             let count = steps.min(data.len() - done);
             let mut window = self.window(&corrected.displacement, data, count);
-            let solved = self.solve(&mut window, &velocity, &mut retained, accuracy);
+            let solved = self.solve(&mut window, &velocity, &mut retained, settings, least_force);
             corrected.factorisations = retained.made;
             match solved {
                 Ok((interval, iterations)) => {
@@ -195,10 +185,8 @@ impl EquationOfMotion<'_> {
         window: &mut Window,
         velocity: &[f64],
         retained: &mut RetainedFactor,
-        Accuracy {
-            settings,
-            least_force,
-        }: Accuracy,
+        settings: WindowSettings,
+        least_force: f64,
     ) -> Result<(Interval, usize), SolveFault> {
         let mut last = f64::INFINITY;
         for iteration in 0..=settings.max_iterations {

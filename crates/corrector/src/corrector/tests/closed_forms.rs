@@ -36,20 +36,6 @@ fn unknowns_that_move_together_move_by_their_mean() {
     assert!(largest_difference(correction.field(), &[3.0, 3.0, 7.0, 3.0]) < 1e-13);
 }
 
-/// At rest there are no internal forces: the loads alone are out of balance.
-#[test]
-fn at_rest_balances_of_forces_lack_the_loads() {
-    let problem = problem();
-    let (springs, uncorrected) = lattice(&problem);
-    let plate = plate_corrector(&problem, &springs.mesh);
-    let size = uncorrected.displacement.len();
-    let assembly = Assembly::new(plate.energy(), &vec![false; size]);
-    let rest = vec![0.0; size];
-    let balance = Equilibrium::new("loaded", plate.energy(), &assembly, vec![4, 7]);
-    let values = balance.with_loads(vec![0.5, -0.2]).values(&rest).unwrap();
-    assert!(largest_difference(&values, &[-0.5, 0.2]) < 1e-15);
-}
-
 #[test]
 fn a_function_hands_on_its_curvature() {
     let rows = |value: f64| {

@@ -20,10 +20,9 @@ fn every_kind<'a>(
     let [left, right] = [Side::Left, Side::Right].map(edge);
     let inner = (0..mesh.nodes.len()).filter(|node| !mesh.on_grip(*node));
     let inner: Vec<usize> = inner.flat_map(|node| [2 * node, 2 * node + 1]).collect();
-    let loads: Vec<f64> = noise(inner.len()).iter().map(|n| 1e-3 * n).collect();
     let held = left.into_iter().map(|i| (i, 0.0));
     vec![
-        Box::new(Equilibrium::new("loaded", energy, assembly, inner).with_loads(loads)),
+        Box::new(Equilibrium::new("balance", energy, assembly, inner)),
         Box::new(Linear::prescribed("left", size, held)),
         Box::new(Linear::together(
             "rigid grip",

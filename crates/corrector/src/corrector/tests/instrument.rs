@@ -3,7 +3,6 @@
 use nalgebra::DMatrix;
 
 use super::*;
-use crate::corrector::retained::{self, RetainedFault};
 
 fn by_solver(solver: Solver) -> CorrectorSettings {
     CorrectorSettings { solver, ..SETTINGS }
@@ -164,64 +163,6 @@ fn a_retained_factor_is_applied_to_many_fields_and_right_hand_sides() {
         let expected = fresh.project(&values, &pull).unwrap();
         assert_eq!(retained.project(&values, &pull).unwrap(), expected);
     }
-}
-
-#[test]
-fn a_factor_survives_its_file_and_a_wrong_one_is_refused() {
-    let problem = problem();
-    let (springs, uncorrected) = lattice(&problem);
-    let plate = plate_corrector(&problem, &springs.mesh);
-    let size = uncorrected.displacement.len();
-    let pull = noise(size);
-    for known in [KnownConditions::ALL, FREE_GRIPS] {
-        let corrector = plate.corrector(STRETCH, known);
-        let mut factor = corrector.factor(&uncorrected.displacement).unwrap();
-        let bytes = retained::to_bytes(&factor, &corrector);
-        let mut read = retained::from_bytes(&bytes, &corrector).unwrap();
-        assert_eq!(read.solver(), factor.solver());
-        let values = corrector.values(&uncorrected.displacement).unwrap();
-        let (expected, found) = (factor.project(&values, &pull), read.project(&values, &pull));
-        assert_eq!(found, expected);
-
-        let refused = |bytes: &[u8]| {
-            retained::from_bytes(bytes, &corrector)
-                .map(|_| ())
-                .unwrap_err()
-        };
-        for damaged in [40, bytes.len() / 2, bytes.len() - 1] {
-            let mut copy = bytes.clone();
-            copy[damaged] ^= 1;
-            assert_eq!(refused(&copy), RetainedFault::Damaged, "byte {damaged}");
-        }
-        assert_eq!(refused(&bytes[..bytes.len() - 9]), RetainedFault::Damaged);
-        assert_eq!(refused(b"gelbench"), RetainedFault::NoFactor);
-        let mut newer = bytes.clone();
-        newer[15] = 9;
-        assert_eq!(refused(&newer), RetainedFault::Version(9));
-    }
-    let all = plate.corrector(STRETCH, KnownConditions::ALL);
-    let bytes = retained::to_bytes(&all.factor(&uncorrected.displacement).unwrap(), &all);
-    let other = plate.corrector(STRETCH, FREE_GRIPS);
-    let fault = retained::from_bytes(&bytes, &other)
-        .map(|_| ())
-        .unwrap_err();
-    assert!(
-        fault.to_string().contains("does not fit the problem"),
-        "{fault}"
-    );
-
-    // As many rows and unknowns, but another condition.
-    let named = |name: &str| {
-        let rows = Linear::prescribed(name, 4, [(0, 1.0), (2, 1.0)]);
-        Corrector::new(vec![Box::new(rows)], vec![1.0; 4], SETTINGS)
-    };
-    let (grips, markers) = (named("grips"), named("markers"));
-    let bytes = retained::to_bytes(&grips.factor(&[0.0; 4]).unwrap(), &grips);
-    assert!(retained::from_bytes(&bytes, &grips).is_ok());
-    let fault = retained::from_bytes(&bytes, &markers)
-        .map(|_| ())
-        .unwrap_err();
-    assert!(fault.to_string().contains("grips (2)"), "{fault}");
 }
 
 /// A line through noisy points: slope and intercept are parameters, and the estimate is that of ordinary

@@ -1,11 +1,13 @@
 //! Cells that touch or overlap without being joined: doubled nodes, hanging nodes, nodes inside of other cells.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::finding::{Exemptions, Finding};
 use super::sides::{Side, Sides};
 use crate::error::Diagnostic;
+use crate::mesh::buckets::Buckets;
 use crate::mesh::cells::Mesh;
+use crate::mesh::geometry::bounding_box;
 use crate::mesh::parts::Parts;
 
 /// Places nearer than this share of the shortest edge around are the same place.
@@ -55,14 +57,13 @@ enum Contact {
     Side,
 }
 
-/// The sides of the boundary by the squares of a grid that their boxes touch.
+/// The sides of the boundary, and the squares of a grid that their boxes touch.
 struct Boundary<'a> {
     sides: &'a Sides<'a>,
     all: Vec<Side>,
     /// The length of the shortest side at each node of the boundary.
     shortest: BTreeMap<usize, f64>,
-    step: f64,
-    squares: HashMap<[i64; 2], Vec<usize>>,
+    buckets: Buckets,
 }
 
 impl<'a> Boundary<'a> {
@@ -71,8 +72,7 @@ impl<'a> Boundary<'a> {
         let mut boundary = Self {
             sides,
             shortest: BTreeMap::new(),
-            step: 0.0,
-            squares: HashMap::new(),
+            buckets: Buckets::default(),
             all,
         };
         for side in &boundary.all {
@@ -82,28 +82,13 @@ impl<'a> Boundary<'a> {
                 *known = known.min(length);
             }
         }
-        boundary.step = boundary.usual_extent();
-        for (index, side) in boundary.all.iter().enumerate() {
-            let [low, high] = boundary.around(*side).map(|place| boundary.square(place));
-            for i in low[0]..=high[0] {
-                for j in low[1]..=high[1] {
-                    boundary.squares.entry([i, j]).or_default().push(index);
-                }
-            }
+        let boxes = boundary.all.iter().map(|side| boundary.around(*side));
+        let boxes: Vec<_> = boxes.collect();
+        if !boxes.is_empty() {
+            let whole = bounding_box(boxes.iter().flatten().copied());
+            boundary.buckets = Buckets::new(whole, boxes);
         }
         boundary
-    }
-
-    /// The mean extent of the sides' boxes, but not so much smaller than the longest one that this would cover more squares than there are sides.
-    fn usual_extent(&self) -> f64 {
-        let extent = |side: &Side| {
-            let [low, high] = self.around(*side);
-            (high[0] - low[0]).max(high[1] - low[1])
-        };
-        let count = self.all.len().max(1) as f64;
-        let mean = self.all.iter().map(extent).sum::<f64>() / count;
-        let longest = self.all.iter().map(extent).fold(0.0, f64::max);
-        mean.max(longest / count.sqrt()).max(f64::MIN_POSITIVE)
     }
 
     fn node(&self, node: usize) -> [f64; 2] {
@@ -113,10 +98,6 @@ impl<'a> Boundary<'a> {
     fn length(&self, side: Side) -> f64 {
         let [a, b] = side.ends().map(|node| self.node(node));
         (b[0] - a[0]).hypot(b[1] - a[1])
-    }
-
-    fn square(&self, place: [f64; 2]) -> [i64; 2] {
-        place.map(|x| (x / self.step).floor() as i64)
     }
 
     /// The box around a side, including a margin for nearby nodes.
@@ -142,8 +123,11 @@ impl<'a> Boundary<'a> {
     /// The sides that a node lies on without being their node.
     fn touched(&self, node: usize) -> Vec<(Side, Contact)> {
         let place = self.node(node);
-        let around = self.squares.get(&self.square(place));
-        let around = around.into_iter().flatten().map(|side| self.all[*side]);
+        let around = self
+            .buckets
+            .around(place)
+            .iter()
+            .map(|side| self.all[*side]);
         let touch = |side: Side| {
             let own: Vec<usize> = side.ends().into_iter().chain(side.middle).collect();
             if own.contains(&node) {

@@ -62,9 +62,6 @@ struct Reader {
 }
 
 /// Reads the text of a file.
-///
-/// # Errors
-/// A description of what is wrong or cannot be read.
 pub fn read(text: &str) -> Result<Results, Unreadable> {
     let mut reader = Reader {
         results: Results::default(),

@@ -8,9 +8,6 @@ use super::unreadable::Unreadable;
 use crate::mesh::cell_shape::CellShape;
 
 /// Reads the text of a file.
-///
-/// # Errors
-/// A description of what is wrong or cannot be read.
 pub fn read(text: &str) -> Result<Raw, Unreadable> {
     let mut format = section(text, "MeshFormat")?;
     let version: f64 = format.next()?;
@@ -26,9 +23,6 @@ pub fn read(text: &str) -> Result<Raw, Unreadable> {
 }
 
 /// The views of vectors at the nodes (`$NodeData`) by their names, each with its steps: times and values by node.
-///
-/// # Errors
-/// A description of what is wrong.
 pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, Unreadable> {
     let mut views: Vec<(String, Vec<_>)> = Vec::new();
     for section in text.split("$NodeData").skip(1) {

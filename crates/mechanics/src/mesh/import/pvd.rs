@@ -5,9 +5,6 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
 /// The times and the files that the text of a collection names, in its order.
-///
-/// # Errors
-/// A description of what is wrong.
 pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
     let mut reader = Reader::from_str(text);
     let mut files = Vec::new();

@@ -30,9 +30,6 @@ pub type Arrays = Vec<(String, Vec<f64>)>;
 
 impl UnstructuredGrid {
     /// The faces and the named lines.
-    ///
-    /// # Errors
-    /// Says which cells cannot be read.
     pub fn raw(&self) -> Result<Raw, Unreadable> {
         let mut raw = Raw::default();
         for (name, place) in (0..).zip(self.points.chunks_exact(3)) {

@@ -13,17 +13,11 @@ use super::unstructured::{Arrays, CUT_OFF, UnstructuredGrid};
 use super::vtu;
 
 /// Reads a `.vtu` or `.vtk` file.
-///
-/// # Errors
-/// Says what is wrong or cannot be read.
 pub fn read(path: &Path) -> Result<Raw, Unreadable> {
     grid(path)?.raw()
 }
 
 /// Reads a file with its arrays of vectors at the points.
-///
-/// # Errors
-/// Says what is wrong or cannot be read.
 pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), Unreadable> {
     let grid = grid(path)?;
     let raw = grid.raw()?;

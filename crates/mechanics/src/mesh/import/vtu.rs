@@ -65,9 +65,6 @@ struct Layout {
 }
 
 /// Reads the bytes of a file.
-///
-/// # Errors
-/// Says what is wrong or cannot be read.
 pub fn read(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
     let (head, appended) = split_appended(bytes);
     let head = std::str::from_utf8(head).map_err(|_| "is not XML: its header is not text")?;

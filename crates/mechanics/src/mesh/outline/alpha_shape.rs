@@ -19,9 +19,6 @@ type Line = Vec<[f64; 2]>;
 
 /// The closed lines around different points, those around holes clockwise, and the points' spacing. Circles are larger than
 /// usual by the factor `wider`.
-///
-/// # Errors
-/// An [`OutlineFault`].
 pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), OutlineFault> {
     let triangles = delaunay(points);
     if triangles.is_empty() {

@@ -3,7 +3,7 @@ use super::super::tests::samples::{CLAMP, problem, solved, strip, turned};
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::solve::assembly::derivative_errors;
 use crate::solve::vector::{largest, norm};
-use crate::solve::{Assembly, Connectivity, Inadmissible, Loading, Local, Potential, Remembering};
+use crate::solve::{Assembly, Connectivity, Evaluated, Loading, Local, Potential, Remembering};
 
 /// A smooth field of a tenth of the strip's size.
 fn bent(mesh: &Mesh) -> Vec<f64> {
@@ -35,13 +35,7 @@ impl Potential for Nothing {
 }
 
 impl Remembering for Nothing {
-    fn evaluate_after(
-        &self,
-        _: usize,
-        _: &[f64],
-        _: Local<'_>,
-        _: &[f64],
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_after(&self, _: usize, _: &[f64], _: Local<'_>, _: &[f64]) -> Evaluated {
         Ok(0.0)
     }
 

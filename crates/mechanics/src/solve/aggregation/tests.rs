@@ -1,6 +1,6 @@
 use super::*;
 use crate::solve::nodal::{NodalMatrix, Nodes, conjugate_gradients};
-use crate::solve::{Assembly, Connectivity, Inadmissible, Local, Potential};
+use crate::solve::{Assembly, Connectivity, Evaluated, Local, Potential};
 
 /// Plane stress of a soft sheet at rest, E = 1, ν = ½, on a grid of bilinear rectangles, its left side held: ½ uᵀ K u.
 struct Sheet {
@@ -14,7 +14,7 @@ impl Potential for Sheet {
         &self.connectivity
     }
 
-    fn evaluate_element(&self, _: usize, u: &[f64], local: Local<'_>) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, _: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         for (force, row) in local.residual.iter_mut().zip(&self.stiffness) {
             *force = crate::solve::vector::dot(row, u);
         }

@@ -3,7 +3,7 @@
 use super::Nodes;
 use crate::solve::aggregation::blocks::{Blocks, add_product};
 use crate::solve::pattern::SymmetricPattern;
-use crate::solve::potential::{Inadmissible, Potential};
+use crate::solve::potential::{Evaluated, Potential};
 
 /// No row, or no block.
 const NONE: u32 = u32::MAX;
@@ -66,15 +66,12 @@ impl NodalMatrix {
 
     /// Takes the stiffness of a potential at `u`; its energy, and ∂Π/∂u at all unknowns. Nothing is known of the stiffness where there is
     /// none.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted element.
     pub fn linearise(
         &mut self,
         potential: &dyn Potential,
         u: &[f64],
         residual: &mut [f64],
-    ) -> Result<f64, Inadmissible> {
+    ) -> Evaluated {
         residual.fill(0.0);
         self.blocks.values.fill([[0.0; 2]; 2]);
         let (blocks, rows, elements) = (&mut self.blocks, &self.rows, &self.elements);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::solve::{Connectivity, Inadmissible, Local};
+use crate::solve::{Connectivity, Evaluated, Inadmissible, Local};
 
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -19,12 +19,7 @@ impl Potential for Loaded<'_> {
         Connectivity::single()
     }
 
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
         let [energy, force, stiffness] =
             (self.0.energy)(u[0], self.1).ok_or(Inadmissible { element })?;
         local.residual[0] = force - self.1;

@@ -1,14 +1,10 @@
-//! Many states, each near the one before: a path of stretches, and grips that are moved by hand.
+//! Grips that are moved by hand: each state is near the one before.
 
 use std::fmt;
 
-use super::{Climb, ClimbSolution, Ending, Field, Inverted, Iteration, Start, Way, Work, inverted};
-use crate::corrector::extrapolation::{Known, rate_shares, value_shares};
+use super::{Climb, ClimbSolution, Ending, Fall, Field, Inverted, Start, Way, inverted};
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
-
-/// Excess cycles after which the operators are assembled anew.
-const BEYOND: usize = 2;
 
 /// The positions of both grips.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,92 +24,8 @@ impl fmt::Display for Grips {
 }
 
 impl Climb<'_> {
-    /// Corrects at many stretches, one after the other: the first and the last by a climb, which also gives the
-    /// discretisation error, the others from the states before them, extrapolated, with the operators of an earlier
-    /// state as long as they serve.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] with the stretch at which no field was found.
-    pub fn follow(
-        &mut self,
-        stretches: &[f64],
-        told: &mut dyn FnMut(&ClimbSolution),
-    ) -> Result<(), Error> {
-        let [first, between @ .., last] = stretches else {
-            for stretch in stretches {
-                told(&self.correct(*stretch)?);
-            }
-            return Ok(());
-        };
-        let ends = [self.correct(*first)?, self.correct(*last)?];
-        let [at_first, at_last] = [0, 1].map(|end| {
-            let stretch = [first, last][end];
-            ends[end].discretisation_error / self.departure(&ends[end].field, *stretch)
-        });
-        let relative_error = at_first.min(at_last);
-        let [first_state, last_state] = ends;
-        told(&first_state);
-        let mut known = Known::none();
-        known.take(*first, first_state.field);
-        // Cycles beyond those that fresh operators, which are those of linear cells, take: as many as an element's
-        // side has cells. Assembling the operators anew costs about as much as a few of them.
-        let mut beyond = usize::MAX;
-        for stretch in between.iter().copied() {
-            let anew = beyond > BEYOND;
-            let near = (!known.fields.is_empty())
-                .then(|| self.near_known(&known, stretch, relative_error, anew));
-            let climbed = match near {
-                Some(Ok(climbed)) => {
-                    let (_, work) = climbed.work[0];
-                    beyond = if anew { 0 } else { beyond };
-                    beyond += work.cycles.saturating_sub(self.scheme.side());
-                    climbed
-                }
-                // Too far from the states before: a climb of its own.
-                _ => {
-                    beyond = usize::MAX;
-                    self.correct(stretch)?
-                }
-            };
-            told(&climbed);
-            known.take(stretch, climbed.field);
-        }
-        told(&last_state);
-        Ok(())
-    }
-
-    /// The state at one stretch from those before, extrapolated; the operators are assembled anew where they no longer serve.
-    fn near_known(
-        &mut self,
-        known: &Known<Field>,
-        stretch: f64,
-        relative_error: f64,
-        anew: bool,
-    ) -> Result<ClimbSolution, SolveFault> {
-        let mut field = combine(&known.fields, &value_shares(&known.parameters, stretch));
-        if anew {
-            self.linearise_below(self.levels.len() - 1, &field)?;
-        }
-        let error = relative_error * self.departure(&field, stretch);
-        let reached = self.near(&mut field, error)?;
-        let rate = combine(&known.fields, &rate_shares(&known.parameters, stretch));
-        let force = self.force_along(&rate);
-        Ok(ClimbSolution::near(field, force, error, reached))
-    }
-
-    /// The root mean square over the nodes of a field's departure from the affine stretch in mm.
-    pub(super) fn departure(&self, field: &Field, stretch: f64) -> f64 {
-        let places = &self.grid().coordinates[0];
-        let lines = field.components[0].chunks_exact(field.width).zip(places);
-        let along: f64 = lines
-            .map(|(line, x)| line.iter().map(|u| (u - stretch * x).powi(2)).sum::<f64>())
-            .sum();
-        let across: f64 = field.components[1].iter().map(|u| u * u).sum();
-        ((along + across) / self.grid().nodes() as f64).sqrt()
-    }
-
     /// Corrects a field that is near the result, with the operators assembled before, to a share of its discretisation error.
-    fn near(&mut self, field: &mut Field, error: f64) -> Result<Iteration, SolveFault> {
+    fn near(&mut self, field: &mut Field, error: f64) -> Result<Fall, SolveFault> {
         self.check_operators()?;
         let finest = self.levels.len() - 1;
         let limit = self.settings.tolerance * error;
@@ -126,50 +38,30 @@ impl Climb<'_> {
         };
         let iterated = level.iterate(sheet, field, &mut self.multigrid, &ending);
         let reached = iterated.map_err(|Inverted| inverted())?;
-        if reached.fall.left() > limit {
+        if reached.left() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
-                residual: reached.fall.left(),
+                residual: reached.left(),
                 tolerance: limit,
             });
         }
         Ok(reached)
     }
-
-    /// The force on the moving grip in N from the F that the last iteration left, r = F(u + z): r · w with the
-    /// field's rate w with respect to the stretch. Equilibrium is kept along the path, K w = 0 between the grips: the
-    /// correction z, which r does not include yet, does not change r · w, and no evaluation is needed.
-    fn force_along(&self, rate: &Field) -> f64 {
-        let residual = &self.levels[self.levels.len() - 1].residual;
-        residual.product(rate) / self.problem.size[0]
-    }
 }
 
 impl ClimbSolution {
     /// A state found near another one.
-    fn near(field: Field, force: f64, discretisation_error: f64, reached: Iteration) -> Self {
+    fn near(field: Field, force: f64, discretisation_error: f64, reached: Fall) -> Self {
         let nodes = field.components[0].len();
         let cells = [nodes / field.width - 1, field.width - 1];
         Self {
             field,
             force,
             discretisation_error,
-            error_is_sure: false,
-            work: vec![(nodes, reached.work)],
-            corrections: reached.fall.corrections,
+            corrections: reached.corrections,
             way: Way::from_start(Start::StatesBefore, cells),
         }
     }
-}
-
-/// The sum of the known fields, each with its share.
-fn combine(known: &[Field], shares: &[f64]) -> Field {
-    let mut field = known[0].clone();
-    field.scale(shares[0]);
-    for (own, share) in known.iter().zip(shares).skip(1) {
-        field.add(*share, own);
-    }
-    field
 }
 
 /// A plate moved by hand: its grips are moved, and the corrected field follows.
@@ -247,7 +139,6 @@ impl<'a> Interactive<'a> {
 
     fn move_in(&mut self, parts: usize, grips: Grips) -> Result<ClimbSolution, SolveFault> {
         let mut field = self.climbed.field.clone();
-        let mut work = Work::default();
         let mut reached = None;
         for part in 1..=parts {
             let share = 1.0 / (parts - part + 1) as f64;
@@ -255,13 +146,9 @@ impl<'a> Interactive<'a> {
             self.climb
                 .linearise_below(self.climb.levels.len() - 1, &field)?;
             let error = self.relative_error * field.size();
-            let mut own = self.climb.near(&mut field, error)?;
-            own.work.add(work);
-            work = own.work;
-            reached = Some((error, own));
+            reached = Some((error, self.climb.near(&mut field, error)?));
         }
-        let (error, mut reached) = reached.expect("one part at least");
-        reached.work.evaluations += 1;
+        let (error, reached) = reached.expect("one part at least");
         let force = self.climb.force(&field).map_err(|Inverted| inverted())?;
         Ok(ClimbSolution::near(field, force, error, reached))
     }
