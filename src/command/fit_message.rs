@@ -1,6 +1,6 @@
 //! What the command prints about fits.
 
-use gelbench_calibration::calibration::{Fit, TestData};
+use gelbench_calibration::calibration::{Fit, Test, TestData};
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::material::curve::{Mode, samples};
@@ -33,6 +33,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
     }
     text += &curves(&*fit.fitted, quality.stretch_range, &|mode| match mode {
         Some(mode) if !quality.untested.contains(&mode) => "tested",
+        None if tests.iter().any(|data| data.test == Test::SimpleShear) => "tested",
         _ => "predicted",
     });
     for warning in &quality.warnings {

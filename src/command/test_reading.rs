@@ -14,7 +14,7 @@ use gelbench_calibration::calibration;
 #[derive(Args)]
 #[command(next_help_heading = "What the files do not state")]
 pub struct ReadingArguments {
-    /// uniaxial, planar, equibiaxial, biaxial or compression; biaxial where strains are measured along two axes
+    /// uniaxial, planar, equibiaxial, biaxial, compression or simple-shear; biaxial where strains are measured along two axes
     #[arg(long, allow_hyphen_values = true)]
     test: Option<String>,
     /// nominal, cauchy or second-piola-kirchhoff
@@ -38,7 +38,7 @@ pub struct ReadingArguments {
     /// Cross-section of the specimen, if the file has forces
     #[arg(long, allow_hyphen_values = true)]
     area: Option<String>,
-    /// Length of the specimen, if the file has displacements and no size
+    /// Length of the specimen, if the file has displacements and no size; in simple shear, the distance of the plates
     #[arg(long, allow_hyphen_values = true)]
     length: Option<String>,
     /// Width of the specimen; with the thickness it replaces the cross-section. Of a biaxial test, the length along the second axis

@@ -80,7 +80,7 @@ struct Record {
 impl Record {
     fn of(data: &TestData, law: &dyn HyperelasticLaw, predicted: &[f64]) -> Self {
         let axis = match data.test {
-            Test::Uniaxial => data.axes[0],
+            Test::Uniaxial | Test::SimpleShear => data.axes[0],
             _ => data.drawn_axis,
         };
         let rows = data.observations.iter().zip(predicted);
@@ -97,7 +97,7 @@ impl Record {
         Self {
             rows: rows.map(row).collect(),
             axes: match data.test {
-                Test::Uniaxial | Test::Planar => 1.0,
+                Test::Uniaxial | Test::Planar | Test::SimpleShear => 1.0,
                 Test::Equibiaxial => 2.0,
                 Test::Biaxial => f64::NAN,
             },

@@ -11,6 +11,7 @@ use crate::material::registry::{CARDS, DATA, Law};
 
 mod minimum;
 mod quality;
+mod simple_shear;
 mod uncertainty;
 mod verdict;
 mod weighting;

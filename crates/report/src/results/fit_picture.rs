@@ -94,7 +94,7 @@ impl<'a> Course<'a> {
             Test::Uniaxial => Mode::Uniaxial,
             Test::Planar => Mode::Planar,
             Test::Equibiaxial => Mode::Equibiaxial,
-            Test::Biaxial => return [0.0, f64::INFINITY],
+            Test::Biaxial | Test::SimpleShear => return [0.0, f64::INFINITY],
         };
         let found = fit.quality.stable.iter().find(|range| range.mode == mode);
         found.map_or([0.0, f64::INFINITY], |range| range.stretches)
@@ -213,10 +213,21 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
             .chain(residuals);
         let lines = curves_with_bands(fit, &courses);
         vec![
-            (over(title, Axis::stretch(), lines), 460),
-            (residual_chart(Axis::stretch(), residuals.collect()), 250),
+            (over(title, deformation(tests), lines), 460),
+            (residual_chart(deformation(tests), residuals.collect()), 250),
         ]
     })
+}
+
+/// The axis of what the tests were deformed by.
+fn deformation(tests: &[TestData]) -> Axis {
+    let sheared = tests.iter().filter(|data| data.test == Test::SimpleShear);
+    let label = match sheared.count() {
+        0 => return Axis::stretch(),
+        count if count == tests.len() => "1 + amount of shear γ [–]",
+        _ => "stretch λ, or 1 + amount of shear γ [–]",
+    };
+    Axis::new(label, Scale::Interval)
 }
 
 /// Measured and fitted stresses of all courses, with an entry in the legend.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::record::Machine;
 use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, SECOND_PIOLA_KIRCHHOFF, of_kind};
 use super::table_reading::{ColumnReading, TableReading};
-use super::test_data::StrainColumn;
+use super::test_data::{StrainColumn, Test};
 use crate::document::{Column, ColumnRole, Faulty, Head};
 use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
@@ -73,12 +73,17 @@ const STRESS_MEASURES: [(&str, (StressMeasure, bool)); 3] = [
 ];
 
 /// The measure of the strains, and the columns with their factors to a ratio along both axes.
-pub fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Scaled>; 2])> {
+pub fn strains(
+    head: &Head,
+    roles: &[Role],
+    test: Option<Test>,
+) -> Faulty<(StrainColumn, [Option<Scaled>; 2])> {
     let Some(first) = of_kind(roles, Kind::Strain).min_by_key(|(_, role)| role.axis()) else {
         let names = "`stretch`, `nominal_strain` or `logarithmic_strain`";
         return Err(no_column(head, "strains", names));
     };
-    let measure = if first.1.measure == Some(DISPLACEMENT) {
+    let is_plain = first.1.measure == Some(DISPLACEMENT) || test == Some(Test::SimpleShear);
+    let measure = if is_plain {
         StrainColumn::Strain(StrainMeasure::Nominal)
     } else {
         head.choice("strain measure", first.1.measure, &StrainColumn::NAMES)?
@@ -93,12 +98,17 @@ pub fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Sca
 }
 
 /// The measure of the stresses, and their columns.
-pub fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<StressColumn>)> {
+pub fn stresses(
+    head: &Head,
+    roles: &[Role],
+    test: Option<Test>,
+) -> Faulty<(StressMeasure, Vec<StressColumn>)> {
     let Some((_, role)) = of_kind(roles, Kind::Stress).next() else {
         let names = "`nominal_stress`, `cauchy_stress` or `force`";
         return Err(no_column(head, "stresses", names));
     };
-    let (measure, is_second) = if role.measure == Some(FORCE) {
+    let is_plain = role.measure == Some(FORCE) || test == Some(Test::SimpleShear);
+    let (measure, is_second) = if is_plain {
         (StressMeasure::Nominal, false)
     } else {
         head.choice("stress measure", role.measure, &STRESS_MEASURES)?

@@ -64,7 +64,7 @@ impl Conversion {
         let _ = writeln!(text, "{}", self.names(data, times.is_some()).join(","));
         for (index, row) in data.observations.chunks(axes.len()).enumerate() {
             let along = match data.test {
-                Test::Uniaxial => vec![row[0].strains[row[0].axis]],
+                Test::Uniaxial | Test::SimpleShear => vec![row[0].strains[row[0].axis]],
                 Test::Biaxial => row[0].strains.to_vec(),
                 _ => vec![row[0].strains[0]],
             };

@@ -65,8 +65,8 @@ impl Layout {
             _ => faults.of(stated),
         };
         faults.0.extend(questions);
-        let strains = faults.of(strains(head, &roles));
-        let stresses = faults.of(stresses(head, &roles));
+        let strains = faults.of(strains(head, &roles, test));
+        let stresses = faults.of(stresses(head, &roles, test));
         let machine = faults.of(machine(head, &roles));
         let (Some(test), Some((strain, strains)), Some((stress_measure, stresses)), Some(machine)) =
             (test, strains, stresses, machine)
@@ -151,7 +151,8 @@ impl Layout {
         let mut along = Vec::new();
         for (index, (row, place)) in table.rows.iter().enumerate() {
             let [first, second] = self.strains_of(row, &part);
-            if [first, second].iter().any(|x| *x <= -1.0) {
+            let is_stretched = self.test != Test::SimpleShear;
+            if is_stretched && [first, second].iter().any(|x| *x <= -1.0) {
                 let message = format!("the stretch is {}", 1.0 + first.min(second));
                 let hint = "stretches are greater than zero; is the column a strain?";
                 return Err(head.fault(place.clone(), message, hint));
@@ -269,7 +270,7 @@ impl Layout {
         };
         let first = strain(0);
         let second = match self.test {
-            Test::Uniaxial => f64::NAN,
+            Test::Uniaxial | Test::SimpleShear => f64::NAN,
             Test::Planar => 0.0,
             Test::Equibiaxial => first,
             Test::Biaxial => self

@@ -119,7 +119,10 @@ const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
         (Kind::Strain, Some("stretch"), Naming::Usual),
         "stretch stretch_ratio lambda lam λ",
     ),
-    ((Kind::Strain, None, Naming::Usual), "strain epsilon eps ε"),
+    (
+        (Kind::Strain, None, Naming::Usual),
+        "strain epsilon eps ε shear_strain amount_of_shear gamma γ",
+    ),
     (
         (Kind::Strain, Some("nominal"), Naming::Usual),
         "nominal_strain engineering_strain eng_strain",
@@ -144,7 +147,10 @@ const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
         (Kind::Strain, None, Naming::Evaluation),
         "tensile_strain compressive_strain dehnung stauchung déformation 应变",
     ),
-    ((Kind::Stress, None, Naming::Usual), "stress sigma σ"),
+    (
+        (Kind::Stress, None, Naming::Usual),
+        "stress sigma σ shear_stress tau τ",
+    ),
     (
         (Kind::Stress, Some("nominal"), Naming::Usual),
         "nominal_stress engineering_stress eng_stress first_piola_kirchhoff_stress first_piola_stress pk1 pk1_stress p",

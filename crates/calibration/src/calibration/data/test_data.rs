@@ -4,8 +4,10 @@ use super::table_reading::TableReading;
 use crate::document::{Statements, name_of};
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
+use crate::material::curve::simple_shear;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::sheet::{Kinematics, PlaneTensor};
+use crate::statistics::farthest;
 
 /// The kinds of test of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,17 +20,21 @@ pub enum Test {
     Equibiaxial,
     /// Stretched along both axes by different amounts.
     Biaxial,
+    /// Sheared by γ with its thickness held, as between two plates: u₁ = γ X₂. Its strain along the first axis stands for γ, its stress
+    /// for the shear stress, of which the nominal and the Cauchy one are the same.
+    SimpleShear,
 }
 
 impl Test {
     /// The names that files use.
-    pub const NAMES: [(&'static str, Self); 6] = [
+    pub const NAMES: [(&'static str, Self); 7] = [
         ("uniaxial", Self::Uniaxial),
         ("planar", Self::Planar),
         ("equibiaxial", Self::Equibiaxial),
         ("biaxial", Self::Biaxial),
         ("unequal-biaxial", Self::Biaxial),
         ("compression", Self::Uniaxial),
+        ("simple-shear", Self::SimpleShear),
     ];
 
     /// The name of the test.
@@ -239,6 +245,7 @@ impl TestData {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
                 law.tension(direction, x).nominal_stress
             }
+            Test::SimpleShear => simple_shear(law, x),
             _ => law.biaxial(observation.strains)[axis],
         };
         self.stress_measure.of_nominal(nominal, x)
@@ -252,6 +259,14 @@ impl TestData {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
                 let found = law.tension(direction, observation.strains[axis]);
                 [found.energy, found.nominal_stress]
+            }
+            Test::SimpleShear => {
+                let kinematics =
+                    Kinematics::new(&PlaneTensor::new(0.0, observation.strains[0], 0.0, 0.0));
+                kinematics.map_or([f64::NAN; 2], |kinematics| {
+                    let (energy, stress) = law.stress(&kinematics);
+                    [energy, stress[1]]
+                })
             }
             _ => {
                 let [first, second] = observation.strains;
@@ -295,7 +310,7 @@ impl TestData {
             Some(FoundZero::Stress { .. }) => moved.stress += by,
             Some(FoundZero::Strain { .. }) => {
                 let is_moved = |axis: usize| match self.test {
-                    Test::Uniaxial => axis == observation.axis,
+                    Test::Uniaxial | Test::SimpleShear => axis == observation.axis,
                     Test::Planar => axis == self.drawn_axis,
                     Test::Equibiaxial | Test::Biaxial => true,
                 };
@@ -322,13 +337,19 @@ impl TestData {
     /// λ − 1 along the axis over which the data are drawn: the one of the stress in a uniaxial test, otherwise the one that is stretched further.
     pub fn drawn_strain(&self, observation: &Observation) -> f64 {
         match self.test {
-            Test::Uniaxial => observation.strains[observation.axis],
+            Test::Uniaxial | Test::SimpleShear => observation.strains[observation.axis],
             _ => observation.strains[self.drawn_axis],
         }
     }
 
-    /// The range of stretches of the data along both axes, including rest.
+    /// The range of stretches of the data along both axes, including rest; in simple shear, of the principal stretches λ and 1/λ with
+    /// λ − 1/λ = γ.
     pub fn stretch_range(&self) -> [f64; 2] {
+        if self.test == Test::SimpleShear {
+            let half = 0.5 * farthest(self.observations.iter().map(|one| one.strains[0])).abs();
+            let stretch = half + half.hypot(1.0);
+            return [1.0 / stretch, stretch];
+        }
         let strains = || self.observations.iter().flat_map(|one| one.strains);
         // f64::min and f64::max ignore strains that are not known.
         [
@@ -349,14 +370,14 @@ impl TestData {
         let ends = [sorted.first(), sorted.last()]
             .map(|one| one.map_or(0.0, |one| self.drawn_strain(one)));
         let (low, high) = (ends[0].min(0.0), ends[1].max(0.0));
-        let drawn = if self.test == Test::Uniaxial {
+        let drawn = if matches!(self.test, Test::Uniaxial | Test::SimpleShear) {
             axis
         } else {
             self.drawn_axis
         };
         let at = |x: f64| {
             let across = match self.test {
-                Test::Uniaxial => f64::NAN,
+                Test::Uniaxial | Test::SimpleShear => f64::NAN,
                 Test::Planar => 0.0,
                 Test::Equibiaxial => x,
                 Test::Biaxial => interpolate(&sorted, drawn, x),

@@ -196,6 +196,6 @@ fn is_of(data: &TestData, mode: Mode) -> bool {
         Test::Uniaxial => mode == Mode::Uniaxial,
         Test::Planar => mode == Mode::Planar,
         Test::Equibiaxial => mode == Mode::Equibiaxial,
-        Test::Biaxial => false,
+        Test::Biaxial | Test::SimpleShear => false,
     }
 }
