@@ -79,7 +79,7 @@ fn corrected_specimen(
         name: name.to_owned(),
         study,
         estimates,
-        doubts: results.outcome.doubts.len(),
+        doubts: results.outcome.doubts().count(),
     })
 }
 

@@ -14,7 +14,7 @@ use crate::studies::{Computation, Kind, Loaded, ModelKind, PreparedStudy, Progre
 
 pub mod along;
 mod files;
-mod forces;
+pub(super) mod forces;
 mod headline;
 mod history;
 mod outcome;
@@ -22,7 +22,6 @@ mod problem;
 mod read;
 mod results;
 mod statement;
-mod warnings;
 mod work;
 
 pub use along::Along;
@@ -32,7 +31,7 @@ pub use problem::{
 };
 pub(crate) use read::read_moving;
 use results::end::{End, tell};
-use results::models::Models;
+pub(super) use results::models::Models;
 use results::verdict;
 pub use results::{finest_mesh, force_with_error, one_model};
 pub use statement::{load_words, support_words};
@@ -141,9 +140,9 @@ pub fn fields(
     let mut ends = Vec::new();
     let models = solved(&specimen, &mut ends, progress)?;
     let field = |kind: ModelKind| {
-        let model = models.of(kind);
-        let displacement = model.solution.displacement(last)?.to_vec();
-        let mesh = model.solution.mesh.clone();
+        let solution = models.of(kind);
+        let displacement = solution.displacement(last)?.to_vec();
+        let mesh = solution.mesh.clone();
         let (mesh, displacement) = match specimen.grids() {
             // Between its nodes the corrected field is what its differences take it for.
             Some(grids) if kind == ModelKind::Corrected => {
@@ -154,7 +153,7 @@ pub fn fields(
             _ => (mesh, displacement),
         };
         Some(ModelField {
-            model: model.style.name,
+            model: kind.style().name,
             mesh,
             displacement,
         })

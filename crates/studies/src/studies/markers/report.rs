@@ -1,12 +1,11 @@
 //! The report of a correction.
 
-use super::findings::remarks;
+use super::findings::{MISTAKE, NOT_EXPLAINED, remarks};
 use super::forces::{scale_line, scale_paragraph};
 use super::quantities::{largest_correction, largest_error, outliers, residual_rms, used};
 use super::{MarkerStudy, reading, refined, verdict};
-use crate::error::Diagnostic;
-use crate::estimation::{Answer, EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::results::Block;
+use crate::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::results::{Block, Finding};
 use crate::statistics::Estimate;
 use crate::units::decimals;
 
@@ -14,7 +13,7 @@ use crate::units::decimals;
 const SHOWN: usize = 12;
 
 /// The figures of the frames with their doubts, for the terminal.
-pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagnostic]) -> String {
+pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Finding]) -> String {
     let mut lines = vec![format!(
         "{}; {}; mesh {}: {}",
         reading::short(&study.understood),
@@ -32,13 +31,10 @@ pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagn
         ));
     }
     // The verdict has lines of its own, and a mistake stands before all figures.
-    let verdict = Answer::NotExplained.words();
-    for doubt in doubts
-        .iter()
-        .filter(|doubt| !doubt.message.contains(verdict) && study.mistake.as_ref() != Some(doubt))
-    {
+    let told_elsewhere = |doubt: &&Finding| [NOT_EXPLAINED, MISTAKE].contains(&doubt.rule);
+    for doubt in doubts.iter().filter(|doubt| !told_elsewhere(doubt)) {
         lines.push(format!("doubtful: {}", doubt.message));
-        lines.extend(doubt.hint.iter().map(|hint| format!("  {hint}")));
+        lines.extend((!doubt.remedy.is_empty()).then(|| format!("  {}", doubt.remedy)));
     }
     lines.extend(verdict::lines(study, estimates));
     lines.join("\n") + "\n"

@@ -66,12 +66,12 @@ pub fn results_with(
             "forces.csv".to_owned(),
             Content::Text(tables::forces(field, estimates)),
         )],
-        doubts: doubts.iter().map(ToString::to_string).collect(),
         balance: estimates
             .iter()
             .map(|estimate| estimate.imbalance)
             .reduce(larger),
         summary: report::summary(field, estimates, &doubts),
+        findings: doubts,
         ..Outcome::default()
     };
     Results {

@@ -6,14 +6,14 @@ use super::deviations::{Deviations, OwnError};
 use super::files::{animation, figures, grids, tables};
 use super::headline::headline;
 use super::problem::MovingSheet;
-use super::shown::shown;
 use super::solution::{ModelMotion, Motions};
 use super::statement;
-use super::warnings::warnings;
 use crate::compare::judgement::{judge_by_margin, percent};
 use crate::dynamics::Instant;
+use crate::mass_spring::SpringLaw;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted};
+use crate::studies::findings::{Examined, findings};
 use crate::studies::specimen::Outline;
 use crate::units::number;
 
@@ -24,7 +24,7 @@ const ROWS: usize = 12;
 pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnError>) -> Outcome {
     let deviations = Deviations::all(sheet, motions);
     let seconds = motions.models().map(|model| {
-        let name = model.style.name.to_owned();
+        let name = model.style().name.to_owned();
         (name, model.seconds)
     });
     let mut blocks = vec![
@@ -40,21 +40,28 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
     ];
     blocks.extend(statement::blocks(sheet));
     let mut files = tables(sheet, motions);
-    let (shown, times) = (shown(sheet, motions), motions.times());
-    let animation = Drawing::Animation(animation(&times, &shown));
+    let (series, times) = (motions.series(), motions.times());
+    let reference = &series[series.len() - 1];
+    let animation = Drawing::Animation(animation(&times, &series));
     files.push(("motion.png".into(), Content::Picture(animation)));
     let mut outcome = Outcome {
-        headline: headline(sheet, motions, &shown),
+        headline: headline(sheet, motions, reference),
         checks: checks(sheet, motions, &deviations, own_error),
         blocks,
         problem: statement::json(sheet, own_error),
         material: Some(Material::from(&sheet.specimen.card)),
         along: "time",
         steps: steps(sheet, motions, &deviations),
-        figures: figures(sheet, motions, &shown),
+        figures: figures(sheet, motions, &series),
         style: sheet.specimen.pictures.style.clone(),
-        grids: grids(sheet, motions, &shown),
-        warnings: warnings(sheet, &times, &shown),
+        grids: grids(sheet, &series),
+        findings: findings(Examined {
+            specimen: &sheet.specimen,
+            series: &series,
+            models: None,
+            has_springs: matches!(sheet.springs, SpringLaw::Material),
+            is_motion: true,
+        }),
         files,
         times: seconds.into(),
         ..Outcome::default()
@@ -167,7 +174,7 @@ fn summary(models: &[&ModelMotion; 2]) -> Block {
         let stored = energies.fold(0.0, |most: f64, energy| most.max(energy.stored));
         let last = history.instants[history.instants.len() - 1].energy;
         vec![
-            model.style.name.to_owned(),
+            model.style().name.to_owned(),
             model.mesh.nodes.len().to_string(),
             history.steps.to_string(),
             history.halved.to_string(),
@@ -278,7 +285,7 @@ fn checks(
         Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
     let energy = |model: &ModelMotion| {
-        let quantity = format!("{}: error of the energy balance", model.style.name);
+        let quantity = format!("{}: error of the energy balance", model.style().name);
         check(
             quantity,
             limits.energy_percent,

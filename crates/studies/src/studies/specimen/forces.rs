@@ -32,12 +32,12 @@ pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<
     let mut rows = Vec::new();
     for (step, factor) in specimen.factors.iter().enumerate() {
         for (index, group) in specimen.groups().iter().enumerate() {
-            for model in models.all() {
-                if let Some(groups) = model.solution.groups(step) {
+            for (model, solution) in models.all() {
+                if let Some(groups) = solution.groups(step) {
                     let names = [
                         specimen.along.value(*factor),
                         (*group).to_owned(),
-                        model.style.name.to_owned(),
+                        model.style().name.to_owned(),
                     ];
                     rows.push(
                         names
@@ -56,7 +56,7 @@ pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
         Block::table(&head, rows),
-        Block::Paragraph(balance(balances)),
+        Block::Paragraph(balance_words(balances)),
     ]
 }
 
@@ -78,19 +78,19 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
     head.extend(is_plate.then_some("mid_width_mm"));
     let mut records = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     for (step, factor) in specimen.factors.iter().enumerate() {
-        for model in models.all() {
-            let Solution { mesh, states, .. } = model.solution;
+        for (model, solution) in models.all() {
+            let Solution { mesh, states, .. } = solution;
             let Some(field) = states.get(step) else {
                 continue;
             };
             let width = is_plate.then(|| mesh.mid_width(&field.displacement));
-            let groups = model.solution.groups(step).unwrap_or_default();
+            let groups = solution.groups(step).unwrap_or_default();
             for (group, state) in specimen.groups().iter().zip(groups) {
                 let ([fx, fy], [ux, uy]) = (state.force, state.displacement);
                 let mut record = vec![
                     factor.to_string(),
                     (*group).to_owned(),
-                    model.style.name.to_owned(),
+                    model.style().name.to_owned(),
                 ];
                 let values = [fx, fy, state.moment, ux, uy, field.convergence.energy];
                 record.extend(
@@ -106,9 +106,6 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
     write_records(records)
 }
 
-/// Balances above this are worth a warning.
-const UNBALANCED: f64 = 1e-5;
-
 /// How well the forces and moments of a model balance in its worst state.
 pub struct Balance {
     model: ModelStyle,
@@ -120,10 +117,10 @@ pub struct Balance {
 
 /// The balance of every model.
 pub fn balances(specimen: &Specimen, models: &Models) -> [Balance; 3] {
-    models.all().map(|model| Balance {
-        model: model.style,
-        unbalanced: model.solution.worst_balance(),
-        free_nodes: free_nodes(specimen, model.solution),
+    models.all().map(|(model, solution)| Balance {
+        model: model.style(),
+        unbalanced: solution.worst_balance(),
+        free_nodes: free_nodes(specimen, solution),
     })
 }
 
@@ -157,7 +154,7 @@ fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
 }
 
 /// The balance of each model in a sentence.
-fn balance(balances: &[Balance]) -> String {
+pub fn balance_words(balances: &[Balance]) -> String {
     let balances = balances.iter().filter_map(|own| {
         let unbalanced = own.unbalanced?;
         let free = or_dash(own.free_nodes, |left| format!("{left:.1e}"));
@@ -170,22 +167,13 @@ fn balance(balances: &[Balance]) -> String {
     )
 }
 
-/// The warning about forces or moments that do not balance.
-pub fn unbalanced(balances: &[Balance]) -> Option<String> {
-    worst_balance(balances).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
-    Some(format!(
-        "forces or moments do not balance. {}",
-        balance(balances)
-    ))
-}
-
 /// The warning about moments that nothing compares: where the measured force is none, as of a ring that is turned, the requirement of the
 /// force is met by any field.
 pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     /// A smaller share of the forces on nodes times the specimen's larger side is what meshes leave.
     const LEAST: f64 = 1e-2;
     let (measured, finest) = (&models.reference.measured, &models.reference.finest);
-    let corrected = models.of(ModelKind::Corrected).solution;
+    let corrected = models.of(ModelKind::Corrected);
     let step = corrected.reached().min(finest.reached()).checked_sub(1)?;
     if measured.quantity != Quantity::Force {
         return None;
@@ -216,7 +204,7 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
     let all = steps.flat_map(|step| {
         series
             .iter()
-            .filter_map(move |own| own.solution.groups(step))
+            .filter_map(move |(_, solution)| solution.groups(step))
     });
     let sizes = all
         .flatten()

@@ -1,7 +1,7 @@
 //! How the models came to their states and how far they are from each other along the path: convergence, multipliers, deviations.
 
 use super::problem::Specimen;
-use super::results::models::{ModelSeries, Models};
+use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance};
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
@@ -61,7 +61,7 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
     let last = models.reached().checked_sub(1)?;
     let at = specimen.along.describe(specimen.factors[last]);
     let line = |kind: &ModelKind| {
-        let state = models.of(*kind).solution.states.get(last)?;
+        let state = models.of(*kind).states.get(last)?;
         let residuals = state.convergence.residuals.iter().enumerate();
         let points = residuals.map(|(iteration, size)| [iteration as f64, *size]);
         let points: Vec<_> = points.collect();
@@ -94,13 +94,13 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
 /// The iterations of every model at every load factor, and what they mean.
 pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let all = models.all();
-    let row = |model: &ModelSeries, state: &State| {
+    let row = |model: ModelKind, state: &State| {
         let log = &state.convergence;
         let size =
             |residual: Option<&f64>| or_dash(residual.copied(), |size| format!("{size:.1e}"));
         vec![
             specimen.along.value(state.factor),
-            model.style.name.to_owned(),
+            model.style().name.to_owned(),
             state.load_steps.to_string(),
             log.iterations().to_string(),
             size(log.residuals.first()),
@@ -112,8 +112,7 @@ pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let mut rows = Vec::new();
     for step in 0..models.reached() {
         let states = all.iter();
-        let states = states.filter_map(|model| Some((model, model.solution.states.get(step)?)));
-        rows.extend(states.map(|(model, state)| row(model, state)));
+        rows.extend(states.filter_map(|(model, own)| Some(row(*model, own.states.get(step)?))));
     }
     let head = [
         specimen.along.head(),

@@ -7,22 +7,20 @@ use super::forces::Balance;
 use super::headline::headline;
 use super::problem::Specimen;
 use super::results::corrected_fields::Start;
-use super::results::models::{ModelSeries, Models};
+use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance, checks, deviations};
-use super::warnings::warnings;
 use super::{forces, history, statement, work};
+use crate::problem::Solution;
 use crate::results::{Block, Content, Material, Outcome, Step, or_dash, pictures};
 use crate::studies::ModelKind;
+use crate::studies::findings::{Examined, findings};
 use crate::units::{decimals, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let deviations = deviations(specimen, models);
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
-    let mut warnings = warnings(specimen, models);
     let balances = forces::balances(specimen, models);
-    warnings.extend(forces::unbalanced(&balances));
-    warnings.extend(forces::unjudged_moment(specimen, models));
     let quantities = |(step, deviation): (usize, &Option<Deviation>)| Step {
         at: specimen.factors[step],
         models: quantities(specimen, models, step, deviation.as_ref()),
@@ -42,7 +40,13 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
             "forces.csv".to_owned(),
             Content::Text(forces::csv(specimen, models)),
         )],
-        warnings,
+        findings: findings(Examined {
+            specimen,
+            series: &models.all_series(),
+            models: Some(models),
+            has_springs: true,
+            is_motion: false,
+        }),
         balance: forces::worst_balance(&balances),
         balances: forces::balances_json(&balances),
         times: models.times.clone(),
@@ -142,12 +146,12 @@ fn quantities(
     deviation: Option<&Deviation>,
 ) -> Map<String, Value> {
     let all = models.all().into_iter();
-    all.map(|model| {
-        let key = model.style.key.to_owned();
-        let Some(mut quantities) = quantities_of_model(specimen, models, model, step) else {
+    all.map(|(kind, solution)| {
+        let key = kind.style().key.to_owned();
+        let Some(mut quantities) = quantities_of_model(specimen, models, solution, step) else {
             return (key, Value::Null);
         };
-        quantities.extend(match model.kind {
+        quantities.extend(match kind {
             ModelKind::MassSpring => deviation_json(deviation.and_then(|own| own.springs)),
             ModelKind::Corrected => {
                 let mut own = deviation_json(deviation.map(|own| own.corrected));
@@ -168,11 +172,10 @@ fn quantities(
 fn quantities_of_model(
     specimen: &Specimen,
     models: &Models,
-    model: ModelSeries,
+    solution: &Solution,
     step: usize,
 ) -> Option<Map<String, Value>> {
     let measured = &models.reference.measured;
-    let solution = model.solution;
     let state = solution.states.get(step)?;
     let mut all = Map::new();
     all.insert(

@@ -7,7 +7,7 @@ use super::{CorrectedSpecimen, JointResults, JointStudy, card};
 use crate::document::write_records;
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
-    Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
+    Axis, Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
 };
 use crate::statistics::{extremes, larger};
 use crate::studies::markers::json::{object, of_estimate};
@@ -31,9 +31,13 @@ pub fn results(
     let ended = joint.estimate.ended.iter().map(|reason| {
         format!("the search for the parameters stopped before it converged: {reason}; frames, forces and thickness contradict each other")
     });
+    let scatter = force_scatter(&joint.estimate).into_iter();
+    let of_specimens = specimens.iter().filter_map(doubt);
     let doubts = ended
-        .chain(force_scatter(&joint.estimate))
-        .chain(specimens.iter().filter_map(doubt));
+        .map(|message| ("search-ended", message))
+        .chain(scatter.map(|message| ("force-scatter", message)))
+        .chain(of_specimens.map(|message| ("specimen", message)));
+    let doubts = doubts.map(|(rule, message)| Finding::doubt(rule, (message, String::new())));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let card = Content::Text(joint.card.text.clone());
     let outcome = Outcome {
@@ -46,7 +50,7 @@ pub fn results(
             (card::FILE.to_owned(), card),
             ("forces.csv".to_owned(), Content::Text(table(&rows))),
         ],
-        doubts: doubts.collect(),
+        findings: doubts.collect(),
         balance: estimates.map(|estimate| estimate.imbalance).reduce(larger),
         summary: report::summary(study, joint, specimens),
         ..Outcome::default()
