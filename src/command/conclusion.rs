@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use super::terminal;
-use super::terminal::{complain_of_end, print, warn};
-use crate::error::Diagnostic;
+use super::terminal::{complain_of_end, print, warn_words};
 use crate::results::{Check, End, Outcome, Results};
 
 /// The exit code of a study of which a model has no solution.
@@ -14,9 +13,7 @@ const NO_SOLUTION: u8 = 3;
 pub fn conclude(results: &[Results], words: &str) -> terminal::Outcome {
     print(words)?;
     let outcomes = || results.iter().map(|results| &results.outcome);
-    for warning in outcomes().flat_map(Outcome::warnings) {
-        warn(&[Diagnostic::warning("", warning)]);
-    }
+    warn_words(outcomes().flat_map(Outcome::warnings));
     let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
     let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
     ends.iter().for_each(|end| complain_of_end(end));

@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 
 use super::choice::one_of;
 use super::large::Large;
-use super::terminal::{Outcome, print, save, warn};
-use crate::error::{Diagnostic, Error};
+use super::terminal::{Outcome, print, save, warn, warn_words};
+use crate::error::Error;
 use crate::kinds;
 use crate::material::Code;
 use crate::output;
@@ -74,9 +74,7 @@ pub fn run(options: &Options) -> Outcome {
     };
     output::refuse_inputs(&target, &[path])?;
     save(&target, written.text.as_bytes())?;
-    for remark in written.remarks {
-        warn(&[Diagnostic::warning("", remark)]);
-    }
+    warn_words(written.remarks);
     print(&format!("{} for {}\n", target.display(), code.name()))?;
     Ok(0)
 }

@@ -43,7 +43,7 @@ mod work;
 pub mod wrinkling;
 
 pub use array::{Array, Components};
-pub use block::{Block, Content, Figure};
+pub use block::{Block, Content, Figure, Table};
 pub use card_curves::card_curves;
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
 pub use check::{Check, Wanted, check_lines, requirements, verdict};

@@ -4,10 +4,10 @@ use serde_json::{Map, Value, json};
 
 use super::report::{self, ForceRow};
 use super::{CorrectedSpecimen, JointResults, JointStudy, card};
-use crate::document::write_records;
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
     Axis, Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
+    Table,
 };
 use crate::statistics::{extremes, larger};
 use crate::studies::markers::json::{object, of_estimate};
@@ -176,31 +176,25 @@ fn problem(
 }
 
 fn table(rows: &[ForceRow]) -> String {
-    let head = [
-        "specimen",
-        "frame",
-        "edge",
-        "axis",
-        "measured_force [N]",
-        "standard_deviation [N]",
-        "predicted_by_others [N]",
-    ];
-    let record = |(name, frame, force): &ForceRow| {
-        let measured = &force.measured;
-        vec![
-            (*name).to_owned(),
-            frame.to_string(),
-            measured.edge.clone(),
-            ["x", "y"][measured.axis].to_owned(),
-            measured.force.to_string(),
-            measured.standard_deviation.to_string(),
+    Table::of(rows)
+        .column("specimen", |(name, ..)| (*name).to_owned())
+        .column("frame", |(_, frame, _)| frame.to_string())
+        .column("edge", |(.., force)| force.measured.edge.clone())
+        .column("axis", |(.., force)| {
+            ["x", "y"][force.measured.axis].to_owned()
+        })
+        .column("measured_force [N]", |(.., force)| {
+            force.measured.force.to_string()
+        })
+        .column("standard_deviation [N]", |(.., force)| {
+            force.measured.standard_deviation.to_string()
+        })
+        .column("predicted_by_others [N]", |(.., force)| {
             force
                 .predicted
-                .map_or(String::new(), |force| force.to_string()),
-        ]
-    };
-    let head = head.map(str::to_owned).to_vec();
-    write_records(std::iter::once(head).chain(rows.iter().map(record)))
+                .map_or(String::new(), |force| force.to_string())
+        })
+        .csv()
 }
 
 /// Predicted over measured forces; `None` where none was predicted.

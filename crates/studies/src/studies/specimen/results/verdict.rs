@@ -66,6 +66,15 @@ impl Distance {
 }
 
 impl Deviation {
+    /// Of springs or corrected field.
+    pub fn of(&self, kind: ModelKind) -> Option<Distance> {
+        match kind {
+            ModelKind::MassSpring => self.springs,
+            ModelKind::Corrected => Some(self.corrected),
+            ModelKind::FiniteElement => None,
+        }
+    }
+
     /// 100 (1 − e_corrected/e_mass-spring) of the displacement, in %.
     pub fn correction_percent(&self) -> Option<f64> {
         Some(100.0 * (1.0 - self.corrected.displacement / self.springs?.displacement))
