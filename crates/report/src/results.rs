@@ -56,6 +56,7 @@ pub use fit_picture::fit_picture;
 pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
 pub use headline::{Gauge, Headline, LoadedSheet};
 pub use identification::{identification_json, identification_picture};
+pub use json::object;
 pub use material::Material;
 pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
 pub use report::{claims, pictures};

@@ -4,6 +4,14 @@ use serde_json::{Map, Value, json};
 
 use super::{Check, Finding, Results, Step, verdict};
 
+/// The entries of an object.
+pub fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(entries) => entries,
+        _ => Map::new(),
+    }
+}
+
 impl Results {
     /// The results in the format of `report.schema.json`. Numbers and models that do not exist are `null`.
     pub fn json(&self) -> Value {

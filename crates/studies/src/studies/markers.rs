@@ -308,6 +308,18 @@ impl MarkerStudy {
     }
 }
 
+/// Whether nothing is wrong.
+///
+/// # Errors
+/// [`Error::Input`] with all faults, if there are any.
+fn none_of(faults: Vec<Diagnostic>) -> Result<(), Error> {
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Input(faults))
+    }
+}
+
 /// What is wrong with a frame that could not be corrected, and what to do.
 fn faults(error: Error) -> impl Iterator<Item = (String, String)> {
     let faults = match error {

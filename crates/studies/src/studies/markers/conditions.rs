@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::area::Area;
 use super::machine::{self, ForceColumn, FrameForces};
+use super::none_of;
 use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error, suggestion};
@@ -123,11 +124,7 @@ impl Conditions {
                 faults.push(fault.hint("name it once"));
             }
         }
-        if faults.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::Input(faults))
-        }
+        none_of(faults)
     }
 
     /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.

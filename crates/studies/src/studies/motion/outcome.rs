@@ -13,7 +13,7 @@ use crate::dynamics::Instant;
 use crate::mass_spring::SpringLaw;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
 use crate::results::{
-    Block, Check, Content, Drawing, Material, Outcome, Step, Table, Wanted, or_dash,
+    Block, Check, Content, Drawing, Material, Outcome, Step, Table, Wanted, object, or_dash,
 };
 use crate::studies::findings::{Examined, findings};
 use crate::studies::specimen::Outline;
@@ -85,51 +85,33 @@ fn steps(
     motions: &Motions,
     (of_springs, of_corrected): &(Deviations, Option<Deviations>),
 ) -> Vec<Step> {
-    let quantities = |now: &Instant, percent: Option<f64>| {
+    let force = |now: &Instant| sheet.measured_force(&now.support_forces);
+    let quantities = |now: &Instant, percent: Option<&f64>| {
         json!({
             "displacement_percent": percent,
-            "grip_force_N": sheet.measured_force(&now.support_forces),
+            "grip_force_N": force(now),
             "kinetic_energy_mJ": now.energy.kinetic,
             "stored_energy_mJ": now.energy.stored,
             "viscous_work_mJ": now.energy.viscous_work,
             "external_work_mJ": now.energy.external_work,
         })
     };
-    let corrected = motions
-        .correction
-        .motion
-        .as_ref()
-        .zip(of_corrected.as_ref());
-    let pairs = motions
-        .springs
-        .instants()
-        .iter()
-        .zip(motions.elements.instants());
-    let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| {
-        let corrected = corrected.and_then(|(own, deviations)| {
-            let (now, percent) = own
-                .instants()
-                .get(instant)
-                .zip(deviations.displacement.get(instant))?;
-            let force = sheet.measured_force(&now.support_forces);
-            Some(json!({ "displacement_percent": percent, "grip_force_N": force }))
-        });
-        let models = [
-            (
-                MASS_SPRING.key,
-                quantities(springs, of_springs.displacement.get(instant).copied()),
-            ),
-            (CORRECTED.key, json!(corrected)),
-            (FINITE_ELEMENTS.key, quantities(elements, None)),
-        ];
-        Step {
-            at: springs.time,
-            models: models
-                .map(|(name, own)| (name.to_owned(), own))
-                .into_iter()
-                .collect(),
-        }
+    let corrected = |instant: usize| {
+        let motion = motions.correction.motion.as_ref()?;
+        let percent = of_corrected.as_ref()?.displacement.get(instant)?;
+        let force = force(motion.instants().get(instant)?);
+        Some(json!({ "displacement_percent": percent, "grip_force_N": force }))
     };
+    let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| Step {
+        at: springs.time,
+        models: object(json!({
+            (MASS_SPRING.key): quantities(springs, of_springs.displacement.get(instant)),
+            (CORRECTED.key): corrected(instant),
+            (FINITE_ELEMENTS.key): quantities(elements, None),
+        })),
+    };
+    let pairs = motions.springs.instants().iter();
+    let pairs = pairs.zip(motions.elements.instants());
     pairs.enumerate().map(step).collect()
 }
 

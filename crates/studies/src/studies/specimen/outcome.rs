@@ -11,7 +11,7 @@ use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance, checks, deviations};
 use super::{forces, history, statement, work};
 use crate::problem::Solution;
-use crate::results::{Block, Content, Material, Outcome, Step, Table, or_dash, pictures};
+use crate::results::{Block, Content, Material, Outcome, Step, Table, object, or_dash, pictures};
 use crate::studies::ModelKind;
 use crate::studies::findings::{Examined, findings};
 use crate::units::{decimals, number};
@@ -195,13 +195,11 @@ fn quantities_of_model(
 ) -> Option<Map<String, Value>> {
     let measured = &models.reference.measured;
     let state = solution.states.get(step)?;
-    let mut all = Map::new();
-    all.insert(
-        "groups".into(),
-        json!(forces::groups(specimen, solution, step)),
-    );
-    all.insert("energy_mJ".into(), json!(state.convergence.energy));
-    all.insert("residuals".into(), json!(state.convergence.residuals));
+    let mut all = object(json!({
+        "groups": forces::groups(specimen, solution, step),
+        "energy_mJ": state.convergence.energy,
+        "residuals": state.convergence.residuals,
+    }));
     if let Some(work) = solution.works.get(step).copied().flatten() {
         all.insert("stored_mJ".into(), json!(work.stored));
         all.insert("dissipated_mJ".into(), json!(work.dissipated));
@@ -218,19 +216,11 @@ fn quantities_of_model(
 
 /// How far a model is from the finite elements.
 fn deviation_json(distance: Option<Distance>) -> Map<String, Value> {
-    let mut all = Map::new();
-    all.insert(
-        "displacement_percent".into(),
-        json!(distance.map(|own| own.displacement)),
-    );
-    all.insert(
-        "measured_percent".into(),
-        json!(distance.map(|own| own.measured)),
-    );
-    all.insert(
-        "max_difference_mm".into(),
-        json!(distance.map(|own| own.largest)),
-    );
+    let mut all = object(json!({
+        "displacement_percent": distance.map(|own| own.displacement),
+        "measured_percent": distance.map(|own| own.measured),
+        "max_difference_mm": distance.map(|own| own.largest),
+    }));
     if let Some(departure) = distance.and_then(|own| own.departure()) {
         all.insert("departure_percent".into(), json!(departure));
     }
@@ -244,7 +234,7 @@ fn own_errors_json(
 ) -> Map<String, Value> {
     let reference = &models.reference;
     let own = |which: usize| deviation.map(|own| own.own[which]);
-    let all = json!({
+    object(json!({
         "displacement_discretisation_percent": reference.displacement_percent(step),
         "departure_discretisation_percent": own(1),
         "field_discretisation_percent": reference.field_percent(step),
@@ -252,8 +242,7 @@ fn own_errors_json(
         "three_meshes_percent": reference.three_meshes_percent(step),
         "recovery_percent": reference.recovered_percent(step),
         "estimated_energy_norm_percent": reference.energy_percent(step),
-    });
-    all.as_object().cloned().unwrap_or_default()
+    }))
 }
 
 /// A figure with some decimals; a dash where there is none.

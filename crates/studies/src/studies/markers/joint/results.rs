@@ -7,10 +7,10 @@ use super::{CorrectedSpecimen, JointResults, JointStudy, card};
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
     Axis, Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
-    Table,
+    Table, object,
 };
 use crate::statistics::{extremes, larger};
-use crate::studies::markers::json::{object, of_estimate};
+use crate::studies::markers::json::of_estimate;
 
 /// The `kind` of these results.
 pub const KIND: &str = "parameters";
