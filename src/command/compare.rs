@@ -188,16 +188,16 @@ fn summary(compared: &Comparison, differences: &[Difference]) -> String {
         "deviation from the imported field at the load factor {} ({})\n{}{}\n",
         compared.factor,
         compared.imported.describe(),
-        table(compared, differences).plain(),
+        table(compared, differences, false).plain(),
         own_error(compared)
     )
 }
 
-/// The differences of all models, for the terminal and the report.
-fn table(compared: &Comparison, differences: &[Difference]) -> Block {
+/// The differences of all models, for the terminal and, with their meshes, for the report.
+fn table(compared: &Comparison, differences: &[Difference], with_mesh: bool) -> Block {
     Table::of(compared.models.fields.iter().zip(differences))
         .column("model", |(field, _)| field.model.to_owned())
-        .column("mesh", |(field, _)| field.mesh.describe())
+        .column_if(with_mesh, "mesh", |(field, _)| field.mesh.describe())
         .column("displacement [%]", |(_, own)| format!("{:.4}", own.percent))
         .column("largest difference [mm]", |(_, own)| {
             format!("{:.5}", own.largest)
@@ -293,7 +293,7 @@ fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec
             file.file_name().unwrap_or_default().to_string_lossy(),
             compared.imported.describe()
         )),
-        table(compared, differences),
+        table(compared, differences, true),
         Block::Paragraph(own_error(compared)),
         Block::Paragraph(format!("gelbench {}", env!("CARGO_PKG_VERSION"))),
     ]

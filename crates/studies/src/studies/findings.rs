@@ -4,11 +4,14 @@ use nalgebra::Vector4;
 
 use super::ModelKind;
 use super::series::{ModelSeries, ModelState};
-use super::specimen::{Models, Specimen, forces};
+use super::specimen::forces;
+use super::specimen::problem::Specimen;
+use super::specimen::results::models::Models;
 use crate::mass_spring;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
+use crate::problem::BoundaryProblem;
 use crate::results::wrinkling::{self, Wrinkling};
 use crate::results::{Finding, Found, Stretches, locking, small_strain};
 use crate::solve::State;
@@ -68,7 +71,7 @@ impl<'a> Examined<'a> {
     }
 
     /// Its mesh and the study's problem, of equilibria.
-    fn problem(&self) -> Option<(&'a crate::problem::BoundaryProblem, &'a Mesh)> {
+    fn problem(&self) -> Option<(&'a BoundaryProblem, &'a Mesh)> {
         self.models?;
         Some((&self.specimen.problem, self.best()?.mesh))
     }

@@ -108,6 +108,18 @@ fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
     Some(Diagnostic::warning("", message).hint(hint))
 }
 
+/// The doubts about an outline and about a thickness.
+fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Finding> {
+    let outline = outline
+        .into_iter()
+        .map(|doubt| ("uncertain-outline", doubt));
+    let all = outline.chain(thickness.map(|doubt| ("thickness", doubt)));
+    let doubt = |(rule, doubt): (_, Diagnostic)| {
+        Finding::doubt(rule, (doubt.message, doubt.hint.unwrap_or_default()))
+    };
+    all.map(doubt).collect()
+}
+
 impl MarkerStudy {
     /// Reads everything.
     ///
@@ -161,12 +173,7 @@ impl MarkerStudy {
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
         warnings.extend(of_material(&card, &mesh));
-        let outline = doubts.into_iter().map(|doubt| ("uncertain-outline", doubt));
         let thickness = check_thickness(&mesh, request.thickness);
-        let doubts = outline.chain(thickness.map(|doubt| ("thickness", doubt)));
-        let doubts = doubts.map(|(rule, doubt)| {
-            Finding::doubt(rule, (doubt.message, doubt.hint.unwrap_or_default()))
-        });
         Ok(Self {
             card,
             thickness: request.thickness,
@@ -179,7 +186,7 @@ impl MarkerStudy {
             conditions: request.conditions,
             regressed,
             warnings: [field.warnings, warnings].concat(),
-            doubts: doubts.collect(),
+            doubts: of_reading(doubts, thickness),
             mistake: None,
             unknown_gap,
         })
@@ -305,18 +312,6 @@ impl MarkerStudy {
         };
         let estimate = estimate.map(|estimate| self.with_unknown_edge(estimate));
         estimate.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
-    }
-}
-
-/// Whether nothing is wrong.
-///
-/// # Errors
-/// [`Error::Input`] with all faults, if there are any.
-fn none_of(faults: Vec<Diagnostic>) -> Result<(), Error> {
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(Error::Input(faults))
     }
 }
 

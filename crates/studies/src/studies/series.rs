@@ -2,14 +2,15 @@
 //! all studies of one sheet are made of them.
 
 use super::ModelKind;
-use super::specimen::{Specimen, gauge};
-use crate::mesh::Mesh;
+use super::specimen::problem::{Outline, Specimen};
+use crate::mesh::{Mesh, Shape};
 use crate::problem::{GroupState, Solution};
 use crate::results::models::ModelStyle;
 use crate::results::{
-    Array, Block, Deformed, Figure, Grid, Headline, LoadedSheet, Panel, Sheet, ViscousStress,
-    sheet_figures,
+    Array, Block, Deformed, Figure, Gauge, Grid, Headline, LoadedSheet, Panel, Sheet,
+    ViscousStress, sheet_figures,
 };
+use crate::solve::State;
 
 /// The states of one model.
 pub struct ModelSeries<'a> {
@@ -44,7 +45,7 @@ pub struct ModelState<'a> {
 impl<'a> ModelSeries<'a> {
     /// The equilibria of a path, with the finite elements' displacements at its nodes as far as these go.
     pub fn of(kind: ModelKind, solution: &'a Solution, expected: &'a [Vec<f64>]) -> Self {
-        let state = |(step, state): (usize, &'a crate::solve::State)| ModelState {
+        let state = |(step, state): (usize, &'a State)| ModelState {
             at: state.factor,
             displacement: &state.displacement,
             velocity: None,
@@ -151,4 +152,24 @@ pub fn stress_figures(
     let deformed: Vec<_> = deformed.collect();
     let fields = &specimen.pictures.fields;
     sheet_figures(fields, &*specimen.problem.law, &deformed, at, file)
+}
+
+/// The gauge section of a strip or a dog-bone.
+fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
+    let shape = match outline {
+        Outline::Shape { shape, .. } => *shape,
+        Outline::Grid(grids) => Shape::Strip { size: grids.size },
+        Outline::File { .. } => return None,
+    };
+    match shape {
+        Shape::Strip { size } => {
+            let words = "the middle half of the length";
+            Some(Gauge::middle_half(mesh, size[0], words))
+        }
+        Shape::DogBone { narrow, .. } => {
+            let words = "the middle half of the narrow part";
+            Some(Gauge::middle_half(mesh, narrow[0], words))
+        }
+        Shape::StripWithHole { .. } | Shape::NotchedStrip { .. } | Shape::RingSector { .. } => None,
+    }
 }

@@ -18,20 +18,19 @@ pub(super) mod forces;
 mod headline;
 mod history;
 mod outcome;
-mod problem;
+pub(super) mod problem;
 mod read;
-mod results;
+pub(super) mod results;
 mod statement;
 mod work;
 
 pub use along::Along;
-pub use headline::gauge;
 pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };
 pub(crate) use read::read_moving;
 use results::end::{End, tell};
-pub(super) use results::models::Models;
+use results::models::Models;
 use results::verdict;
 pub use results::{finest_mesh, force_with_error, one_model};
 pub use statement::{load_words, support_words};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::none_of;
+use super::finding::none_of;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 

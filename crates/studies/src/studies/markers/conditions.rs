@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::area::Area;
+use super::finding::none_of;
 use super::machine::{self, ForceColumn, FrameForces};
-use super::none_of;
 use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error, suggestion};

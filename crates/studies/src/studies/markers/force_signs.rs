@@ -1,7 +1,7 @@
 //! Whether measured forces have the sign that the strain of the markers shows.
 
+use super::finding::none_of;
 use super::machine::FrameForces;
-use super::none_of;
 use crate::error::{Diagnostic, Error};
 use crate::estimation::MeasuredForce;
 use crate::markers::{Frame, MarkerSeries};

@@ -114,22 +114,27 @@ impl MovingSheet {
                  does not depend on the springs.",
                 found.iterations, found.factorisations
             ),
-            motion: (!instants.is_empty()).then(|| ModelMotion {
-                kind: ModelKind::Corrected,
-                groups: self.measured_states(&mesh, &instants),
-                history: History {
-                    instants,
-                    ..History::default()
-                },
-                end: None,
-                frequency: None,
-                seconds: clock.elapsed().as_secs_f64(),
-                viscous: Vec::new(),
-                expected: Vec::new(),
-                mesh: mesh.clone(),
-            }),
+            motion: (!instants.is_empty()).then(|| self.corrected(&mesh, instants, clock)),
             end,
         })
+    }
+
+    /// The corrected motion on its mesh, since a time.
+    fn corrected(&self, mesh: &Mesh, instants: Vec<Instant>, clock: Clock) -> ModelMotion {
+        ModelMotion {
+            kind: ModelKind::Corrected,
+            mesh: mesh.clone(),
+            groups: self.measured_states(mesh, &instants),
+            history: History {
+                instants,
+                ..History::default()
+            },
+            end: None,
+            frequency: None,
+            seconds: clock.elapsed().as_secs_f64(),
+            viscous: Vec::new(),
+            expected: Vec::new(),
+        }
     }
 
     /// The mesh of the corrected motion: elements of the second degree on about as many nodes as the lattice, where a plate has even numbers of

@@ -1,9 +1,8 @@
 //! What a specimen is computed for at a glance.
 
-use super::problem::{Outline, Specimen};
+use super::problem::Specimen;
 use super::results::models::Models;
-use crate::mesh::{Mesh, Shape};
-use crate::results::{Block, Gauge};
+use crate::results::Block;
 use crate::studies::ModelKind;
 
 /// The groups' forces and displacements at every load factor and the largest values at the largest one, by the finite elements, or else by the
@@ -28,24 +27,4 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
         steps.map(|step| (step, along.value(series.states[step].at))),
         (largest, along.describe(series.states[largest].at)),
     )
-}
-
-/// The gauge section of a strip or a dog-bone.
-pub fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
-    let shape = match outline {
-        Outline::Shape { shape, .. } => *shape,
-        Outline::Grid(grids) => Shape::Strip { size: grids.size },
-        Outline::File { .. } => return None,
-    };
-    match shape {
-        Shape::Strip { size } => {
-            let words = "the middle half of the length";
-            Some(Gauge::middle_half(mesh, size[0], words))
-        }
-        Shape::DogBone { narrow, .. } => {
-            let words = "the middle half of the narrow part";
-            Some(Gauge::middle_half(mesh, narrow[0], words))
-        }
-        Shape::StripWithHole { .. } | Shape::NotchedStrip { .. } | Shape::RingSector { .. } => None,
-    }
 }
