@@ -116,12 +116,12 @@ impl Results {
 
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.results.warnings().cloned().collect()
+        self.results.warnings().collect()
     }
 
     #[getter]
     fn doubts(&self) -> Vec<String> {
-        self.results.outcome.doubts.clone()
+        self.results.outcome.doubts().collect()
     }
 
     /// The text of `report.json`.

@@ -60,7 +60,8 @@ impl Solution {
         mut own: Sheet,
         groups: Vec<String>,
     ) -> PyResult<Self> {
-        own.warnings.extend(found.warnings);
+        own.warnings
+            .extend(found.warnings.iter().map(ToString::to_string));
         let ends = found.ends.iter();
         let ends = ends.map(|end| exception(py, end).into_value(py).into_any());
         let ends = ends.collect();

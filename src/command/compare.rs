@@ -23,7 +23,7 @@ use gelbench_report::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, ModelFields, Sites,
 };
 use gelbench_report::output::{self, ResultFolder};
-use gelbench_report::results::{Array, Block, Grid, GridSeries, Sheet};
+use gelbench_report::results::{Array, Block, Grid, GridSeries, Sheet, Table};
 use gelbench_studies::studies;
 use gelbench_studies::studies::sections;
 use gelbench_studies::studies::specimen::{self, Along, Specimen};
@@ -184,20 +184,28 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
 }
 
 fn summary(compared: &Comparison, differences: &[Difference]) -> String {
-    let mut text = format!(
-        "deviation from the imported field at the load factor {} ({})\n\
-         model             displacement [%]  largest difference [mm]  at x, y [mm]\n",
+    format!(
+        "deviation from the imported field at the load factor {} ({})\n{}{}\n",
         compared.factor,
-        compared.imported.describe()
-    );
-    for (field, difference) in compared.models.fields.iter().zip(differences) {
-        let [x, y] = difference.place;
-        text += &format!(
-            "{:<16}  {:>16.4}  {:>23.5}  {x:.3}, {y:.3}\n",
-            field.model, difference.percent, difference.largest
-        );
-    }
-    text + &own_error(compared) + "\n"
+        compared.imported.describe(),
+        table(compared, differences, false).plain(),
+        own_error(compared)
+    )
+}
+
+/// The differences of all models, for the terminal and, with their meshes, for the report.
+fn table(compared: &Comparison, differences: &[Difference], with_mesh: bool) -> Block {
+    Table::of(compared.models.fields.iter().zip(differences))
+        .column("model", |(field, _)| field.model.to_owned())
+        .column_if(with_mesh, "mesh", |(field, _)| field.mesh.describe())
+        .column("displacement [%]", |(_, own)| format!("{:.4}", own.percent))
+        .column("largest difference [mm]", |(_, own)| {
+            format!("{:.5}", own.largest)
+        })
+        .column("at (x, y) [mm]", |(_, own)| {
+            format!("({:.3}, {:.3})", own.place[0], own.place[1])
+        })
+        .block()
 }
 
 /// The finite elements' own error, in words.
@@ -215,12 +223,7 @@ fn write(
     file: &Path,
     folder: &mut ResultFolder,
 ) -> Result<Vec<Diagnostic>, Error> {
-    let sheet = Sheet {
-        law: &*compared.law,
-        thickness: compared.thickness,
-        past: &[],
-        viscous: None,
-    };
+    let sheet = Sheet::elastic(&*compared.law, compared.thickness);
     for field in &compared.models.fields {
         let grid = match &compared.imported {
             ExternalField::OnMesh(imported) => {
@@ -282,23 +285,6 @@ fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec
         ExternalField::OnMesh(_) => "at the nodes of the lattice, weighted by area",
         ExternalField::AtPoints(_) => "at the imported points, all with the same weight",
     };
-    let row = |(field, difference): (&ModelField, &Difference)| {
-        let [x, y] = difference.place;
-        vec![
-            field.model.to_owned(),
-            field.mesh.describe(),
-            format!("{:.4}", difference.percent),
-            format!("{:.5}", difference.largest),
-            format!("({x:.3}, {y:.3})"),
-        ]
-    };
-    let head = [
-        "model",
-        "mesh",
-        "displacement [%]",
-        "largest difference [mm]",
-        "at (x, y) [mm]",
-    ];
     vec![
         Block::Heading(1, compared.title.clone()),
         Block::Paragraph(format!(
@@ -307,10 +293,7 @@ fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec
             file.file_name().unwrap_or_default().to_string_lossy(),
             compared.imported.describe()
         )),
-        Block::table(
-            &head,
-            compared.models.fields.iter().zip(differences).map(row),
-        ),
+        table(compared, differences, true),
         Block::Paragraph(own_error(compared)),
         Block::Paragraph(format!("gelbench {}", env!("CARGO_PKG_VERSION"))),
     ]

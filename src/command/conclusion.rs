@@ -2,20 +2,18 @@
 
 use std::path::Path;
 
-use super::terminal::{Outcome, complain_of_end, print, warn};
-use gelbench_base::error::Diagnostic;
-use gelbench_report::results::{Check, End, Results};
+use super::terminal;
+use super::terminal::{complain_of_end, print, warn_words};
+use gelbench_report::results::{Check, End, Outcome, Results};
 
 /// The exit code of a study of which a model has no solution.
 const NO_SOLUTION: u8 = 3;
 
 /// Prints the results in words, then warnings, and decides on the exit code.
-pub fn conclude(results: &[Results], words: &str) -> Outcome {
+pub fn conclude(results: &[Results], words: &str) -> terminal::Outcome {
     print(words)?;
     let outcomes = || results.iter().map(|results| &results.outcome);
-    for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
-        warn(&[Diagnostic::warning("", warning.clone())]);
-    }
+    warn_words(outcomes().flat_map(Outcome::warnings));
     let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
     let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
     ends.iter().for_each(|end| complain_of_end(end));

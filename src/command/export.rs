@@ -6,9 +6,9 @@ use clap::{Args, ValueEnum};
 
 use super::choice::one_of;
 use super::large::Large;
-use super::terminal::{Outcome, print, save, warn};
+use super::terminal::{Outcome, print, save, warn, warn_words};
 use crate::kinds;
-use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::error::Error;
 use gelbench_mechanics::material::Code;
 use gelbench_report::output;
 use gelbench_report::output::export::{Export, InputFile};
@@ -74,9 +74,7 @@ pub fn run(options: &Options) -> Outcome {
     };
     output::refuse_inputs(&target, &[path])?;
     save(&target, written.text.as_bytes())?;
-    for remark in written.remarks {
-        warn(&[Diagnostic::warning("", remark)]);
-    }
+    warn_words(written.remarks);
     print(&format!("{} for {}\n", target.display(), code.name()))?;
     Ok(0)
 }

@@ -11,9 +11,9 @@ use super::fit::add_law;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, save, warn};
+use super::terminal::{Outcome, Printed, print, print_report, save, warn, warn_words};
 use gelbench_base::budget::{Budget, Need};
-use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::error::Error;
 use gelbench_base::units::number;
 use gelbench_calibration::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Sample, Shape,
@@ -127,10 +127,7 @@ pub fn run(options: Options) -> Outcome {
     tell_files(&files);
     print_report(|| json)?;
     warn(warnings.as_slice());
-    let doubts = found.verdict.doubts.iter().chain(&found.warnings);
-    warn(&Vec::from_iter(
-        doubts.map(|one| Diagnostic::warning("", one)),
-    ));
+    warn_words(found.verdict.doubts.iter().chain(&found.warnings));
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&found, &recording, &path),

@@ -8,13 +8,13 @@ use super::conclusion::open_page;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, warn};
+use super::terminal::{Outcome, Printed, print, print_report, warn, warn_words};
 use crate::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Sampling, Shard, Share, Sweep, SweepFolder,
     Variable,
 };
 use gelbench_base::document::{self, file};
-use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::error::Error;
 use gelbench_studies::studies::name;
 use gelbench_studies::studies::sections::read_text;
 
@@ -119,12 +119,7 @@ pub fn run(options: Options) -> Outcome {
     let place = folder.results().path().to_owned();
     let (files, warnings) = folder.finish(&rows)?;
     warn(&warnings);
-    let cautions = sweep::cautions(&rows).into_iter();
-    warn(
-        &cautions
-            .map(|one| Diagnostic::warning("", one))
-            .collect::<Vec<_>>(),
-    );
+    warn_words(sweep::cautions(&rows));
     tell_files(&files);
     let keys = sweep.keys();
     print_report(|| sweep::json(&keys, &rows))?;

@@ -117,6 +117,12 @@ pub fn warn(warnings: &[Diagnostic]) {
     }
 }
 
+/// Prints warnings that are words alone.
+pub fn warn_words(words: impl IntoIterator<Item = impl Into<String>>) {
+    let warnings = words.into_iter();
+    warnings.for_each(|words| warn(&[Diagnostic::warning("", words)]));
+}
+
 fn diagnostic(finding: &Diagnostic) -> String {
     message::diagnostic(finding, io::stderr().is_terminal(), columns_of_errors())
 }

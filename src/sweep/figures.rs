@@ -53,7 +53,7 @@ impl Row {
                 );
             }
         }
-        let warnings = results.warnings().chain(&outcome.doubts);
+        let warnings = results.warnings().chain(outcome.doubts());
         let ends = outcome.ends.iter().map(|end| end.message.as_str());
         Self {
             number: run.number,
@@ -61,7 +61,7 @@ impl Row {
             figures,
             passed: results.passed(),
             fault: ends.collect::<Vec<_>>().join("; "),
-            warnings: warnings.cloned().collect(),
+            warnings: warnings.collect(),
         }
     }
 

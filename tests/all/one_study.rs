@@ -63,8 +63,8 @@ fn a_plate_and_the_same_strip_have_the_same_forces_findings_and_files() {
     };
     assert_eq!(names(&plate), names(&strip));
     let findings = |results: &Results| {
-        let warnings = results.outcome.warnings.iter();
-        let at = |text: &String| {
+        let warnings = results.outcome.warnings();
+        let at = |text: String| {
             text.replace("15 % stretch", "load factor 0.15")
                 .replace("30 % stretch", "load factor 0.3")
                 // Only plates have this remedy.

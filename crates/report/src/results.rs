@@ -11,13 +11,13 @@ use crate::error::Error;
 
 mod array;
 mod block;
-mod branches;
 mod card_curves;
 mod chart;
 mod check;
 mod curves;
 mod drawing;
 mod fields;
+mod finding;
 mod fit;
 mod fit_picture;
 mod grid;
@@ -35,7 +35,6 @@ mod sheet_arrays;
 mod sheet_figures;
 pub mod small_strain;
 mod state;
-pub mod strained;
 mod stress_unit;
 mod stretches;
 mod surface;
@@ -44,19 +43,20 @@ mod work;
 pub mod wrinkling;
 
 pub use array::{Array, Components};
-pub use block::{Block, Content, Figure};
-pub use branches::{is_one_of_several, one_of_several};
+pub use block::{Block, Content, Figure, Table};
 pub use card_curves::card_curves;
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
 pub use check::{Check, Wanted, check_lines, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
 pub use fields::{Animation, FieldFigure, Frame, Panel, Values};
+pub use finding::{Finding, Found, Weight};
 pub use fit::fit_json;
 pub use fit_picture::fit_picture;
 pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
 pub use headline::{Gauge, Headline, LoadedSheet};
 pub use identification::{identification_json, identification_picture};
+pub use json::object;
 pub use material::Material;
 pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
 pub use report::{claims, pictures};
@@ -146,10 +146,8 @@ pub struct Outcome {
     pub files: Vec<(String, Content)>,
     /// Measured times: name and seconds.
     pub times: Vec<(String, f64)>,
-    /// Warnings about the results, each in a sentence.
-    pub warnings: Vec<String>,
-    /// Doubts about the results: a study with a doubt has not passed.
-    pub doubts: Vec<String>,
+    /// What a reader must know of the results; a study with a doubt has not passed.
+    pub findings: Vec<Finding>,
     /// Models that ended early.
     pub ends: Vec<End>,
     /// The worst balance of forces and moments of all boundary value problems that were solved, relative to the largest
@@ -176,10 +174,22 @@ impl Outcome {
         self.ends.push(end);
     }
 
+    /// Warnings about the results, each in a sentence.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let warnings = self.findings.iter().filter(|one| !one.is_doubt());
+        warnings.map(ToString::to_string)
+    }
+
+    /// Doubts about the results, each in a sentence.
+    pub fn doubts(&self) -> impl Iterator<Item = String> {
+        let doubts = self.findings.iter().filter(|one| one.is_doubt());
+        doubts.map(ToString::to_string)
+    }
+
     /// The warnings as paragraphs of a report.
     pub fn warning_paragraphs(&self) -> impl Iterator<Item = Block> {
-        let warnings = self.warnings.iter();
-        warnings.map(|warning| Block::paragraph(format!("Warning: {warning}")))
+        self.warnings()
+            .map(|warning| Block::paragraph(format!("Warning: {warning}")))
     }
 }
 
@@ -207,8 +217,9 @@ pub struct Results {
 
 impl Results {
     /// Warnings from reading the study and from its results.
-    pub fn warnings(&self) -> impl Iterator<Item = &String> {
-        self.read_warnings.iter().chain(&self.outcome.warnings)
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let of_reading = self.read_warnings.iter().cloned();
+        of_reading.chain(self.outcome.warnings())
     }
 
     /// The headline for a terminal.
@@ -239,13 +250,9 @@ impl Results {
 
     /// Whether all requirements are met, no model ended early, and there is no doubt.
     pub fn passed(&self) -> bool {
-        let Outcome {
-            checks,
-            doubts,
-            ends,
-            ..
-        } = &self.outcome;
-        checks.iter().all(Check::passed) && doubts.is_empty() && ends.is_empty()
+        let Outcome { checks, ends, .. } = &self.outcome;
+        let has_doubt = self.outcome.findings.iter().any(Finding::is_doubt);
+        checks.iter().all(Check::passed) && !has_doubt && ends.is_empty()
     }
 }
 

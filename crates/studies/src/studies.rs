@@ -12,6 +12,7 @@ use crate::results::{Block, Outcome, Results};
 use crate::solve::{Attendance, Journal};
 
 pub mod card;
+mod findings;
 pub mod markers;
 mod models;
 pub mod motion;
@@ -19,6 +20,7 @@ pub mod other_files;
 pub mod pictures;
 pub mod plate;
 pub mod sections;
+mod series;
 pub mod specimen;
 
 pub use models::{ModelKind, OneModel};

@@ -9,8 +9,8 @@ use super::options::Options;
 use super::request::request;
 use crate::command::interrupt;
 use crate::command::progress::Progress;
-use crate::command::terminal::{Outcome, print_report, warn};
-use gelbench_base::error::{Diagnostic, Error};
+use crate::command::terminal::{Outcome, print_report, warn, warn_words};
+use gelbench_base::error::Error;
 use gelbench_estimation::estimation::{FieldEstimate, JointSettings};
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::softened_law::check_memory;
@@ -44,12 +44,7 @@ pub fn run(options: Options, mut job: Job) -> Outcome {
         )?);
     }
     warn(&[given_the_law()]);
-    let undetermined = undetermined(&estimate.estimate);
-    warn(
-        undetermined
-            .map(|words| Diagnostic::warning("", words))
-            .as_slice(),
-    );
+    warn_words(undetermined(&estimate.estimate));
     interrupt::guard(&folder);
     let results = results(&study, &estimate, &corrected, start.elapsed().as_secs_f64());
     finish(folder, &results)?;
@@ -79,7 +74,7 @@ fn corrected_specimen(
         name: name.to_owned(),
         study,
         estimates,
-        doubts: results.outcome.doubts.len(),
+        doubts: results.outcome.doubts().count(),
     })
 }
 

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args};
 
 use super::pictures::PictureOptions;
-use super::values::{CELLS, HOLES, PLACES, Y_AXIS, named};
+use super::values::{CELLS, HOLES, PLACES, Y_AXIS};
 use super::values::{encoding, force, force_column, gap, length, scale_error, size, unit};
+use crate::command::choice::one_of;
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
 use gelbench_base::document::TextEncoding;
@@ -98,10 +99,10 @@ pub struct Options {
     #[arg(long, value_name = "WHAT=COLUMN", value_delimiter = ',')]
     pub columns: Vec<String>,
     /// Where the y axis of a table points, up as on paper or down as in an image, if not as usual for the program that wrote it
-    #[arg(long, value_parser = named(&Y_AXIS))]
+    #[arg(long, value_parser = one_of(&Y_AXIS))]
     pub y_axis: Option<bool>,
     /// The positions in a table, at rest or in the frame, if not as usual for the program that wrote it
-    #[arg(long, value_parser = named(&PLACES))]
+    #[arg(long, value_parser = one_of(&PLACES))]
     pub places: Option<bool>,
     /// The encoding of a table, such as latin1, gb18030 or shift_jis, if its bytes do not show it
     #[arg(long, value_name = "NAME", value_parser = encoding)]
@@ -121,20 +122,20 @@ pub struct Options {
     #[arg(long, conflicts_with_all = ["together", "specimen", "laws"])]
     pub refine: bool,
     /// Kind of the cells of a generated mesh: triangles or quadrilaterals, by their number of nodes
-    #[arg(long, value_parser = named(&CELLS), default_value = "triangle6")]
+    #[arg(long, value_parser = one_of(&CELLS), default_value = "triangle6")]
     pub cells: CellShape,
     /// What gaps among the markers are, if a mesh is generated: holes if they are much wider than the spacing, or lost markers
-    #[arg(long, value_parser = named(&HOLES), action = ArgAction::Set, default_value = "found")]
+    #[arg(long, value_parser = one_of(&HOLES), action = ArgAction::Set, default_value = "found")]
     pub holes: bool,
     /// Standard deviation of the displacement's components, such as "0.1 mm"; estimated if omitted
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub noise: Option<f64>,
     /// Weights of outlying markers: full, decreasing with the residual (huber), or zero beyond one (tukey); tukey if some are farther off
     /// than noise can explain
-    #[arg(long, value_parser = named(&Robust::NAMES))]
+    #[arg(long, value_parser = one_of(&Robust::NAMES))]
     pub robust: Option<Robust>,
     /// How equilibrium holds: exactly, or up to smooth forces that are weighted against the data, for a law that is not exact
-    #[arg(long, value_parser = named(&Physics::NAMES))]
+    #[arg(long, value_parser = one_of(&Physics::NAMES))]
     pub physics: Option<Physics>,
     /// Write into this folder
     #[arg(long, value_name = "FOLDER", default_value = "output/correct")]

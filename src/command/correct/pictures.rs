@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::values::named;
+use crate::command::choice::one_of;
 use gelbench_report::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
 use gelbench_studies::studies::pictures::{Pictures, Shown};
 
@@ -11,18 +11,18 @@ use gelbench_studies::studies::pictures::{Pictures, Shown};
 #[command(next_help_heading = "Pictures")]
 pub struct PictureOptions {
     /// Fields of the corrected sheet to show
-    #[arg(long, value_name = "FIELD", value_delimiter = ',', value_parser = named(&SheetField::NAMES),
+    #[arg(long, value_name = "FIELD", value_delimiter = ',', value_parser = one_of(&SheetField::NAMES),
         default_values = ["von-mises", "largest-principal-stress"])]
     picture_fields: Vec<SheetField>,
     /// Formats of the pictures
-    #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = named(&PictureFormat::NAMES),
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = one_of(&PictureFormat::NAMES),
         default_value = "png")]
     picture_formats: Vec<PictureFormat>,
     /// Width of the pictures: one column of a journal is 85 mm wide, two are 180 mm
-    #[arg(long, value_name = "WIDTH", value_parser = named(&PictureWidth::NAMES), default_value = "screen")]
+    #[arg(long, value_name = "WIDTH", value_parser = one_of(&PictureWidth::NAMES), default_value = "screen")]
     picture_width: PictureWidth,
     /// Colours of the pictures: dark for slides, print if lightness alone must distinguish them
-    #[arg(long, value_name = "NAME", value_parser = named(&Palette::NAMES), default_value = "default")]
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Palette::NAMES), default_value = "default")]
     palette: Palette,
 }
 

@@ -1,7 +1,5 @@
 //! The values of the options of `gelbench correct`.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-
 use gelbench_base::document::TextEncoding;
 use gelbench_base::error::Diagnostic;
 use gelbench_base::units::{self, Dimension};
@@ -22,17 +20,6 @@ pub const Y_AXIS: [(&str, bool); 2] = [("up", false), ("down", true)];
 pub const PLACES: [(&str, bool); 2] = [("rest", false), ("frame", true)];
 /// Whether gaps among markers are holes.
 pub const HOLES: [(&str, bool); 2] = [("found", true), ("closed", false)];
-
-/// One of several values by their names.
-pub fn named<T: Copy + Send + Sync>(
-    values: &'static [(&'static str, T)],
-) -> impl TypedValueParser<Value = T> {
-    let names = PossibleValuesParser::new(values.iter().map(|(name, _)| *name));
-    names.try_map(|name| {
-        let value = values.iter().find(|(known, _)| *known == name);
-        value.map(|(_, value)| *value).ok_or("an unknown value")
-    })
-}
 
 /// An edge, an axis, a force and its standard deviation.
 pub fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {

@@ -60,7 +60,7 @@ fn sentences(outcome: &Outcome) -> Vec<String> {
         Some(advice) => format!("{}; {advice}", end.message),
         None => end.message.clone(),
     });
-    let said = outcome.doubts.iter().chain(&outcome.warnings).cloned();
+    let said = outcome.doubts().chain(outcome.warnings());
     ends.chain(said).collect()
 }
 

@@ -25,8 +25,6 @@ mod paint;
 mod pdf;
 mod thin;
 mod vectors;
-#[cfg(test)]
-mod vision;
 
 /// Why a picture could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Drawing;
 use crate::document::stored::{StaticText, static_text};
+use crate::document::write_records;
 
 /// A part of a report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,65 @@ impl Block {
             Self::Figure(..) => String::new(),
             Self::Table(head, rows) => plain_table(head, rows),
         }
+    }
+}
+
+/// A table that is made column by column, each head beside what stands below it.
+pub struct Table<T> {
+    rows: Vec<T>,
+    head: Vec<String>,
+    cells: Vec<Vec<String>>,
+}
+
+impl<T> Table<T> {
+    /// A table with a row for each of some things, and no column yet.
+    pub fn of(rows: impl IntoIterator<Item = T>) -> Self {
+        let rows: Vec<T> = rows.into_iter().collect();
+        Self {
+            cells: vec![Vec::new(); rows.len()],
+            head: Vec::new(),
+            rows,
+        }
+    }
+
+    /// Adds a column.
+    #[must_use]
+    pub fn column(mut self, head: impl Into<String>, cell: impl Fn(&T) -> String) -> Self {
+        self.head.push(head.into());
+        for (cells, row) in self.cells.iter_mut().zip(&self.rows) {
+            cells.push(cell(row));
+        }
+        self
+    }
+
+    /// Adds a column where it is wanted.
+    #[must_use]
+    pub fn column_if(
+        self,
+        wanted: bool,
+        head: impl Into<String>,
+        cell: impl Fn(&T) -> String,
+    ) -> Self {
+        if wanted {
+            self.column(head, cell)
+        } else {
+            self
+        }
+    }
+
+    /// Whether it has no rows.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The table as a part of a report.
+    pub fn block(self) -> Block {
+        Block::Table(self.head, self.cells)
+    }
+
+    /// The table for other programs, with commas between its fields.
+    pub fn csv(self) -> String {
+        write_records(std::iter::once(self.head).chain(self.cells))
     }
 }
 

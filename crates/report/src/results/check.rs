@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Block, limit, or_dash};
+use super::{Block, Table, limit, or_dash};
 use crate::compare::judgement::Judgement;
 use crate::document::stored::{StaticText, static_text};
 use crate::units::number;
@@ -241,27 +241,17 @@ fn known(value: f64) -> String {
 
 /// A table of requirements.
 pub fn requirements(checks: &[Check]) -> Block {
-    let row = |check: &Check| {
-        vec![
-            check.quantity.clone(),
-            check.unit.to_owned(),
-            known(check.computed),
-            check.own_error.map_or("–".into(), number),
-            check.wanted(),
-            check.source.to_owned(),
-            check.result(),
-        ]
-    };
-    let head = [
-        "requirement",
-        "unit",
-        "computed",
-        "own error of what it is compared with",
-        "wanted",
-        "source",
-        "result",
-    ];
-    Block::table(&head, checks.iter().map(row))
+    Table::of(checks)
+        .column("requirement", |check| check.quantity.clone())
+        .column("unit", |check| check.unit.to_owned())
+        .column("computed", |check| known(check.computed))
+        .column("own error of what it is compared with", |check| {
+            check.own_error.map_or("–".into(), number)
+        })
+        .column("wanted", |check| check.wanted())
+        .column("source", |check| check.source.to_owned())
+        .column("result", |check| check.result())
+        .block()
 }
 
 #[cfg(test)]

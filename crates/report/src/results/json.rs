@@ -2,7 +2,15 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Check, Results, Step, verdict};
+use super::{Check, Finding, Results, Step, verdict};
+
+/// The entries of an object.
+pub fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(entries) => entries,
+        _ => Map::new(),
+    }
+}
 
 impl Results {
     /// The results in the format of `report.schema.json`. Numbers and models that do not exist are `null`.
@@ -33,7 +41,8 @@ impl Results {
             "passed": self.passed(),
             "verdict": verdict(&outcome.checks),
             "warnings": self.warnings().collect::<Vec<_>>(),
-            "doubts": outcome.doubts,
+            "doubts": outcome.doubts().collect::<Vec<_>>(),
+            "findings": outcome.findings.iter().map(Finding::json).collect::<Vec<_>>(),
             "ends": outcome.ends.iter().map(|end| &end.message).collect::<Vec<_>>(),
             "balance": { "worst": outcome.balance, "models": outcome.balances },
             "times_s": times,

@@ -10,7 +10,7 @@ impl Results {
         blocks.extend(outcome.headline.iter().cloned());
         blocks.extend(judged(outcome));
         blocks.extend(ends(outcome));
-        blocks.extend(paragraphs("Doubts", &outcome.doubts));
+        blocks.extend(paragraphs("Doubts", &outcome.doubts().collect::<Vec<_>>()));
         blocks.extend(outcome.warning_paragraphs());
         blocks.extend(claims(outcome.claims.iter()));
         blocks.extend(outcome.blocks.iter().cloned());

@@ -17,6 +17,16 @@ pub struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
+    /// Of an elastic material that remembers nothing yet.
+    pub fn elastic(law: &'a dyn HyperelasticLaw, thickness: f64) -> Self {
+        Self {
+            law,
+            thickness,
+            past: &[],
+            viscous: None,
+        }
+    }
+
     /// The same after some displacement fields.
     #[must_use]
     pub fn after(self, past: &'a [&'a [f64]]) -> Self {

@@ -52,16 +52,6 @@ pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> O
 /// The remedy.
 pub const LARGE_STRAINS: &str = "Take a law for large strains, such as `neo-hooke` with `[volume]`";
 
-/// The warning about the states of a model, each at a named load: about the first one that is out of range.
-pub fn warning<'a>(
-    law: &dyn HyperelasticLaw,
-    mesh: &Mesh,
-    mut states: impl Iterator<Item = (String, &'a [f64])>,
-) -> Option<String> {
-    let (load, reason) = states.find_map(|(load, u)| Some((load, reason(law, mesh, u)?)))?;
-    Some(format!("{reason} at {load}. {LARGE_STRAINS}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

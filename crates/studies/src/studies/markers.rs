@@ -18,7 +18,7 @@ use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on,
 use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw};
 use crate::mesh::Mesh;
-use crate::results::locking;
+use crate::results::{Finding, locking};
 
 mod alike;
 mod area;
@@ -49,7 +49,7 @@ pub mod written;
 pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
-use finding::{Finding, once};
+use finding::once;
 pub use machine::{ForceColumn, FrameForces};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
@@ -84,7 +84,7 @@ pub struct MarkerStudy {
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
     /// Doubts about the figures of all frames.
-    pub doubts: Vec<Diagnostic>,
+    pub doubts: Vec<Finding>,
     /// The mistake that the files seem to hold, from which all other doubts follow.
     pub mistake: Option<Diagnostic>,
     /// Where only the markers show the specimen's edge: how far outside of them it may lie, in mm. The intervals of forces include this.
@@ -107,6 +107,18 @@ fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
     let message = format!("{reason}: stresses are too large");
     let hint = "use quadratic cells, such as `--cells triangle6`";
     Some(Diagnostic::warning("", message).hint(hint))
+}
+
+/// The doubts about an outline and about a thickness.
+fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Finding> {
+    let outline = outline
+        .into_iter()
+        .map(|doubt| ("uncertain-outline", doubt));
+    let all = outline.chain(thickness.map(|doubt| ("thickness", doubt)));
+    let doubt = |(rule, doubt): (_, Diagnostic)| {
+        Finding::doubt(rule, (doubt.message, doubt.hint.unwrap_or_default()))
+    };
+    all.map(doubt).collect()
 }
 
 impl MarkerStudy {
@@ -136,7 +148,7 @@ impl MarkerStudy {
             cell_size,
             origin,
             mut warnings,
-            mut doubts,
+            doubts,
             unknown_gap,
         } = mesh(&request, &field)?;
         name_parts(&mut mesh, request.conditions.edge_names());
@@ -162,7 +174,7 @@ impl MarkerStudy {
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
         warnings.extend(of_material(&card, &mesh));
-        doubts.extend(check_thickness(&mesh, request.thickness));
+        let thickness = check_thickness(&mesh, request.thickness);
         Ok(Self {
             card,
             thickness: request.thickness,
@@ -175,7 +187,7 @@ impl MarkerStudy {
             conditions: request.conditions,
             regressed,
             warnings: [field.warnings, warnings].concat(),
-            doubts,
+            doubts: of_reading(doubts, thickness),
             mistake: None,
             unknown_gap,
         })
@@ -261,15 +273,15 @@ impl MarkerStudy {
             faults(fault).map(move |(message, remedy)| {
                 let named = format!("frame {number}: ");
                 let message = message.strip_prefix(&named).unwrap_or(&message);
-                Finding {
-                    frame: number,
-                    message: format!("{message}; the frame is left out"),
-                    remedy,
-                }
+                (
+                    number,
+                    (format!("{message}; the frame is left out"), remedy),
+                )
             })
         });
-        let faults = faults.collect();
-        self.doubts.extend(once(&all, faults));
+        let faults: Vec<_> = faults.collect();
+        let doubts = once(&all, "frame-left-out", faults.into_iter());
+        self.doubts.extend(doubts);
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use crate::corrector::Multipliers;
 use crate::error::Error;
 use crate::problem::Solution;
+use crate::results::Finding;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 
 /// A model of a plate or a specimen.
@@ -41,7 +42,7 @@ pub struct OneModel {
     /// Why it has no equilibrium at the others.
     pub ends: Vec<Error>,
     /// What deserves attention in the states.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Finding>,
 }
 
 impl ModelKind {

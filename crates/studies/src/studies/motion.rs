@@ -11,7 +11,7 @@ use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::results::Outcome;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
-use crate::studies::{Computation, Kind, Loaded, Progress, SOUND};
+use crate::studies::{Computation, Kind, Loaded, ModelKind, Progress, SOUND};
 use crate::units::number;
 
 mod between;
@@ -23,11 +23,9 @@ mod headline;
 mod outcome;
 mod problem;
 mod read;
-mod shown;
 mod solution;
 mod statement;
 mod timing;
-mod warnings;
 
 use deviations::OwnError;
 pub use problem::MovingSheet;
@@ -67,11 +65,7 @@ pub fn compute(sheet: &MovingSheet, progress: Progress) -> Result<Outcome, Error
     let elements = sheet.elements_moved(&mesh, sheet.time, progress, FINITE_ELEMENTS.name)?;
     let own_error = OwnError::of(sheet, &elements, progress);
     let correction = sheet.correct(&springs, progress)?;
-    let motions = Motions {
-        springs,
-        elements,
-        correction,
-    };
+    let motions = Motions::new(sheet, springs, elements, correction);
     Ok(outcome::outcome(sheet, &motions, own_error.as_ref()))
 }
 
@@ -90,7 +84,7 @@ impl MovingSheet {
         let model = model.named(name);
         let model = model.describing(|element| springs.describe_element(element));
         let report = |now: f64| progress.tell(&self.at(MASS_SPRING.name, now));
-        self.moved(MASS_SPRING, &model, dashpots, self.time, &report)
+        self.moved(ModelKind::MassSpring, &model, dashpots, self.time, &report)
     }
 
     /// The motion of the study's finite elements on a mesh; `what` is what progress calls it.
@@ -107,7 +101,7 @@ impl MovingSheet {
         let model = self.specimen.on(mesh, &energy)?;
         let model = model.named(format!("finite elements ({})", mesh.describe()));
         let report = |now: f64| progress.tell(&self.at(what, now));
-        self.moved(FINITE_ELEMENTS, &model, sheet, time, &report)
+        self.moved(ModelKind::FiniteElement, &model, sheet, time, &report)
     }
 
     /// The progress of a computation.

@@ -14,19 +14,17 @@ use crate::studies::{Computation, Kind, Loaded, ModelKind, PreparedStudy, Progre
 
 pub mod along;
 mod files;
-mod forces;
+pub(super) mod forces;
 mod headline;
 mod history;
 mod outcome;
-mod problem;
+pub(super) mod problem;
 mod read;
-mod results;
+pub(super) mod results;
 mod statement;
-mod warnings;
 mod work;
 
 pub use along::Along;
-pub use headline::gauge;
 pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };
@@ -141,9 +139,9 @@ pub fn fields(
     let mut ends = Vec::new();
     let models = solved(&specimen, &mut ends, progress)?;
     let field = |kind: ModelKind| {
-        let model = models.of(kind);
-        let displacement = model.solution.displacement(last)?.to_vec();
-        let mesh = model.solution.mesh.clone();
+        let solution = models.of(kind);
+        let displacement = solution.displacement(last)?.to_vec();
+        let mesh = solution.mesh.clone();
         let (mesh, displacement) = match specimen.grids() {
             // Between its nodes the corrected field is what its differences take it for.
             Some(grids) if kind == ModelKind::Corrected => {
@@ -154,7 +152,7 @@ pub fn fields(
             _ => (mesh, displacement),
         };
         Some(ModelField {
-            model: model.style.name,
+            model: kind.style().name,
             mesh,
             displacement,
         })

@@ -25,10 +25,8 @@ pub(super) fn render(
     draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
 ) -> DrawResult<Vec<u8>> {
     if format == PictureFormat::Png {
-        return Ok(encode(
-            &rasterise(size, look, look.pixels(), paint, draw)?,
-            look,
-        )?);
+        let image = rasterise(size, look, look.pixels(), paint, draw)?;
+        return Ok(encode(&image, Some(look))?);
     }
     let mut image = blank(size, look, look.pixels())?;
     let before = image.clone();

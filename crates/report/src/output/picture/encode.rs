@@ -38,20 +38,11 @@ pub(super) fn encoder<'a>(
     encoder
 }
 
-/// A picture as a PNG.
-pub(super) fn encode_plain(picture: &Pixmap) -> Result<Vec<u8>, EncodingError> {
-    let mut bytes = Vec::new();
-    let mut writer = encoder(&mut bytes, picture).write_header()?;
-    writer.write_image_data(&colours(picture, whole(picture)))?;
-    writer.finish()?;
-    Ok(bytes)
-}
-
-/// A picture as a PNG, which says how large it is on paper where it is made for paper.
-pub(super) fn encode(picture: &Pixmap, look: Look) -> Result<Vec<u8>, EncodingError> {
+/// A picture as a PNG, which says how large it is on paper where its look is one for paper.
+pub(super) fn encode(picture: &Pixmap, look: Option<Look>) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = encoder(&mut bytes, picture);
-    if look.is_printed() {
+    if let Some(look) = look.filter(|look| look.is_printed()) {
         let on_a_metre = (f64::from(look.pixels()) * 1000.0 / MILLIMETRES).round() as u32;
         encoder.set_pixel_dims(Some(PixelDimensions {
             xppu: on_a_metre,

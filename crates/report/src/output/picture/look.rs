@@ -272,7 +272,7 @@ pub(super) fn short(words: &str, size: u32, width: f64) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::picture::vision::{Vision, difference, lightness};
+    use crate::output::picture::tests::vision::{Vision, difference, lightness};
     use crate::results::PictureFormat;
 
     fn look(palette: Palette) -> Look {

@@ -1,3 +1,5 @@
+pub mod vision;
+
 use super::*;
 use crate::mesh::{CellShape, Mesh};
 use crate::results::{Animation, FieldFigure, Palette, Panel, PictureWidth};

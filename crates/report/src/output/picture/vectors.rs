@@ -8,7 +8,7 @@ use plotters::style::RGBColor;
 use resvg::tiny_skia::Pixmap;
 
 use super::design::{DrawResult, FINE};
-use super::encode::encode_plain;
+use super::encode::encode;
 use super::look::MILLIMETRES;
 use super::paint::Lines;
 
@@ -37,7 +37,7 @@ impl Vectors {
             hexadecimal(self.paper)
         );
         if let Some(image) = &self.image {
-            let png = STANDARD.encode(encode_plain(image)?);
+            let png = STANDARD.encode(encode(image, None)?);
             writeln!(
                 svg,
                 "<image width=\"{width}\" height=\"{height}\" xlink:href=\"data:image/png;base64,{png}\"/>"

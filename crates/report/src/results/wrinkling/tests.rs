@@ -5,7 +5,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::material::NeoHooke;
 use crate::mesh::CellShape;
 use crate::problem::ClampedPlate;
-use crate::solve::NewtonSettings;
+use gelbench_mechanics::solve::NewtonSettings;
 
 const LAW: NeoHooke = NeoHooke { c10: 0.05 };
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::finding::none_of;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 
@@ -62,11 +63,7 @@ pub fn name(mesh: &mut Mesh, areas: &[(String, Area)]) -> Result<(), Error> {
             mesh.name_nodes(name, &nodes);
         }
     }
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(Error::Input(faults))
-    }
+    none_of(faults)
 }
 
 #[cfg(test)]

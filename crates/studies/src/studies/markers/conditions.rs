@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::area::Area;
+use super::finding::none_of;
 use super::machine::{self, ForceColumn, FrameForces};
 use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
@@ -123,11 +124,7 @@ impl Conditions {
                 faults.push(fault.hint("name it once"));
             }
         }
-        if faults.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::Input(faults))
-        }
+        none_of(faults)
     }
 
     /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.

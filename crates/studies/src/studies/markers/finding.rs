@@ -1,54 +1,57 @@
 //! A finding on frames, reported once with the numbers of the frames that it is about.
 
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, Error};
+use crate::results::{Finding, Found};
 
-/// A finding on one frame.
-pub struct Finding {
-    /// The frame's number.
-    pub frame: usize,
-    /// The finding with its figures.
-    pub message: String,
-    /// What to do: the same for all findings of one kind; empty where there is nothing.
-    pub remedy: String,
+/// Whether nothing is wrong.
+///
+/// # Errors
+/// [`Error::Input`] with all faults, if there are any.
+pub fn none_of(faults: Vec<Diagnostic>) -> Result<(), Error> {
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Input(faults))
+    }
 }
 
-/// One warning for each kind of findings, in the order of their first ones; of messages that differ in their figures the last stands for all.
-/// `all` are the numbers of the frames in their order.
-pub fn once(all: &[usize], findings: Vec<Finding>) -> Vec<Diagnostic> {
-    let mut kinds: Vec<Vec<Finding>> = Vec::new();
+/// A finding on one frame: its number, what was found, and what to do, which is the same for all findings of one kind.
+pub type OfFrame = (usize, Found);
+
+/// One doubt of a rule for each kind of findings, in the order of their first ones; of messages that differ in their figures the last stands for
+/// all. `all` are the numbers of the frames in their order.
+pub fn once(
+    all: &[usize],
+    rule: &'static str,
+    findings: impl Iterator<Item = OfFrame>,
+) -> Vec<Finding> {
+    let mut kinds: Vec<Vec<OfFrame>> = Vec::new();
     for finding in findings {
-        match kinds
-            .iter_mut()
-            .find(|kind| kind[0].remedy == finding.remedy)
-        {
+        match kinds.iter_mut().find(|kind| kind[0].1.1 == finding.1.1) {
             Some(kind) => kind.push(finding),
             None => kinds.push(vec![finding]),
         }
     }
-    kinds.iter().filter_map(|kind| warning(all, kind)).collect()
+    let doubts = kinds.iter().filter_map(|kind| together(all, kind));
+    doubts.map(|found| Finding::doubt(rule, found)).collect()
 }
 
-fn warning(all: &[usize], kind: &[Finding]) -> Option<Diagnostic> {
-    let last = kind.last()?;
-    let numbers: Vec<usize> = kind.iter().map(|one| one.frame).collect();
-    let differs = kind.iter().any(|one| one.message != last.message);
-    let example = differs.then(|| format!(", as frame {}", last.frame));
+fn together(all: &[usize], kind: &[OfFrame]) -> Option<Found> {
+    let (frame, (message, remedy)) = kind.last()?;
+    let numbers: Vec<usize> = kind.iter().map(|(frame, _)| *frame).collect();
+    let differs = kind.iter().any(|(_, (other, _))| other != message);
+    let example = differs.then(|| format!(", as frame {frame}"));
+    let frames = if numbers.len() == 1 {
+        "frame"
+    } else {
+        "frames"
+    };
     let message = format!(
-        "{} {}{}: {}",
-        if numbers.len() == 1 {
-            "frame"
-        } else {
-            "frames"
-        },
+        "{frames} {}{}: {message}",
         runs(all, &numbers),
-        example.unwrap_or_default(),
-        last.message
+        example.unwrap_or_default()
     );
-    let warning = Diagnostic::warning("", message);
-    Some(match last.remedy.as_str() {
-        "" => warning,
-        remedy => warning.hint(remedy),
-    })
+    Some((message, remedy.clone()))
 }
 
 /// Some of all numbers, those that follow each other in one: `4`, `4, 9`, `4 to 34`.
@@ -70,22 +73,18 @@ fn runs(all: &[usize], numbers: &[usize]) -> String {
 mod tests {
     use super::*;
 
-    fn finding(frame: usize, message: &str, remedy: &str) -> Finding {
-        Finding {
-            frame,
-            message: message.to_owned(),
-            remedy: remedy.to_owned(),
-        }
+    fn finding(frame: usize, message: &str, remedy: &str) -> OfFrame {
+        (frame, (message.to_owned(), remedy.to_owned()))
     }
 
     #[test]
     fn fifty_equal_frames_are_one_line() {
         let all: Vec<usize> = (1..=60).collect();
         let equal = (1..=50).map(|frame| finding(frame, "the noise is large", "check it"));
-        let warnings = once(&all, equal.collect());
+        let warnings = once(&all, "noise", equal);
         assert_eq!(warnings.len(), 1);
         assert_eq!(warnings[0].message, "frames 1 to 50: the noise is large");
-        assert_eq!(warnings[0].hint.as_deref(), Some("check it"));
+        assert_eq!(warnings[0].remedy, "check it");
     }
 
     #[test]
@@ -95,12 +94,12 @@ mod tests {
             finding(30, "p = 1e-7", "a"),
             finding(20, "lost", ""),
         ];
-        let warnings = once(&[10, 20, 30, 40], messages);
+        let warnings = once(&[10, 20, 30, 40], "lost", messages.into_iter());
         let messages: Vec<&str> = warnings.iter().map(|one| one.message.as_str()).collect();
         assert_eq!(
             messages,
             ["frames 10, 30, as frame 30: p = 1e-7", "frame 20: lost"]
         );
-        assert_eq!(warnings[1].hint, None);
+        assert!(warnings[1].remedy.is_empty());
     }
 }

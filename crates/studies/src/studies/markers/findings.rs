@@ -3,53 +3,57 @@
 //! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
-use super::finding::{Finding, once};
+use super::finding::once;
 use super::gross_errors::has_many;
 use super::quantities::{outliers, used};
 use super::verdict::reasons;
-use crate::error::Diagnostic;
 use crate::estimation::{Answer, FieldEstimate, ForceCheck, RegressedLaw, Robust};
-use crate::results::{BESIDE_CORNERS, Stretches, small_strain};
+use crate::results::{BESIDE_CORNERS, Finding, Stretches, small_strain};
 use crate::statistics::small_probability;
 use crate::units::{decimals, number};
 
-/// A message with its figures, and what to do, which is the same for all frames.
+/// What a rule has found in a frame, with its figures, and what to do, which is the same for all frames.
 type Doubt = (String, &'static str);
 
-/// The rules that each frame is checked by, the likeliest cause of others first.
-const RULES: [fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>; 9] = [
-    unknown_edge,
-    |_, estimate| contradicted_edges(estimate),
-    |_, estimate| contradicted_force(estimate),
-    |_, estimate| not_explained(estimate),
-    no_measurement,
-    |_, estimate| many_outliers(estimate),
-    |_, estimate| stated_noise(estimate),
-    large_strains,
-    beyond_card,
+/// The rules by their names that each frame is checked by, the likeliest cause of others first.
+const RULES: [(&str, fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>); 9] = [
+    ("unknown-edge", unknown_edge),
+    ("contradicted-edges", |_, estimate| {
+        contradicted_edges(estimate)
+    }),
+    ("contradicted-force", |_, estimate| {
+        contradicted_force(estimate)
+    }),
+    (NOT_EXPLAINED, |_, estimate| not_explained(estimate)),
+    ("no-measurement", no_measurement),
+    ("many-outliers", |_, estimate| many_outliers(estimate)),
+    ("stated-noise", |_, estimate| stated_noise(estimate)),
+    ("large-strains", large_strains),
+    ("beyond-card", beyond_card),
 ];
+
+/// The rules whose findings a terminal tells elsewhere: the verdict, and a mistake in the files.
+pub const NOT_EXPLAINED: &str = "not-explained";
+pub const MISTAKE: &str = "likely-mistake";
 
 impl MarkerStudy {
     /// What makes the figures doubtful, the likeliest cause first: a mistake in the file, or else what concerns all frames, and each doubt
     /// of single ones once.
-    pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
-        if let Some(mistake) = &self.mistake {
+    pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Finding> {
+        if let Some(mistake) = self.mistake.clone() {
             // All else follows from a field that nobody measured.
-            return [std::slice::from_ref(mistake), &self.doubts].concat();
+            let mistake = (mistake.message, mistake.hint.unwrap_or_default());
+            return [&[Finding::doubt(MISTAKE, mistake)], &self.doubts[..]].concat();
         }
-        let findings = RULES.iter().flat_map(|rule| {
-            let frames = self.frames_with(estimates);
-            frames.filter_map(move |(frame, estimate)| {
+        let numbers = self.frame_numbers();
+        let findings = RULES.iter().flat_map(|(name, rule)| {
+            let found = self.frames_with(estimates).filter_map(|(frame, estimate)| {
                 let (message, remedy) = rule(self, estimate)?;
-                Some(Finding {
-                    frame: frame.number,
-                    message,
-                    remedy: remedy.to_owned(),
-                })
-            })
+                Some((frame.number, (message, remedy.to_owned())))
+            });
+            once(&numbers, name, found)
         });
-        let findings = once(&self.frame_numbers(), findings.collect());
-        [&self.doubts[..], &findings].concat()
+        self.doubts.iter().cloned().chain(findings).collect()
     }
 
     /// The numbers of the frames in their order.
@@ -64,16 +68,11 @@ pub fn remarks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> 
     let numbers = study.frame_numbers();
     let rules = [gross_errors, uneven_noise];
     let findings = rules.iter().flat_map(|rule| {
-        let found = study
-            .frames_with(estimates)
-            .filter_map(|(frame, estimate)| {
-                Some(Finding {
-                    frame: frame.number,
-                    message: rule(study, estimate)?,
-                    remedy: String::new(),
-                })
-            });
-        once(&numbers, found.collect())
+        let frames = study.frames_with(estimates);
+        let found = frames.filter_map(|(frame, estimate)| {
+            Some((frame.number, (rule(study, estimate)?, String::new())))
+        });
+        once(&numbers, "", found)
     });
     findings.map(|finding| finding.message).collect()
 }

@@ -6,7 +6,7 @@ use super::quantities::{largest_correction, largest_error, outliers, residual_rm
 use super::verdict;
 use crate::estimation::{EdgeCondition, EdgeForce, FieldEstimate, Robust};
 use crate::markers::{Frame, Understood};
-use crate::results::Step;
+use crate::results::{Step, object};
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 
@@ -25,11 +25,6 @@ pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, 
         "brought_onto_another_mesh": field.coarse.is_some(),
         "edge_may_lie_farther_out_by_mm": field.unknown_gap,
     }))
-}
-
-/// The entries of an object.
-pub fn object(value: Value) -> Map<String, Value> {
-    value.as_object().cloned().unwrap_or_default()
 }
 
 /// How the files were understood.

@@ -1,12 +1,11 @@
 //! The report of a correction.
 
-use super::findings::remarks;
+use super::findings::{MISTAKE, NOT_EXPLAINED, remarks};
 use super::forces::{scale_line, scale_paragraph};
 use super::quantities::{largest_correction, largest_error, outliers, residual_rms, used};
 use super::{MarkerStudy, reading, refined, verdict};
-use crate::error::Diagnostic;
-use crate::estimation::{Answer, EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::results::Block;
+use crate::estimation::{EdgeCondition, FieldEstimate};
+use crate::results::{Block, Finding, Table};
 use crate::statistics::Estimate;
 use crate::units::decimals;
 
@@ -14,7 +13,7 @@ use crate::units::decimals;
 const SHOWN: usize = 12;
 
 /// The figures of the frames with their doubts, for the terminal.
-pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagnostic]) -> String {
+pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Finding]) -> String {
     let mut lines = vec![format!(
         "{}; {}; mesh {}: {}",
         reading::short(&study.understood),
@@ -32,13 +31,10 @@ pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Diagn
         ));
     }
     // The verdict has lines of its own, and a mistake stands before all figures.
-    let verdict = Answer::NotExplained.words();
-    for doubt in doubts
-        .iter()
-        .filter(|doubt| !doubt.message.contains(verdict) && study.mistake.as_ref() != Some(doubt))
-    {
+    let told_elsewhere = |doubt: &&Finding| [NOT_EXPLAINED, MISTAKE].contains(&doubt.rule);
+    for doubt in doubts.iter().filter(|doubt| !told_elsewhere(doubt)) {
         lines.push(format!("doubtful: {}", doubt.message));
-        lines.extend(doubt.hint.iter().map(|hint| format!("  {hint}")));
+        lines.extend((!doubt.remedy.is_empty()).then(|| format!("  {}", doubt.remedy)));
     }
     lines.extend(verdict::lines(study, estimates));
     lines.join("\n") + "\n"
@@ -154,82 +150,59 @@ const TRANSFERRED: &str = "The given field is assumed to be free of noise: edges
 fn frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> [Block; 2] {
     let frames = study.frames_with(estimates);
     if study.coarse.is_some() {
-        let head = [
-            "frame",
-            "given nodes",
-            "correction, root mean square [mm]",
-            "largest [mm]",
-        ];
-        let rows = frames.map(|(frame, estimate)| {
-            vec![
-                frame.number.to_string(),
-                used(estimate).to_string(),
-                decimals(residual_rms(estimate), 5),
-                decimals(largest_correction(estimate), 5),
-            ]
-        });
-        return [Block::table(&head, rows), Block::paragraph(TRANSFERRED)];
+        let table = Table::of(frames)
+            .column("frame", |(frame, _)| frame.number.to_string())
+            .column("given nodes", |(_, own)| used(own).to_string())
+            .column("correction, root mean square [mm]", |(_, own)| {
+                decimals(residual_rms(own), 5)
+            })
+            .column("largest [mm]", |(_, own)| {
+                decimals(largest_correction(own), 5)
+            });
+        return [table.block(), Block::paragraph(TRANSFERRED)];
     }
-    let head = [
-        "frame",
-        "markers",
-        "outliers",
-        "noise [mm]",
-        "noise is",
-        "residual [mm]",
-        "effective parameters",
-        "largest standard error [mm]",
-        "steps",
-    ];
-    let rows = frames.map(|(frame, estimate)| {
-        let noise = match estimate.noise_ratio {
-            _ if estimate.known_noise => "given",
-            Some(_) => "given, scaled",
-            None => "estimated",
-        };
-        let error = estimate
-            .has_intervals()
-            .then(|| decimals(largest_error(estimate), 5));
-        vec![
-            frame.number.to_string(),
-            used(estimate).to_string(),
-            outliers(estimate).to_string(),
-            decimals(estimate.noise, 5),
-            noise.to_owned(),
-            decimals(residual_rms(estimate), 5),
-            format!("{:.1}", estimate.effective_parameters),
-            error.unwrap_or_else(|| "no interval".to_owned()),
-            estimate.steps.to_string(),
-        ]
-    });
-    [Block::table(&head, rows), Block::paragraph(EXPLANATION)]
+    let noise = |own: &FieldEstimate| match own.noise_ratio {
+        _ if own.known_noise => "given",
+        Some(_) => "given, scaled",
+        None => "estimated",
+    };
+    let table = Table::of(frames)
+        .column("frame", |(frame, _)| frame.number.to_string())
+        .column("markers", |(_, own)| used(own).to_string())
+        .column("outliers", |(_, own)| outliers(own).to_string())
+        .column("noise [mm]", |(_, own)| decimals(own.noise, 5))
+        .column("noise is", |(_, own)| noise(own).to_owned())
+        .column("residual [mm]", |(_, own)| decimals(residual_rms(own), 5))
+        .column("effective parameters", |(_, own)| {
+            format!("{:.1}", own.effective_parameters)
+        })
+        .column("largest standard error [mm]", |(_, own)| {
+            let error = own.has_intervals().then(|| largest_error(own));
+            error.map_or("no interval".to_owned(), |error| decimals(error, 5))
+        })
+        .column("steps", |(_, own)| own.steps.to_string());
+    [table.block(), Block::paragraph(EXPLANATION)]
 }
 
 /// The parameters of the law that were estimated with the field.
 pub fn parameters(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let rows = study.frames_with(estimates).flat_map(|(frame, estimate)| {
-        let explained = estimate.has_intervals();
-        estimate.parameters.iter().map(move |(key, unit, value)| {
-            let error = explained.then(|| decimals(value.standard_error, 6));
-            vec![
-                frame.number.to_string(),
-                key.to_string(),
-                unit.to_string(),
-                decimals(value.value, 6),
-                error.unwrap_or_default(),
-                interval(value, explained, ""),
-            ]
-        })
+        let parameters = estimate.parameters.iter();
+        parameters.map(move |parameter| (frame.number, estimate.has_intervals(), parameter))
     });
-    let head = [
-        "frame",
-        "parameter",
-        "unit",
-        "value",
-        "standard error",
-        "95 % interval",
-    ];
-    Block::table(&head, rows)
+    Table::of(rows)
+        .column("frame", |(frame, ..)| frame.to_string())
+        .column("parameter", |(.., (key, ..))| key.to_string())
+        .column("unit", |(.., (_, unit, _))| unit.to_string())
+        .column("value", |(.., (.., value))| decimals(value.value, 6))
+        .column("standard error", |(_, explained, (.., value))| {
+            let error = explained.then(|| decimals(value.standard_error, 6));
+            error.unwrap_or_default()
+        })
+        .column("95 % interval", |(_, explained, (.., value))| {
+            interval(value, *explained, "")
+        })
+        .block()
 }
 
 fn condition(condition: &EdgeCondition, transferred: bool) -> String {
@@ -252,47 +225,41 @@ fn condition(condition: &EdgeCondition, transferred: bool) -> String {
 }
 
 fn edges(study: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
-    let row = |outcome: &EdgeOutcome| {
-        let probability = outcome.probability.map(|p| format!("{p:.3}"));
-        let length = (outcome.length > 0.0).then(|| format!("{:.3}", outcome.length));
-        vec![
-            outcome.edge.clone(),
-            length.unwrap_or_else(|| "on the sheet".to_owned()),
-            condition(&outcome.condition, study.coarse.is_some()),
-            probability.unwrap_or_default(),
-        ]
-    };
-    let conditions = last.edges.iter().map(row);
-    let head = [
-        "edge",
-        "length [mm]",
-        "condition",
-        "probability of so large a misfit if the edge is free",
-    ];
-    if study.coarse.is_some() {
-        let rows = conditions.map(|row| row[..3].to_vec());
-        return vec![Block::table(&head[..3], rows)];
+    let is_transferred = study.coarse.is_some();
+    let conditions = Table::of(&last.edges)
+        .column("edge", |edge| edge.edge.clone())
+        .column("length [mm]", |edge| match edge.length {
+            length if length > 0.0 => format!("{length:.3}"),
+            _ => "on the sheet".to_owned(),
+        })
+        .column("condition", |edge| {
+            condition(&edge.condition, is_transferred)
+        })
+        .column_if(
+            !is_transferred,
+            "probability of so large a misfit if the edge is free",
+            |edge| {
+                edge.probability
+                    .map_or(String::new(), |p| format!("{p:.3}"))
+            },
+        );
+    let mut blocks = vec![conditions.block()];
+    if is_transferred {
+        return blocks;
     }
-    let mut blocks = vec![
-        Block::table(&head, conditions),
-        Block::Paragraph(format!("Data and physics: {}.", last.rule)),
-    ];
-    if !last.smoothing.is_empty() {
-        let head = [
-            "edge",
-            "axis",
-            "weight λ [1/mm²]",
-            "effective parameters beyond a straight line",
-        ];
-        let rows = last.smoothing.iter().map(|smoothing| {
-            vec![
-                smoothing.edge.clone(),
-                ["x", "y"][smoothing.axis].to_owned(),
-                format!("{:.3e}", smoothing.weight),
-                format!("{:.2}", smoothing.freedom),
-            ]
+    blocks.push(Block::Paragraph(format!(
+        "Data and physics: {}.",
+        last.rule
+    )));
+    let smoothing = Table::of(&last.smoothing)
+        .column("edge", |smoothing| smoothing.edge.clone())
+        .column("axis", |smoothing| ["x", "y"][smoothing.axis].to_owned())
+        .column("weight λ [1/mm²]", |smoothing| {
+            format!("{:.3e}", smoothing.weight)
+        })
+        .column("effective parameters beyond a straight line", |smoothing| {
+            format!("{:.2}", smoothing.freedom)
         });
-        blocks.push(Block::table(&head, rows));
-    }
+    blocks.extend((!smoothing.is_empty()).then(|| smoothing.block()));
     blocks
 }

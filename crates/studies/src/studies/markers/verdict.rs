@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::MarkerStudy;
 use crate::estimation::{Answer, FieldEstimate, NoiseCorrelation, Reason, Trial, Verdict};
 use crate::markers::Frame;
-use crate::results::Block;
+use crate::results::{Block, Table};
 use crate::statistics::extremes;
 use crate::units::decimals;
 
@@ -158,34 +158,31 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         .iter()
         .any(|one| one.verdict.correlation.is_some());
     let has_reasons = estimates.iter().any(|one| !one.verdict.reasons.is_empty());
-    let rows = study.frames_with(estimates).map(|(frame, estimate)| {
-        let verdict = &estimate.verdict;
-        let of = |words: fn(NoiseCorrelation) -> String| {
-            verdict.correlation.map_or(String::new(), words)
-        };
-        let mut row = vec![frame.number.to_string(), verdict.answer.words().to_owned()];
-        if is_correlated {
-            row.extend([
-                of(|one| decimals(one.length, 4)),
-                of(|one| format!("{:.2}", one.share)),
-                of(|one| format!("{:.1}", one.independent)),
-            ]);
-        }
-        row.extend(has_reasons.then(|| reasons(verdict).join("; ")));
-        row
-    });
-    let mut head = vec!["frame", "verdict"];
-    if is_correlated {
-        head.extend([
-            "correlation length [mm]",
+    let of = |estimate: &FieldEstimate, words: fn(NoiseCorrelation) -> String| {
+        estimate.verdict.correlation.map_or(String::new(), words)
+    };
+    let table = Table::of(study.frames_with(estimates))
+        .column("frame", |(frame, _)| frame.number.to_string())
+        .column("verdict", |(_, own)| own.verdict.answer.words().to_owned())
+        .column_if(is_correlated, "correlation length [mm]", |(_, own)| {
+            of(own, |one| decimals(one.length, 4))
+        })
+        .column_if(
+            is_correlated,
             "correlated share of the variance",
+            |(_, own)| of(own, |one| format!("{:.2}", one.share)),
+        )
+        .column_if(
+            is_correlated,
             "equivalent independent markers",
-        ]);
-    }
-    head.extend(has_reasons.then_some("reason"));
+            |(_, own)| of(own, |one| format!("{:.1}", one.independent)),
+        )
+        .column_if(has_reasons, "reason", |(_, own)| {
+            reasons(&own.verdict).join("; ")
+        });
     let mut blocks = vec![
         Block::heading("Verdict"),
-        Block::table(&head, rows),
+        table.block(),
         Block::paragraph(EXPLANATION),
     ];
     if let Some((frame, estimate)) = last_with(study, estimates, Answer::NotExplained) {
@@ -194,15 +191,11 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
              noise alone reducing the misfit by as much.",
             frame.number
         )));
-        let rows = estimate.verdict.trials.iter().map(|trial| {
-            vec![
-                trial.alternative.words(),
-                residual(trial).unwrap_or_default(),
-                format!("{:.1e}", trial.probability),
-            ]
-        });
-        let head = ["alternative", "residual [mm]", "probability"];
-        blocks.push(Block::table(&head, rows));
+        let trials = Table::of(&estimate.verdict.trials)
+            .column("alternative", |trial| trial.alternative.words())
+            .column("residual [mm]", |trial| residual(trial).unwrap_or_default())
+            .column("probability", |trial| format!("{:.1e}", trial.probability));
+        blocks.push(trials.block());
         blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));
     }
     blocks

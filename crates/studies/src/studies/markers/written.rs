@@ -34,7 +34,8 @@ pub fn results(
     text: String,
     seconds: f64,
 ) -> Results {
-    results_with(&Pictures::default(), field, estimates, name, text, seconds)
+    let pictures = Pictures::default();
+    results_with(&pictures, field, estimates, name, text, seconds)
 }
 
 /// The same, with the pictures that are wanted.
@@ -66,12 +67,12 @@ pub fn results_with(
             "forces.csv".to_owned(),
             Content::Text(tables::forces(field, estimates)),
         )],
-        doubts: doubts.iter().map(ToString::to_string).collect(),
         balance: estimates
             .iter()
             .map(|estimate| estimate.imbalance)
             .reduce(larger),
         summary: report::summary(field, estimates, &doubts),
+        findings: doubts,
         ..Outcome::default()
     };
     Results {
@@ -156,12 +157,7 @@ fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
 
 fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     let law = field.law(estimate);
-    let sheet = Sheet {
-        law: &*law,
-        thickness: field.thickness,
-        past: &[],
-        viscous: None,
-    };
+    let sheet = Sheet::elastic(&*law, field.thickness);
     let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
     let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([
         nodal("reaction_N", &estimate.reactions),

@@ -8,8 +8,7 @@ use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{EnergyBalance, History, Instant, Motion, SheetViscosity, Viscosity};
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
-use crate::results::models::CORRECTED;
-use crate::studies::Progress;
+use crate::studies::{ModelKind, Progress};
 use crate::units::number;
 
 /// The instants that are written, of displacements at all steps, of which `within` lie in an interval and each takes `step` s.
@@ -52,21 +51,6 @@ fn none(note: String) -> Correction {
         motion: None,
         note,
         end: None,
-    }
-}
-
-/// The corrected motion on its mesh, since a time.
-fn corrected(mesh: &Mesh, instants: Vec<Instant>, clock: Clock) -> ModelMotion {
-    ModelMotion {
-        style: CORRECTED,
-        mesh: mesh.clone(),
-        history: History {
-            instants,
-            ..History::default()
-        },
-        end: None,
-        frequency: None,
-        seconds: clock.elapsed().as_secs_f64(),
     }
 }
 
@@ -130,9 +114,27 @@ impl MovingSheet {
                  does not depend on the springs.",
                 found.iterations, found.factorisations
             ),
-            motion: (!instants.is_empty()).then(|| corrected(&mesh, instants, clock)),
+            motion: (!instants.is_empty()).then(|| self.corrected(&mesh, instants, clock)),
             end,
         })
+    }
+
+    /// The corrected motion on its mesh, since a time.
+    fn corrected(&self, mesh: &Mesh, instants: Vec<Instant>, clock: Clock) -> ModelMotion {
+        ModelMotion {
+            kind: ModelKind::Corrected,
+            mesh: mesh.clone(),
+            groups: self.measured_states(mesh, &instants),
+            history: History {
+                instants,
+                ..History::default()
+            },
+            end: None,
+            frequency: None,
+            seconds: clock.elapsed().as_secs_f64(),
+            viscous: Vec::new(),
+            expected: Vec::new(),
+        }
     }
 
     /// The mesh of the corrected motion: elements of the second degree on about as many nodes as the lattice, where a plate has even numbers of

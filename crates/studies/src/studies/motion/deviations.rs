@@ -6,6 +6,7 @@ use crate::compare::judgement::percent;
 use crate::dynamics::{History, Integrator, Step, TimeSettings, lumped_mass};
 use crate::finite_element::convergence::of_distances;
 use crate::mesh::Mesh;
+use crate::solve::vector::difference;
 use crate::studies::Progress;
 
 /// How far a motion on the lattice is from the finite elements'.
@@ -19,26 +20,27 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    /// Of a motion from another one, at the nodes of a lattice and the instants of both.
-    fn between(sheet: &MovingSheet, lattice: &Mesh, [model, expected]: [&ModelMotion; 2]) -> Self {
+    /// Of the motion of a model from the finite elements', at the nodes of a lattice and the instants of both.
+    fn between(
+        sheet: &MovingSheet,
+        lattice: &Mesh,
+        [model, elements]: [&ModelMotion; 2],
+        expected: &[Vec<f64>],
+    ) -> Self {
         let weights = lumped_mass(lattice, 1.0, 1.0);
         let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
-        let [fields, expected_fields] =
-            [model, expected].map(|model| displacements_on(lattice, model));
+        let fields = model.displacements_on(lattice);
         let errors: Vec<f64> = fields
             .iter()
-            .zip(&expected_fields)
-            .map(|(now, expected)| {
-                let both = now.iter().zip(expected);
-                square(&both.map(|(u, v)| u - v).collect::<Vec<_>>())
-            })
+            .zip(expected)
+            .map(|(now, expected)| square(&difference(now, expected)))
             .collect();
-        let sizes: Vec<f64> = expected_fields.iter().map(|u| square(u)).collect();
+        let sizes: Vec<f64> = expected.iter().map(|u| square(u)).collect();
         let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let displacement = errors.iter().map(|error| 100.0 * (error / largest).sqrt());
         let [all, size] =
             [&errors, &sizes[..errors.len()]].map(|values| values.iter().sum::<f64>());
-        let [forces, expected_forces] = [model, expected].map(|model| sheet.measured_forces(model));
+        let [forces, expected_forces] = [model, elements].map(|model| sheet.measured_forces(model));
         let pairs = forces
             .iter()
             .zip(&expected_forces)
@@ -55,23 +57,15 @@ impl Deviations {
 
     /// Of the springs and of the corrected motion, where there is one, from the finite elements at the nodes of the lattice.
     pub fn all(sheet: &MovingSheet, motions: &Motions) -> (Self, Option<Self>) {
+        let Motions {
+            springs, elements, ..
+        } = motions;
         let of = |model: &ModelMotion| {
-            Self::between(sheet, &motions.springs.mesh, [model, &motions.elements])
+            let models = [model, elements];
+            Self::between(sheet, &springs.mesh, models, &springs.expected)
         };
-        (
-            of(&motions.springs),
-            motions.correction.motion.as_ref().map(of),
-        )
+        (of(springs), motions.correction.motion.as_ref().map(of))
     }
-}
-
-/// A model's displacements at the nodes of a lattice at all instants.
-pub fn displacements_on(lattice: &Mesh, model: &ModelMotion) -> Vec<Vec<f64>> {
-    let onto_lattice = model.mesh.interpolation_on(lattice);
-    let instants = model.instants().iter();
-    instants
-        .map(|now| onto_lattice.apply(&now.displacement))
-        .collect()
 }
 
 /// The finite elements' own error over all instants, by cells twice and four times as large and by steps half as long.
@@ -104,7 +98,8 @@ impl OwnError {
         let quicker = sheet.halved_steps(&coarse.history);
         let quicker = quicker.and_then(|time| moved(1, time));
         let distance = |a: &ModelMotion, b: &ModelMotion| {
-            let found = Deviations::between(sheet, &elements.mesh, [a, b]);
+            let expected = b.displacements_on(&elements.mesh);
+            let found = Deviations::between(sheet, &elements.mesh, [a, b], &expected);
             [Some(found.whole), found.force]
         };
         let last = distance(&coarse, elements);

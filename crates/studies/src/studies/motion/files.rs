@@ -1,16 +1,16 @@
 //! Pictures, grids and tables of a motion.
 
 use super::between::{PARTS, with_cubics};
-use super::deviations::displacements_on;
 use super::problem::{MovingSheet, Probe};
-use super::shown::ShownSheet;
 use super::solution::{ModelMotion, Motions};
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::results::models::CORRECTED;
 use crate::results::{
-    Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
-    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, sheet_figures,
+    Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, GridSeries, Line, LineChart,
+    PALETTE, Panel, Series, Stroke, csv,
 };
+use crate::studies::ModelKind;
+use crate::studies::series::{ModelSeries, stress_figures};
 use crate::units::number;
 
 /// How a model's lines are drawn.
@@ -26,14 +26,11 @@ fn pair(upper: LineChart, lower: LineChart) -> Drawing {
     Drawing::Charts(vec![(upper, HEIGHT), (lower, HEIGHT)])
 }
 
-/// A line for each model through a pair of figures of all instants.
-fn lines(
-    models: [&ModelMotion; 2],
-    point: impl Fn(&ModelMotion, &Instant) -> [f64; 2],
-) -> Vec<Line> {
+/// A line for each model through pairs of figures of all instants.
+fn lines(models: [&ModelMotion; 2], points: impl Fn(&ModelMotion) -> Vec<[f64; 2]>) -> Vec<Line> {
     let line = |(model, stroke): (&ModelMotion, _)| {
-        let points = model.points(|now| point(model, now));
-        Line::new(model.style.name, points, model.style.colour, stroke)
+        let points = points(model);
+        Line::new(model.style().name, points, model.style().colour, stroke)
     };
     models.into_iter().zip(STROKES).map(line).collect()
 }
@@ -60,14 +57,14 @@ impl ModelMotion {
 }
 
 /// Displacement of the probes, phase of the first, energies, force of the measured group, and the sheets at the end.
-pub fn figures(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Vec<Figure> {
+pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -> Vec<Figure> {
     let Motions {
         springs, elements, ..
     } = motions;
     // The instants of all sheets.
-    let count = shown.iter().map(|own| own.motion.len()).min().unwrap_or(0);
+    let count = common_instants(series);
     let instants = &springs.history.times()[..count];
-    let sheets = displaced(shown, count.saturating_sub(1));
+    let sheets = displaced(series, count.saturating_sub(1));
     let until = brief(instants.last().copied().unwrap_or_default());
     let sheets = FieldFigure::new(format!("Sheets at t = {until} s"), ALONG, sheets);
     let mut figures = Vec::new();
@@ -90,7 +87,18 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> 
             sheets,
         ),
     ]);
-    figures.extend(stress_figures(sheet, instants, shown));
+    let pictures = &sheet.specimen.pictures;
+    figures.extend(
+        pictures
+            .shown
+            .instants(instants)
+            .into_iter()
+            .flat_map(|instant| {
+                let at = format!("t = {} s", brief(instants[instant]));
+                let file = |field: &str| format!("motion_{field}_{:05}.png", instant + 1);
+                stress_figures(&sheet.specimen, series, instant, &at, &file)
+            }),
+    );
     figures.extend(force_figure(sheet, motions));
     figures.extend(sheet.probes.first().map(|probe| {
         let caption = "Velocity over displacement of the first probe along x, springs above, finite elements below; \
@@ -109,21 +117,26 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
     }
     let along = ["x", "y"][axis];
     let (name, moved) = (sheet.measured_name(), sheet.moved_axis(&motions.elements));
-    let force = move |now: &Instant| {
-        let force = sheet.measured_force(&now.support_forces);
-        force.map_or(f64::NAN, |force| force[axis])
-    };
-    let group = &sheet.specimen.group;
-    let moved_by = |model: &ModelMotion, now: &Instant| model.displacement_of(group, now)[moved];
     let title = format!("Force of the {}", name.replace('`', ""));
     let chart_of = |label: &str, lines| chart(&title, label, "force [N]", lines);
     let models = motions.models();
-    let mut over_time = lines(models, |_, now| [now.time, force(now)]);
+    let in_time = |model: &ModelMotion| {
+        let instants = model.instants().iter().zip(&model.groups);
+        instants
+            .map(|(now, group)| [now.time, group.force[axis]])
+            .collect::<Vec<_>>()
+    };
+    let mut over_time = lines(models, in_time);
     over_time.extend(motions.correction.motion.as_ref().map(|corrected| {
-        let points = corrected.points(|now| [now.time, force(now)]);
+        let points = in_time(corrected);
         Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Points)
     }));
-    let over_displacement = lines(models, |model, now| [moved_by(model, now), force(now)]);
+    let over_displacement = lines(models, |model| {
+        let groups = model.groups.iter();
+        groups
+            .map(|group| [group.displacement[moved], group.force[axis]])
+            .collect()
+    });
     let label = format!("displacement along {} [mm]", ["x", "y"][moved]);
     let charts = pair(
         chart_of("time [s]", over_time),
@@ -131,27 +144,6 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
     );
     let caption = format!("Force of the {name} along {along} over its displacement and over time.");
     Some(Figure::new("motion_force.png", &caption, charts))
-}
-
-/// Stresses and strains at the instants that the study chooses, else at the last one.
-fn stress_figures(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> Vec<Figure> {
-    let pictures = &sheet.specimen.pictures;
-    let law = &*sheet.specimen.problem.law;
-    let at_instant = |instant: usize| {
-        let deformed = shown.iter().filter_map(|own| {
-            let [displacement, _] = *own.motion.get(instant)?;
-            Some(Deformed {
-                viscous: &own.viscous[instant].at_nodes,
-                ..Deformed::elastic(own.style.name, own.mesh, vec![displacement])
-            })
-        });
-        let deformed: Vec<_> = deformed.collect();
-        let at = format!("t = {} s", brief(times[instant]));
-        let file = |field: &str| format!("motion_{field}_{:05}.png", instant + 1);
-        sheet_figures(&pictures.fields, law, &deformed, &at, &file)
-    };
-    let instants = pictures.shown.instants(times);
-    instants.into_iter().flat_map(at_instant).collect()
 }
 
 /// A time without trailing zeros.
@@ -184,7 +176,7 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
             Stroke::Thin,
         )
     });
-    let title = format!("Phase of the probe {}, {}", probe.name, model.style.name);
+    let title = format!("Phase of the probe {}, {}", probe.name, model.style().name);
     chart(
         &title,
         "displacement [mm]",
@@ -208,7 +200,7 @@ fn probes(sheet: &MovingSheet, motions: &Motions) -> LineChart {
                 .course(probe)
                 .into_iter()
                 .map(|[time, x, _]| [time, x]);
-            let label = format!("{}, {}", probe.name, model.style.name);
+            let label = format!("{}, {}", probe.name, model.style().name);
             Line::new(label, points, colour, stroke)
         }));
     }
@@ -228,38 +220,34 @@ fn energy(model: &ModelMotion) -> LineChart {
         let points = model.points(|now| [now.time, part(&now.energy)]);
         Line::new(*name, points, colour, Stroke::Solid)
     });
-    let title = format!("Energies of the {}", model.style.name);
+    let title = format!("Energies of the {}", model.style().name);
     chart(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
 /// What the pictures of the sheets show.
 const ALONG: &str = "displacement along x [mm]";
 
+/// How many instants all models have.
+fn common_instants(series: &[ModelSeries]) -> usize {
+    let counts = series.iter().map(|model| model.states.len());
+    counts.min().unwrap_or(0)
+}
+
 /// The sheets at an instant, with their displacement along x.
-fn displaced(shown: &[ShownSheet], instant: usize) -> Vec<Panel> {
-    let panel = |own: &ShownSheet| {
-        let [displacement, _] = *own.motion.get(instant)?;
-        let along = |node: usize| displacement[2 * node];
-        Some(Panel::at_nodes(
-            own.style.name,
-            own.mesh,
-            displacement,
-            &along,
-        ))
-    };
-    shown.iter().filter_map(panel).collect()
+fn displaced(series: &[ModelSeries], instant: usize) -> Vec<Panel> {
+    let panel = |model: &ModelSeries| model.panel(instant, |[along, _]| along);
+    series.iter().filter_map(panel).collect()
 }
 
 /// The sheets in motion: a picture that plays in every browser.
-pub fn animation(times: &[f64], shown: &[ShownSheet]) -> Animation {
+pub fn animation(times: &[f64], series: &[ModelSeries]) -> Animation {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
     let every = times.len().div_ceil(FRAMES).max(1);
-    let count = shown.iter().map(|own| own.motion.len()).min();
-    let instants = (0..count.unwrap_or(0)).step_by(every);
+    let instants = (0..common_instants(series)).step_by(every);
     let frame = |instant: usize| Frame {
         time: times[instant],
-        panels: displaced(shown, instant),
+        panels: displaced(series, instant),
     };
     Animation {
         title: "Sheets in motion".into(),
@@ -269,31 +257,15 @@ pub fn animation(times: &[f64], shown: &[ShownSheet]) -> Animation {
     }
 }
 
-/// The fields of each model and of the corrected motion; those of the springs and of the corrected motion hold the difference to the
-/// displacements of the finite elements.
-pub fn grids(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Vec<GridSeries> {
-    let times = motions.times();
-    let series = |own: &ShownSheet| {
-        let expected = if own.is_reference() {
-            Vec::new()
-        } else {
-            displacements_on(own.mesh, &motions.elements)
-        };
-        let grid = |(instant, [displacement, velocity]): (usize, &[&[f64]; 2])| {
-            let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
-            let expected = expected.get(instant);
-            let difference =
-                expected.map(|expected| Array::to_finite_elements(displacement, expected));
-            let strained = Sheet {
-                viscous: Some(&own.viscous[instant]),
-                ..sheet.specimen.sheet()
-            };
-            let grid = Grid::sheet(strained, own.mesh, displacement);
-            (times[instant], grid.with([velocity]).with(difference))
-        };
-        GridSeries::instants(own.style.key, own.motion.iter().enumerate().map(grid))
+/// The fields of each model and of the corrected motion.
+pub fn grids(sheet: &MovingSheet, series: &[ModelSeries]) -> Vec<GridSeries> {
+    let of_model = |model: &ModelSeries| {
+        let states = model.states.iter().enumerate();
+        let grids =
+            states.map(|(instant, state)| (state.at, model.grid(sheet.specimen.sheet(), instant)));
+        GridSeries::instants(model.style.key, grids)
     };
-    shown.iter().map(series).collect()
+    series.iter().map(of_model).collect()
 }
 
 /// Probes, energies and the measured group's force over time, one table for each model.
@@ -309,7 +281,7 @@ pub fn tables(sheet: &MovingSheet, motions: &Motions) -> Vec<(String, Content)> 
         ];
         let energies = energies
             .into_iter()
-            .filter(|_| model.style != CORRECTED)
+            .filter(|_| model.kind != ModelKind::Corrected)
             .map(|(name, value)| Series::new(name, "mJ", instants.iter().map(value).collect()));
         let forces = sheet.measured_forces(model);
         let forces = [("grip force x", 0), ("grip force y", 1)]
@@ -324,7 +296,7 @@ pub fn tables(sheet: &MovingSheet, motions: &Motions) -> Vec<(String, Content)> 
             .chain(of_probes(sheet, model))
             .collect();
         let text = csv(&model.history.times(), &columns);
-        let name = format!("motion_{}.csv", model.style.key);
+        let name = format!("motion_{}.csv", model.style().key);
         (name, Content::Text(text))
     };
     motions.all().iter().map(of_model).collect()

@@ -3,68 +3,35 @@
 use std::collections::BTreeSet;
 
 use super::problem::MovingSheet;
-use super::shown::ShownSheet;
-use super::solution::{Motions, larger_axis};
+use super::solution::{ModelMotion, Motions, larger_axis};
 use crate::problem::GroupState;
-use crate::results::{Block, Deformed, Headline, LoadedSheet};
-use crate::studies::specimen::gauge;
+use crate::results::Block;
+use crate::studies::series::ModelSeries;
 use crate::units::number;
 
 /// Force and displacement of the measured group at the begin, at their extremes and at the end, and the largest values when most energy is
 /// stored, by the finite elements.
-pub fn headline(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Vec<Block> {
-    let Some(reference) = shown.iter().find(|own| own.is_reference()) else {
-        return Vec::new();
-    };
-    let instants = motions.elements.instants();
+pub fn headline(sheet: &MovingSheet, motions: &Motions, reference: &ModelSeries) -> Vec<Block> {
+    let ModelMotion {
+        history, groups, ..
+    } = &motions.elements;
+    let time = |instant: usize| number(history.instants[instant].time);
+    let stored = extreme(&history.instants, |now| now.energy.stored);
     let specimen = &sheet.specimen;
-    let states: Vec<GroupState> = instants
-        .iter()
-        .map(|now| GroupState {
-            force: sheet
-                .measured_force(&now.support_forces)
-                .unwrap_or_default(),
-            displacement: motions.elements.displacement_of(&specimen.group, now),
-            ..GroupState::default()
-        })
-        .collect();
-    let row = |instant: usize| (number(instants[instant].time), vec![states[instant]]);
-    let stored = extreme(instants, |now| now.energy.stored);
-    let fields = reference.motion.get(stored);
-    let fields = fields.map(|[displacement, _]| *displacement);
-    let viscous = reference.viscous.get(stored);
     let name = match specimen.grids() {
         Some(_) => "right side",
         None => &specimen.group,
     };
-    let headline = Headline {
-        model: reference.style.name,
-        along: "time [s]",
-        groups: vec![name],
-        steps: telling(&states).into_iter().map(row).collect(),
-        state: LoadedSheet {
-            at: format!(
-                "{} s, with most energy stored",
-                number(instants[stored].time)
-            ),
-            law: &*specimen.problem.law,
-            deformed: Deformed {
-                viscous: viscous.map_or(&[], |viscous| &viscous.at_nodes),
-                ..Deformed::elastic(
-                    reference.style.name,
-                    reference.mesh,
-                    fields.into_iter().collect(),
-                )
-            },
-            // Supports were checked when the study was read.
-            singular: specimen
-                .problem
-                .singular_points(reference.mesh)
-                .unwrap_or_default(),
-            gauge: gauge(&specimen.outline, reference.mesh),
-        },
-    };
-    headline.blocks()
+    let listed = telling(groups).into_iter();
+    reference.headline(
+        specimen,
+        (reference.style.name, "time [s]", vec![name]),
+        listed.map(|instant| (instant, time(instant))),
+        (
+            stored,
+            format!("{} s, with most energy stored", time(stored)),
+        ),
+    )
 }
 
 /// The first instant, the last one, and those at which displacement and force of the measured group along x or y, whichever is larger, are largest

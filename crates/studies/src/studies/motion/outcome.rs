@@ -6,14 +6,16 @@ use super::deviations::{Deviations, OwnError};
 use super::files::{animation, figures, grids, tables};
 use super::headline::headline;
 use super::problem::MovingSheet;
-use super::shown::shown;
 use super::solution::{ModelMotion, Motions};
 use super::statement;
-use super::warnings::warnings;
 use crate::compare::judgement::{judge_by_margin, percent};
 use crate::dynamics::Instant;
+use crate::mass_spring::SpringLaw;
 use crate::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING};
-use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted};
+use crate::results::{
+    Block, Check, Content, Drawing, Material, Outcome, Step, Table, Wanted, object, or_dash,
+};
+use crate::studies::findings::{Examined, findings};
 use crate::studies::specimen::Outline;
 use crate::units::number;
 
@@ -24,12 +26,12 @@ const ROWS: usize = 12;
 pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnError>) -> Outcome {
     let deviations = Deviations::all(sheet, motions);
     let seconds = motions.models().map(|model| {
-        let name = model.style.name.to_owned();
+        let name = model.style().name.to_owned();
         (name, model.seconds)
     });
     let mut blocks = vec![
         Block::Paragraph(introduction(sheet, &motions.elements)),
-        summary(&motions.models()),
+        summary(motions.models()),
         Block::Paragraph(motions.correction.note.clone()),
         Block::Paragraph(compared(sheet, &deviations, own_error)),
         Block::Paragraph(format!(
@@ -40,21 +42,28 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
     ];
     blocks.extend(statement::blocks(sheet));
     let mut files = tables(sheet, motions);
-    let (shown, times) = (shown(sheet, motions), motions.times());
-    let animation = Drawing::Animation(animation(&times, &shown));
+    let (series, times) = (motions.series(), motions.times());
+    let reference = &series[series.len() - 1];
+    let animation = Drawing::Animation(animation(&times, &series));
     files.push(("motion.png".into(), Content::Picture(animation)));
     let mut outcome = Outcome {
-        headline: headline(sheet, motions, &shown),
+        headline: headline(sheet, motions, reference),
         checks: checks(sheet, motions, &deviations, own_error),
         blocks,
         problem: statement::json(sheet, own_error),
         material: Some(Material::from(&sheet.specimen.card)),
         along: "time",
         steps: steps(sheet, motions, &deviations),
-        figures: figures(sheet, motions, &shown),
+        figures: figures(sheet, motions, &series),
         style: sheet.specimen.pictures.style.clone(),
-        grids: grids(sheet, motions, &shown),
-        warnings: warnings(sheet, &times, &shown),
+        grids: grids(sheet, &series),
+        findings: findings(Examined {
+            specimen: &sheet.specimen,
+            series: &series,
+            models: None,
+            has_springs: matches!(sheet.springs, SpringLaw::Material),
+            is_motion: true,
+        }),
         files,
         times: seconds.into(),
         ..Outcome::default()
@@ -76,51 +85,33 @@ fn steps(
     motions: &Motions,
     (of_springs, of_corrected): &(Deviations, Option<Deviations>),
 ) -> Vec<Step> {
-    let quantities = |now: &Instant, percent: Option<f64>| {
+    let force = |now: &Instant| sheet.measured_force(&now.support_forces);
+    let quantities = |now: &Instant, percent: Option<&f64>| {
         json!({
             "displacement_percent": percent,
-            "grip_force_N": sheet.measured_force(&now.support_forces),
+            "grip_force_N": force(now),
             "kinetic_energy_mJ": now.energy.kinetic,
             "stored_energy_mJ": now.energy.stored,
             "viscous_work_mJ": now.energy.viscous_work,
             "external_work_mJ": now.energy.external_work,
         })
     };
-    let corrected = motions
-        .correction
-        .motion
-        .as_ref()
-        .zip(of_corrected.as_ref());
-    let pairs = motions
-        .springs
-        .instants()
-        .iter()
-        .zip(motions.elements.instants());
-    let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| {
-        let corrected = corrected.and_then(|(own, deviations)| {
-            let (now, percent) = own
-                .instants()
-                .get(instant)
-                .zip(deviations.displacement.get(instant))?;
-            let force = sheet.measured_force(&now.support_forces);
-            Some(json!({ "displacement_percent": percent, "grip_force_N": force }))
-        });
-        let models = [
-            (
-                MASS_SPRING.key,
-                quantities(springs, of_springs.displacement.get(instant).copied()),
-            ),
-            (CORRECTED.key, json!(corrected)),
-            (FINITE_ELEMENTS.key, quantities(elements, None)),
-        ];
-        Step {
-            at: springs.time,
-            models: models
-                .map(|(name, own)| (name.to_owned(), own))
-                .into_iter()
-                .collect(),
-        }
+    let corrected = |instant: usize| {
+        let motion = motions.correction.motion.as_ref()?;
+        let percent = of_corrected.as_ref()?.displacement.get(instant)?;
+        let force = force(motion.instants().get(instant)?);
+        Some(json!({ "displacement_percent": percent, "grip_force_N": force }))
     };
+    let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| Step {
+        at: springs.time,
+        models: object(json!({
+            (MASS_SPRING.key): quantities(springs, of_springs.displacement.get(instant)),
+            (CORRECTED.key): corrected(instant),
+            (FINITE_ELEMENTS.key): quantities(elements, None),
+        })),
+    };
+    let pairs = motions.springs.instants().iter();
+    let pairs = pairs.zip(motions.elements.instants());
     pairs.enumerate().map(step).collect()
 }
 
@@ -148,38 +139,34 @@ fn introduction(sheet: &MovingSheet, elements: &ModelMotion) -> String {
     text
 }
 
-fn summary(models: &[&ModelMotion; 2]) -> Block {
-    let head = [
-        "model",
-        "nodes",
-        "steps",
-        "taken again",
-        "factorisations",
-        "first longitudinal frequency at rest [Hz]",
-        "energy balance, largest error [%]",
-        "largest stored energy [mJ]",
-        "viscous work [mJ]",
-        "work of grips and loads [mJ]",
-    ];
-    let row = |model: &&ModelMotion| {
-        let history = &model.history;
-        let energies = history.instants.iter().map(|now| now.energy);
-        let stored = energies.fold(0.0, |most: f64, energy| most.max(energy.stored));
-        let last = history.instants[history.instants.len() - 1].energy;
-        vec![
-            model.style.name.to_owned(),
-            model.mesh.nodes.len().to_string(),
-            history.steps.to_string(),
-            history.halved.to_string(),
-            history.factorisations.to_string(),
-            model.frequency.map_or("–".to_owned(), number),
-            number(100.0 * history.energy_error()),
-            number(stored),
-            number(last.viscous_work),
-            number(last.external_work),
-        ]
+fn summary(models: [&ModelMotion; 2]) -> Block {
+    let last = |model: &ModelMotion| model.instants()[model.instants().len() - 1].energy;
+    let stored = |model: &ModelMotion| {
+        let energies = model.instants().iter().map(|now| now.energy.stored);
+        energies.fold(0.0, f64::max)
     };
-    Block::table(&head, models.iter().map(row))
+    Table::of(models)
+        .column("model", |model| model.style().name.to_owned())
+        .column("nodes", |model| model.mesh.nodes.len().to_string())
+        .column("steps", |model| model.history.steps.to_string())
+        .column("taken again", |model| model.history.halved.to_string())
+        .column("factorisations", |model| {
+            model.history.factorisations.to_string()
+        })
+        .column("first longitudinal frequency at rest [Hz]", |model| {
+            model.frequency.map_or("–".to_owned(), number)
+        })
+        .column("energy balance, largest error [%]", |model| {
+            number(100.0 * model.history.energy_error())
+        })
+        .column("largest stored energy [mJ]", |model| number(stored(model)))
+        .column("viscous work [mJ]", |model| {
+            number(last(model).viscous_work)
+        })
+        .column("work of grips and loads [mJ]", |model| {
+            number(last(model).external_work)
+        })
+        .block()
 }
 
 /// Deviations over all instants in a sentence, beside the finite elements' own error.
@@ -217,43 +204,39 @@ fn in_time(
     motions: &Motions,
     (of_springs, of_corrected): &(Deviations, Option<Deviations>),
 ) -> Block {
-    let mut head = vec![
-        "time [s]".to_owned(),
-        "mass-spring: displacement [%]".into(),
-        "corrected: displacement [%]".into(),
-    ];
     let axis = sheet.measured_axis(&motions.elements);
     let corrected = motions.correction.motion.as_ref();
-    let models = [Some(&motions.springs), corrected, Some(&motions.elements)];
-    if axis.is_some() {
-        let names = ["mass-spring", "corrected", "finite elements"];
-        head.extend(names.map(|name| format!("{name}: force [N]")));
-    }
+    let percent = |own: Option<&Deviations>, instant: usize| {
+        let value = own.and_then(|own| own.displacement.get(instant).copied());
+        or_dash(value, |value| format!("{value:.3}"))
+    };
     let count = of_springs.displacement.len();
     let every = count.div_ceil(ROWS).max(1);
-    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "–".into());
-    let row = |instant: usize| {
-        let percents = [Some(of_springs), of_corrected.as_ref()].map(|own| {
-            let value = own?.displacement.get(instant)?;
-            Some(format!("{value:.3}"))
+    let mut table = Table::of((0..count).step_by(every))
+        .column("time [s]", |instant| {
+            number(motions.springs.instants()[*instant].time)
+        })
+        .column("mass-spring: displacement [%]", |instant| {
+            percent(Some(of_springs), *instant)
+        })
+        .column("corrected: displacement [%]", |instant| {
+            percent(of_corrected.as_ref(), *instant)
         });
-        let forces = models.iter().filter_map(|model| {
-            let axis = axis?;
-            let force = |model: &ModelMotion| {
-                let now = model.instants().get(instant)?;
-                Some(number(sheet.measured_force(&now.support_forces)?[axis]))
-            };
-            Some(model.and_then(force))
+    let models = [
+        ("mass-spring", Some(&motions.springs)),
+        ("corrected", corrected),
+        ("finite elements", Some(&motions.elements)),
+    ];
+    for (name, model) in models.into_iter().filter(|_| axis.is_some()) {
+        table = table.column(format!("{name}: force [N]"), |instant| {
+            let state = model.and_then(|model| model.groups.get(*instant));
+            or_dash(
+                state.zip(axis).map(|(state, axis)| state.force[axis]),
+                number,
+            )
         });
-        let time = number(motions.springs.instants()[instant].time);
-        std::iter::once(Some(time))
-            .chain(percents)
-            .chain(forces)
-            .map(or_dash)
-            .collect::<Vec<_>>()
-    };
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    Block::table(&head, (0..count).step_by(every).map(row))
+    }
+    table.block()
 }
 
 /// How the reference becomes a better one.
@@ -278,7 +261,7 @@ fn checks(
         Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
     let energy = |model: &ModelMotion| {
-        let quantity = format!("{}: error of the energy balance", model.style.name);
+        let quantity = format!("{}: error of the energy balance", model.style().name);
         check(
             quantity,
             limits.energy_percent,

@@ -288,10 +288,15 @@ impl MovingSheet {
         }
     }
 
+    /// Whether a support holds the measured group.
+    pub(super) fn is_measured_held(&self) -> bool {
+        let mut supports = self.specimen.problem.supports.iter();
+        supports.any(|(group, _)| *group == self.specimen.group)
+    }
+
     /// Whether the measured group has a force that is worth a picture: it is held, and does not let go at once.
     pub(super) fn has_force(&self) -> bool {
-        let mut supports = self.specimen.problem.supports.iter();
-        self.drive.release != Some(0.0) && supports.any(|(group, _)| *group == self.specimen.group)
+        self.drive.release != Some(0.0) && self.is_measured_held()
     }
 }
 

@@ -7,13 +7,16 @@ use crate::dynamics::frequency::principal;
 use crate::dynamics::{History, Instant, TimeSettings, Viscosity, follow};
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::problem::{Model, mean_displacement};
+use crate::problem::{GroupState, Model, mean_displacement};
+use crate::results::ViscousStress;
 use crate::results::models::ModelStyle;
+use crate::studies::ModelKind;
+use crate::studies::series::{ModelSeries, ModelState};
 
 /// One model's motion.
 pub struct ModelMotion {
-    /// Its name.
-    pub style: ModelStyle,
+    /// Which model it is.
+    pub kind: ModelKind,
     /// Its mesh.
     pub mesh: Mesh,
     /// Its instants; those of a corrected motion have no energies.
@@ -25,6 +28,12 @@ pub struct ModelMotion {
     pub frequency: Option<f64>,
     /// Computing time in s.
     pub seconds: f64,
+    /// What happens at the measured group at its instants; no force where no support holds it.
+    pub groups: Vec<GroupState>,
+    /// The viscous stresses at its instants.
+    pub viscous: Vec<ViscousStress>,
+    /// The finite elements' displacements at its nodes; none of themselves.
+    pub expected: Vec<Vec<f64>>,
 }
 
 /// The correction of the springs' motion.
@@ -48,6 +57,44 @@ pub struct Motions {
 }
 
 impl Motions {
+    /// The motions of springs and finite elements, and the correction, with what follows from all of them.
+    pub fn new(
+        sheet: &MovingSheet,
+        mut springs: ModelMotion,
+        mut elements: ModelMotion,
+        mut correction: Correction,
+    ) -> Self {
+        let times = longer([&springs, &elements]).history.times();
+        let (law, material) = (&*sheet.specimen.problem.law, &sheet.viscosity);
+        let mut corrected = correction.motion.as_mut();
+        for model in [Some(&mut springs), corrected.as_deref_mut()]
+            .into_iter()
+            .flatten()
+        {
+            model.expected = elements.displacements_on(&model.mesh);
+        }
+        let all = [Some(&mut springs), corrected, Some(&mut elements)];
+        for model in all.into_iter().flatten() {
+            let motion = model.history.instants.iter();
+            let motion: Vec<[&[f64]; 2]> = motion
+                .map(|now| [&now.displacement[..], &now.velocity])
+                .collect();
+            model.viscous = ViscousStress::over_time(law, material, &model.mesh, &times, &motion);
+        }
+        Self {
+            springs,
+            elements,
+            correction,
+        }
+    }
+
+    /// The states of all models at the instants, the finite elements last.
+    pub fn series(&self) -> Vec<ModelSeries<'_>> {
+        let times = self.times();
+        let all = self.all().into_iter();
+        all.map(|model| model.series(&times)).collect()
+    }
+
     /// Both models.
     pub fn models(&self) -> [&ModelMotion; 2] {
         [&self.springs, &self.elements]
@@ -62,12 +109,16 @@ impl Motions {
 
     /// The instants of the model that has more of them: all, unless both ended before.
     pub fn times(&self) -> Vec<f64> {
-        let [springs, elements] = self.models().map(|model| model.history.times());
-        if springs.len() < elements.len() {
-            elements
-        } else {
-            springs
-        }
+        longer(self.models()).history.times()
+    }
+}
+
+/// The model that has more instants.
+fn longer([springs, elements]: [&ModelMotion; 2]) -> &ModelMotion {
+    if springs.instants().len() < elements.instants().len() {
+        elements
+    } else {
+        springs
     }
 }
 
@@ -77,9 +128,38 @@ impl ModelMotion {
         &self.history.instants
     }
 
-    /// The mean displacement of a group in mm.
-    pub fn displacement_of(&self, group: &str, now: &Instant) -> [f64; 2] {
-        mean_displacement(&self.mesh, group, &now.displacement)
+    /// Its displacements at the nodes of a mesh at all instants.
+    pub fn displacements_on(&self, mesh: &Mesh) -> Vec<Vec<f64>> {
+        let onto_mesh = self.mesh.interpolation_on(mesh);
+        let instants = self.instants().iter();
+        instants
+            .map(|now| onto_mesh.apply(&now.displacement))
+            .collect()
+    }
+
+    /// Its states at the times of the instants.
+    fn series(&self, times: &[f64]) -> ModelSeries<'_> {
+        let instants = self.instants().iter().enumerate();
+        let states = instants.map(|(instant, now)| ModelState {
+            at: times[instant],
+            displacement: &now.displacement,
+            velocity: Some(&now.velocity),
+            past: Vec::new(),
+            viscous: self.viscous.get(instant),
+            groups: std::slice::from_ref(&self.groups[instant]),
+            expected: self.expected.get(instant).map(Vec::as_slice),
+        });
+        ModelSeries {
+            kind: self.kind,
+            style: self.style(),
+            mesh: &self.mesh,
+            states: states.collect(),
+        }
+    }
+
+    /// Its name and colour.
+    pub fn style(&self) -> ModelStyle {
+        self.kind.style()
     }
 }
 
@@ -87,7 +167,7 @@ impl MovingSheet {
     /// Computes the motion of one model; `progress` is told the instants that are reached.
     pub fn moved(
         &self,
-        style: ModelStyle,
+        kind: ModelKind,
         model: &Model,
         viscosity: Option<&dyn Viscosity>,
         time: TimeSettings,
@@ -115,38 +195,49 @@ impl MovingSheet {
             }
         };
         Ok(ModelMotion {
-            style,
+            kind,
             mesh: model.mesh.clone(),
+            groups: self.measured_states(model.mesh, &history.instants),
             history,
             end,
             frequency: longitudinal.map(|mode| mode.frequency),
             seconds: start.elapsed().as_secs_f64(),
+            viscous: Vec::new(),
+            expected: Vec::new(),
         })
+    }
+
+    /// What happens at the measured group at some instants of a model on a mesh; no force where no support holds it.
+    pub(super) fn measured_states(&self, mesh: &Mesh, instants: &[Instant]) -> Vec<GroupState> {
+        let group = &self.specimen.group;
+        let state = |now: &Instant| GroupState {
+            force: self.measured_force(&now.support_forces).unwrap_or_default(),
+            displacement: mean_displacement(mesh, group, &now.displacement),
+            ..GroupState::default()
+        };
+        instants.iter().map(state).collect()
     }
 
     /// The force in N of the measured group at all instants; none where no support holds it.
     pub(super) fn measured_forces(&self, model: &ModelMotion) -> Vec<[f64; 2]> {
-        let instants = model.instants().iter();
-        instants
-            .filter_map(|now| self.measured_force(&now.support_forces))
-            .collect()
+        let groups = model.groups.iter().filter(|_| self.is_measured_held());
+        groups.map(|state| state.force).collect()
     }
 
     /// The axis along which the measured group has the larger force in a motion, x for a plate; `None` where no support holds it.
     pub(super) fn measured_axis(&self, model: &ModelMotion) -> Option<usize> {
-        let forces = self.measured_forces(model);
-        let is_across = self.specimen.grids().is_none() && larger_axis(&forces) == 1;
-        (!forces.is_empty()).then_some(usize::from(is_across))
+        self.is_measured_held()
+            .then(|| self.larger_axis(model, |state| state.force))
     }
 
     /// The axis along which the measured group moves more in a motion, x for a plate.
     pub(super) fn moved_axis(&self, model: &ModelMotion) -> usize {
-        let group = &self.specimen.group;
-        let instants = model.instants().iter();
-        let moved: Vec<_> = instants
-            .map(|now| model.displacement_of(group, now))
-            .collect();
-        usize::from(self.specimen.grids().is_none() && larger_axis(&moved) == 1)
+        self.larger_axis(model, |state| state.displacement)
+    }
+
+    fn larger_axis(&self, model: &ModelMotion, of: fn(&GroupState) -> [f64; 2]) -> usize {
+        let vectors: Vec<_> = model.groups.iter().map(of).collect();
+        usize::from(self.specimen.grids().is_none() && larger_axis(&vectors) == 1)
     }
 }
 

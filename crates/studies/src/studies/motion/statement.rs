@@ -6,7 +6,7 @@ use super::deviations::OwnError;
 use super::problem::{Drive, MovingSheet, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
-use crate::results::Block;
+use crate::results::{Block, object};
 use crate::studies::specimen::{Along, load_words, support_words};
 use crate::units::number;
 
@@ -28,7 +28,7 @@ pub fn json(sheet: &MovingSheet, own_error: Option<&OwnError>) -> Map<String, Va
     let says: Map<_, _> = sentences
         .map(|(what, words)| (what, json!(words)))
         .collect();
-    let all = json!({
+    object(json!({
         "size_mm": sheet.specimen.outline.size(),
         "thickness_mm": sheet.specimen.problem.thickness,
         "density_kg_per_m3": 1e12 * sheet.density,
@@ -37,8 +37,7 @@ pub fn json(sheet: &MovingSheet, own_error: Option<&OwnError>) -> Map<String, Va
             "displacement_percent": own.displacement,
             "grip_force_percent": own.force,
         })),
-    });
-    all.as_object().cloned().unwrap_or_default()
+    }))
 }
 
 fn sentences(sheet: &MovingSheet) -> Vec<(String, String)> {

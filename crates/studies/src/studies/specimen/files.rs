@@ -3,19 +3,20 @@
 use super::history;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
-use super::results::models::{ModelSeries, Models};
+use super::results::models::Models;
 use super::results::verdict::Deviation;
 use crate::problem::GroupState;
 use crate::results::{
-    Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
-    Stroke, from_rest, material_chart, mesh_outlines, sheet_figures,
+    Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel, Stroke,
+    from_rest, material_chart, mesh_outlines,
 };
 use crate::studies::ModelKind;
 use crate::studies::pictures::Shown;
+use crate::studies::series::{ModelSeries, stress_figures};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
-    let reached = |kind| models.of(kind).solution.reached();
+    let reached = |kind| models.of(kind).reached();
     let both = reached(ModelKind::FiniteElement).min(reached(ModelKind::Corrected));
     let shown = if both > 0 { both } else { models.reached() };
     shown.checked_sub(1)
@@ -86,25 +87,21 @@ fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
     };
     let file = |field: &str| format!("{}_{field}{number}.png", specimen.name);
     let at = specimen.along.describe(specimen.factors[step]);
+    let series = models.all_series();
     let mut figures = vec![displacement(
         specimen,
-        models,
+        &series,
         step,
         &at,
         file("displacement"),
     )];
-    figures.extend(stress_figures(specimen, models, step, &at, &file));
+    figures.extend(stress_figures(specimen, &series, step, &at, &file));
     let distance = |model: &ModelSeries| {
-        let u = model.solution.displacement(step)?;
-        let v = models.expected(model.kind, step)?;
-        Some(Panel::distance(
-            model.style.name,
-            &model.solution.mesh,
-            u,
-            v,
-        ))
+        let state = model.states.get(step)?;
+        let (name, u, v) = (model.style.name, state.displacement, state.expected?);
+        Some(Panel::distance(name, model.mesh, u, v))
     };
-    let distances: Vec<Panel> = models.all().iter().filter_map(distance).collect();
+    let distances: Vec<Panel> = series.iter().filter_map(distance).collect();
     if !distances.is_empty() {
         let title = format!("Distance to the finite elements at {at}");
         let caption = format!("{title}.");
@@ -117,7 +114,7 @@ fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
 /// The displacement of all models on one colour scale; of a plate the transverse one, in which the models differ.
 fn displacement(
     specimen: &Specimen,
-    models: &Models,
+    series: &[ModelSeries],
     step: usize,
     at: &str,
     file: String,
@@ -128,46 +125,12 @@ fn displacement(
     } else {
         "displacement"
     };
-    let all = models.all();
-    let panels = all.iter().filter_map(|model| {
-        let (mesh, u) = (&model.solution.mesh, model.solution.displacement(step)?);
-        let value = |node: usize| {
-            let [ux, uy] = [u[2 * node], u[2 * node + 1]];
-            if is_plate { uy } else { ux.hypot(uy) }
-        };
-        Some(Panel::at_nodes(model.style.name, mesh, u, &value))
-    });
+    let value = |[ux, uy]: [f64; 2]| if is_plate { uy } else { ux.hypot(uy) };
+    let panels = series.iter().filter_map(|model| model.panel(step, value));
     let title = format!("Displacement at {at}");
     let caption = format!("The {quantity} at {at}, on one colour scale.");
-    Figure::new(
-        file,
-        caption,
-        FieldFigure::new(title, format!("{quantity} [mm]"), panels),
-    )
-}
-
-/// Stresses and strains at one load factor.
-fn stress_figures(
-    specimen: &Specimen,
-    models: &Models,
-    step: usize,
-    at: &str,
-    file: &dyn Fn(&str) -> String,
-) -> Vec<Figure> {
-    let all = models.all();
-    let deformed = all.iter().filter_map(|model| {
-        let u = model.solution.displacement(step)?;
-        let mut fields = model.solution.past(step);
-        fields.push(u);
-        Some(Deformed::elastic(
-            model.style.name,
-            &model.solution.mesh,
-            fields,
-        ))
-    });
-    let deformed: Vec<_> = deformed.collect();
-    let law = specimen.sheet().law;
-    sheet_figures(&specimen.pictures.fields, law, &deformed, at, &file)
+    let drawing = FieldFigure::new(title, format!("{quantity} [mm]"), panels);
+    Figure::new(file, caption, drawing)
 }
 
 /// Forces below this share of the largest are those of supports that carry nothing.
@@ -176,15 +139,11 @@ const NO_FORCE: f64 = 1e-6;
 /// What the groups do in each state of one of the models, over the load factor, beginning at rest.
 fn over_factors(
     specimen: &Specimen,
-    model: ModelSeries,
+    model: &ModelSeries,
     value: impl Fn(&[GroupState]) -> f64,
 ) -> Vec<[f64; 2]> {
-    let steps = specimen.factors.iter().enumerate();
-    let values = steps.filter_map(|(step, factor)| {
-        let groups = model.solution.groups(step)?;
-        Some([specimen.along.coordinate(*factor), value(groups)])
-    });
-    from_rest(values)
+    let states = model.states.iter();
+    from_rest(states.map(|state| [specimen.along.coordinate(state.at), value(state.groups)]))
 }
 
 /// A chart of the models over the load factor.
@@ -201,8 +160,8 @@ fn chart_over_factors(
         (ModelKind::Corrected, Stroke::Ringed),
     ];
     let line = |(kind, stroke): (ModelKind, Stroke)| {
-        let model = models.of(kind);
-        let points = over_factors(specimen, model, &value);
+        let model = models.series(kind);
+        let points = over_factors(specimen, &model, &value);
         (points.len() > 1).then(|| Line::new(model.style.name, points, model.style.colour, stroke))
     };
     let lines = order.into_iter().filter_map(line).collect();
@@ -226,7 +185,8 @@ fn displacement_over_factors(specimen: &Specimen, models: &Models) -> Option<Dra
 fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let largest = |group: usize, axis: usize| {
         let force = |groups: &[GroupState]| groups[group].force[axis];
-        let all = models.all().into_iter();
+        let all = models.all_series();
+        let all = all.iter();
         let all = all.flat_map(|model| over_factors(specimen, model, force));
         all.fold(0.0, |most: f64, point| most.max(point[1].abs()))
     };
@@ -264,46 +224,32 @@ fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure
 
 /// The fields of each model, as far as it goes.
 pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
-    let springs = models.of(ModelKind::MassSpring).solution.states.iter();
+    let springs = models.of(ModelKind::MassSpring).states.iter();
     let springs = springs.map(|state| {
         let lattice = &models.on_lattice.springs;
         let grid = Grid::springs(lattice, &state.displacement, &state.history);
         (state.factor, grid)
     });
     let springs = GridSeries::steps("springs", springs);
-    let mut all: Vec<GridSeries> = models
-        .all()
-        .into_iter()
-        .map(|model| {
-            let steps = 0..model.solution.reached();
-            let grids =
-                steps.map(|step| (specimen.factors[step], grid(specimen, models, model, step)));
-            GridSeries::steps(model.style.key, grids)
-        })
-        .collect();
+    let of_model = |model: &ModelSeries| {
+        let grid = |step: usize| (model.states[step].at, grid(specimen, models, model, step));
+        GridSeries::steps(model.style.key, (0..model.states.len()).map(grid))
+    };
+    let mut all: Vec<GridSeries> = models.all_series().iter().map(of_model).collect();
     all.insert(1, springs);
     all.retain(|series| !series.grids.is_empty());
     all
 }
 
 /// The fields of a model at one load factor.
-fn grid(specimen: &Specimen, models: &Models, model: ModelSeries, step: usize) -> Grid {
-    let (past, u) = (
-        model.solution.past(step),
-        &model.solution.states[step].displacement,
-    );
-    let grid = Grid::sheet(specimen.sheet().after(&past), &model.solution.mesh, u);
-    let difference = models.expected(model.kind, step);
-    let grid = grid.with(difference.map(|v| Array::to_finite_elements(u, v)));
+fn grid(specimen: &Specimen, models: &Models, model: &ModelSeries, step: usize) -> Grid {
+    let grid = model.grid(specimen.sheet(), step);
     match model.kind {
         ModelKind::MassSpring => grid,
         ModelKind::Corrected => grid.with(history::multipliers(models, step)),
         ModelKind::FiniteElement => {
-            let error = models
-                .reference
-                .estimates
-                .get(step)
-                .and_then(Option::as_ref);
+            let estimates = &models.reference.estimates;
+            let error = estimates.get(step).and_then(Option::as_ref);
             grid.with_in_cells(error.map(|estimate| Array::estimated_error(&estimate.energy)))
         }
     }

@@ -8,46 +8,73 @@ use super::problem::Specimen;
 use super::results::measured::Quantity;
 use super::results::models::Models;
 use crate::compare::judgement::percent;
-use crate::document::write_records;
+use crate::mesh::Mesh;
 use crate::problem::{GroupState, Solution};
 use crate::results::models::ModelStyle;
-use crate::results::{Block, or_dash};
+use crate::results::{Block, Table, or_dash};
+use crate::solve::State;
 use crate::statistics::larger;
 use crate::studies::ModelKind;
 use crate::units::number;
 
+/// A model's group at a load factor.
+struct GroupRow<'a> {
+    factor: f64,
+    group: &'a str,
+    model: ModelStyle,
+    state: &'a GroupState,
+    /// The whole field, and its mesh.
+    field: (&'a State, &'a Mesh),
+}
+
+/// All groups of all models at a load factor.
+fn groups_at<'a>(specimen: &'a Specimen, models: &'a Models, step: usize) -> Vec<GroupRow<'a>> {
+    let factor = specimen.factors[step];
+    let of_model = |(kind, solution): (ModelKind, &'a Solution)| {
+        let field = (solution.states.get(step)?, &solution.mesh);
+        let groups = specimen.groups().into_iter().zip(solution.groups(step)?);
+        let row = move |(group, state)| GroupRow {
+            factor,
+            group,
+            model: kind.style(),
+            state,
+            field,
+        };
+        Some(groups.map(row).collect::<Vec<_>>())
+    };
+    models
+        .all()
+        .into_iter()
+        .filter_map(of_model)
+        .flatten()
+        .collect()
+}
+
 /// A table of all groups in all models at all load factors.
 pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<Block> {
-    let head = [
-        specimen.along.head(),
-        "group",
-        "model",
+    let groups = specimen.groups();
+    let rows = (0..specimen.factors.len()).flat_map(|step| {
+        let mut rows = groups_at(specimen, models, step);
+        // Models stand below each other, group after group.
+        rows.sort_by_key(|row| groups.iter().position(|group| *group == row.group));
+        rows
+    });
+    let scales = scales(specimen, models);
+    let mut table = Table::of(rows)
+        .column(specimen.along.head(), |row| {
+            specimen.along.value(row.factor)
+        })
+        .column("group", |row| row.group.to_owned())
+        .column("model", |row| row.model.name.to_owned());
+    let heads = [
         "force along x [N]",
         "force along y [N]",
         "moment about the group's middle [N·mm]",
         "mean displacement along x [mm]",
         "mean displacement along y [mm]",
     ];
-    let scales = scales(specimen, models);
-    let mut rows = Vec::new();
-    for (step, factor) in specimen.factors.iter().enumerate() {
-        for (index, group) in specimen.groups().iter().enumerate() {
-            for model in models.all() {
-                if let Some(groups) = model.solution.groups(step) {
-                    let names = [
-                        specimen.along.value(*factor),
-                        (*group).to_owned(),
-                        model.style.name.to_owned(),
-                    ];
-                    rows.push(
-                        names
-                            .into_iter()
-                            .chain(cells(&groups[index], scales))
-                            .collect(),
-                    );
-                }
-            }
-        }
+    for (index, head) in heads.into_iter().enumerate() {
+        table = table.column(head, |row| cells(row.state, scales)[index].clone());
     }
     let text = "Forces of the supports on the specimen, positive along the axes, and their moments about the middle of the deformed group, positive \
                 counter-clockwise. A force prescribed on a grip counts as a support force. Values that are zero except for rounding are shown as 0. \
@@ -55,59 +82,38 @@ pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<
     vec![
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
-        Block::table(&head, rows),
-        Block::Paragraph(balance(balances)),
+        table.block(),
+        Block::Paragraph(balance_words(balances)),
     ]
 }
 
 /// The same as a table for other programs, with all digits: a force-displacement curve is two of its columns. Of a plate with its width at
 /// mid length.
 pub fn csv(specimen: &Specimen, models: &Models) -> String {
-    let mut head = vec![
-        specimen.along.column(),
-        "group",
-        "model",
-        "force_x_N",
-        "force_y_N",
-        "moment_Nmm",
-        "displacement_x_mm",
-        "displacement_y_mm",
-        "strain_energy_mJ",
-    ];
+    let steps = 0..specimen.factors.len();
     let is_plate = specimen.grids().is_some();
-    head.extend(is_plate.then_some("mid_width_mm"));
-    let mut records = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for (step, factor) in specimen.factors.iter().enumerate() {
-        for model in models.all() {
-            let Solution { mesh, states, .. } = model.solution;
-            let Some(field) = states.get(step) else {
-                continue;
-            };
-            let width = is_plate.then(|| mesh.mid_width(&field.displacement));
-            let groups = model.solution.groups(step).unwrap_or_default();
-            for (group, state) in specimen.groups().iter().zip(groups) {
-                let ([fx, fy], [ux, uy]) = (state.force, state.displacement);
-                let mut record = vec![
-                    factor.to_string(),
-                    (*group).to_owned(),
-                    model.style.name.to_owned(),
-                ];
-                let values = [fx, fy, state.moment, ux, uy, field.convergence.energy];
-                record.extend(
-                    values
-                        .into_iter()
-                        .chain(width)
-                        .map(|value| value.to_string()),
-                );
-                records.push(record);
-            }
-        }
-    }
-    write_records(records)
+    Table::of(steps.flat_map(|step| groups_at(specimen, models, step)))
+        .column(specimen.along.column(), |row| row.factor.to_string())
+        .column("group", |row| row.group.to_owned())
+        .column("model", |row| row.model.name.to_owned())
+        .column("force_x_N", |row| row.state.force[0].to_string())
+        .column("force_y_N", |row| row.state.force[1].to_string())
+        .column("moment_Nmm", |row| row.state.moment.to_string())
+        .column("displacement_x_mm", |row| {
+            row.state.displacement[0].to_string()
+        })
+        .column("displacement_y_mm", |row| {
+            row.state.displacement[1].to_string()
+        })
+        .column("strain_energy_mJ", |row| {
+            row.field.0.convergence.energy.to_string()
+        })
+        .column_if(is_plate, "mid_width_mm", |row| {
+            let (field, mesh) = row.field;
+            mesh.mid_width(&field.displacement).to_string()
+        })
+        .csv()
 }
-
-/// Balances above this are worth a warning.
-const UNBALANCED: f64 = 1e-5;
 
 /// How well the forces and moments of a model balance in its worst state.
 pub struct Balance {
@@ -120,10 +126,10 @@ pub struct Balance {
 
 /// The balance of every model.
 pub fn balances(specimen: &Specimen, models: &Models) -> [Balance; 3] {
-    models.all().map(|model| Balance {
-        model: model.style,
-        unbalanced: model.solution.worst_balance(),
-        free_nodes: free_nodes(specimen, model.solution),
+    models.all().map(|(model, solution)| Balance {
+        model: model.style(),
+        unbalanced: solution.worst_balance(),
+        free_nodes: free_nodes(specimen, solution),
     })
 }
 
@@ -157,7 +163,7 @@ fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
 }
 
 /// The balance of each model in a sentence.
-fn balance(balances: &[Balance]) -> String {
+pub fn balance_words(balances: &[Balance]) -> String {
     let balances = balances.iter().filter_map(|own| {
         let unbalanced = own.unbalanced?;
         let free = or_dash(own.free_nodes, |left| format!("{left:.1e}"));
@@ -170,22 +176,13 @@ fn balance(balances: &[Balance]) -> String {
     )
 }
 
-/// The warning about forces or moments that do not balance.
-pub fn unbalanced(balances: &[Balance]) -> Option<String> {
-    worst_balance(balances).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
-    Some(format!(
-        "forces or moments do not balance. {}",
-        balance(balances)
-    ))
-}
-
 /// The warning about moments that nothing compares: where the measured force is none, as of a ring that is turned, the requirement of the
 /// force is met by any field.
 pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     /// A smaller share of the forces on nodes times the specimen's larger side is what meshes leave.
     const LEAST: f64 = 1e-2;
     let (measured, finest) = (&models.reference.measured, &models.reference.finest);
-    let corrected = models.of(ModelKind::Corrected).solution;
+    let corrected = models.of(ModelKind::Corrected);
     let step = corrected.reached().min(finest.reached()).checked_sub(1)?;
     if measured.quantity != Quantity::Force {
         return None;
@@ -216,7 +213,7 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
     let all = steps.flat_map(|step| {
         series
             .iter()
-            .filter_map(move |own| own.solution.groups(step))
+            .filter_map(move |(_, solution)| solution.groups(step))
     });
     let sizes = all
         .flatten()
@@ -227,7 +224,7 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
     [force, force * side, side]
 }
 
-fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> Vec<String> {
+fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> [String; 5] {
     const ROUNDING: f64 = 1e-12;
     let [x, y, turning] = state.carried();
     let [u, v] = state.displacement;
@@ -238,10 +235,14 @@ fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> Vec<String> {
             number(value)
         }
     };
-    let forces = [(x, force), (y, force), (turning, moment)];
-    let forces = forces.map(|(value, scale)| shown(value, scale));
-    let displacements = [u, v].map(|value| shown(value, side));
-    forces.into_iter().chain(displacements).collect()
+    let all = [
+        (x, force),
+        (y, force),
+        (turning, moment),
+        (u, side),
+        (v, side),
+    ];
+    all.map(|(value, scale)| shown(value, scale))
 }
 
 /// What happens at all groups in a model at a load factor, for machines; `None` where it has no solution.

@@ -1,13 +1,12 @@
 //! How the models came to their states and how far they are from each other along the path: convergence, multipliers, deviations.
 
 use super::problem::Specimen;
-use super::results::models::{ModelSeries, Models};
+use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance};
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::corrector::specimen::SUPPORTS;
-use crate::results::{Array, Axis, Block, Drawing, Line, LineChart, Stroke, or_dash};
-use crate::solve::State;
+use crate::results::{Array, Axis, Block, Drawing, Line, LineChart, Stroke, Table, or_dash};
 use crate::studies::ModelKind;
 
 /// The deviations from the finite elements over the path, with a caption; `None` where there are none.
@@ -29,10 +28,7 @@ pub fn deviations_chart(
     let charts = measures.into_iter().filter_map(|(name, measure, stroke)| {
         let line = |kind: ModelKind| {
             let point = |(factor, deviation): (&f64, &Option<Deviation>)| {
-                let distance = match kind {
-                    ModelKind::MassSpring => deviation.as_ref()?.springs?,
-                    _ => deviation.as_ref()?.corrected,
-                };
+                let distance = deviation.as_ref()?.of(kind)?;
                 let value = measure(&distance).filter(|value| *value > 0.0)?;
                 Some([specimen.along.coordinate(*factor), value])
             };
@@ -61,7 +57,7 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
     let last = models.reached().checked_sub(1)?;
     let at = specimen.along.describe(specimen.factors[last]);
     let line = |kind: &ModelKind| {
-        let state = models.of(*kind).solution.states.get(last)?;
+        let state = models.of(*kind).states.get(last)?;
         let residuals = state.convergence.residuals.iter().enumerate();
         let points = residuals.map(|(iteration, size)| [iteration as f64, *size]);
         let points: Vec<_> = points.collect();
@@ -93,41 +89,35 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
 
 /// The iterations of every model at every load factor, and what they mean.
 pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
-    let all = models.all();
-    let row = |model: &ModelSeries, state: &State| {
-        let log = &state.convergence;
-        let size =
-            |residual: Option<&f64>| or_dash(residual.copied(), |size| format!("{size:.1e}"));
-        vec![
-            specimen.along.value(state.factor),
-            model.style.name.to_owned(),
-            state.load_steps.to_string(),
-            log.iterations().to_string(),
-            size(log.residuals.first()),
-            size(log.residuals.last()),
-            log.cut_steps.to_string(),
-            log.shifted_steps.to_string(),
-        ]
-    };
-    let mut rows = Vec::new();
-    for step in 0..models.reached() {
-        let states = all.iter();
-        let states = states.filter_map(|model| Some((model, model.solution.states.get(step)?)));
-        rows.extend(states.map(|(model, state)| row(model, state)));
-    }
-    let head = [
-        specimen.along.head(),
-        "model",
-        "load steps",
-        "iterations",
-        "first residual [–]",
-        "last residual [–]",
-        "steps cut",
-        "tangents shifted",
-    ];
+    let rows = (0..models.reached()).flat_map(|step| {
+        let states = models.all().into_iter();
+        states.filter_map(move |(model, own)| Some((model, own.states.get(step)?)))
+    });
+    let size = |residual: Option<&f64>| or_dash(residual.copied(), |size| format!("{size:.1e}"));
+    let table = Table::of(rows)
+        .column(specimen.along.head(), |(_, state)| {
+            specimen.along.value(state.factor)
+        })
+        .column("model", |(model, _)| model.style().name.to_owned())
+        .column("load steps", |(_, state)| state.load_steps.to_string())
+        .column("iterations", |(_, own)| {
+            own.convergence.iterations().to_string()
+        })
+        .column("first residual [–]", |(_, own)| {
+            size(own.convergence.residuals.first())
+        })
+        .column("last residual [–]", |(_, own)| {
+            size(own.convergence.residuals.last())
+        })
+        .column("steps cut", |(_, own)| {
+            own.convergence.cut_steps.to_string()
+        })
+        .column("tangents shifted", |(_, own)| {
+            own.convergence.shifted_steps.to_string()
+        });
     let mut blocks = vec![
         Block::heading("Convergence"),
-        Block::table(&head, rows),
+        table.block(),
         Block::Paragraph(format!(
             "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",
             corrections_in_words(specimen)
@@ -160,18 +150,16 @@ fn climbs(specimen: &Specimen, models: &Models) -> Option<Block> {
         .climbs
         .iter()
         .zip(&specimen.factors);
-    let rows: Vec<_> = climbs
-        .map(|(climb, stretch)| {
-            let away = or_dash(Some(climb.away), |away| format!("{away:.3}"));
-            vec![specimen.along.value(*stretch), climb.to_string(), away]
+    let table = Table::of(climbs)
+        .column(specimen.along.head(), |(_, stretch)| {
+            specimen.along.value(**stretch)
         })
-        .collect();
-    let head = [
-        specimen.along.head(),
-        "the climb began with",
-        "root mean square distance of this start to the corrected field on the first grid [mm]",
-    ];
-    (!rows.is_empty()).then(|| Block::table(&head, rows))
+        .column("the climb began with", |(climb, _)| climb.to_string())
+        .column(
+            "root mean square distance of this start to the corrected field on the first grid [mm]",
+            |(climb, _)| or_dash(Some(climb.away), |away| format!("{away:.3}")),
+        );
+    (!table.is_empty()).then(|| table.block())
 }
 
 /// The multipliers of every condition of the corrected field at the nodes; zero where the condition does not hold.

@@ -7,22 +7,20 @@ use super::forces::Balance;
 use super::headline::headline;
 use super::problem::Specimen;
 use super::results::corrected_fields::Start;
-use super::results::models::{ModelSeries, Models};
+use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance, checks, deviations};
-use super::warnings::warnings;
 use super::{forces, history, statement, work};
-use crate::results::{Block, Content, Material, Outcome, Step, or_dash, pictures};
+use crate::problem::Solution;
+use crate::results::{Block, Content, Material, Outcome, Step, Table, object, or_dash, pictures};
 use crate::studies::ModelKind;
+use crate::studies::findings::{Examined, findings};
 use crate::units::{decimals, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let deviations = deviations(specimen, models);
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
-    let mut warnings = warnings(specimen, models);
     let balances = forces::balances(specimen, models);
-    warnings.extend(forces::unbalanced(&balances));
-    warnings.extend(forces::unjudged_moment(specimen, models));
     let quantities = |(step, deviation): (usize, &Option<Deviation>)| Step {
         at: specimen.factors[step],
         models: quantities(specimen, models, step, deviation.as_ref()),
@@ -42,7 +40,13 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
             "forces.csv".to_owned(),
             Content::Text(forces::csv(specimen, models)),
         )],
-        warnings,
+        findings: findings(Examined {
+            specimen,
+            series: &models.all_series(),
+            models: Some(models),
+            has_springs: true,
+            is_motion: false,
+        }),
         balance: forces::worst_balance(&balances),
         balances: forces::balances_json(&balances),
         times: models.times.clone(),
@@ -85,54 +89,72 @@ fn blocks(
     blocks
 }
 
-/// The deviations of springs and corrected field as a table for a terminal; empty where there are none.
-fn agreement(specimen: &Specimen, models: &Models, deviations: &[Option<Deviation>]) -> String {
+/// A measure of the distance to the finite elements: its name, its value, and its decimals in the report, and in the terminal of springs and of the
+/// corrected field.
+struct Measure {
+    name: &'static str,
+    value: fn(&Distance) -> Option<f64>,
+    decimals: [usize; 2],
+}
+
+/// The measures of a terminal: displacement, of a plate the departure, and what is measured.
+fn measures(specimen: &Specimen, models: &Models) -> Vec<Measure> {
     let what = match models.reference.measured.unit() {
         "N" => "force",
         _ => "group",
     };
+    let of = |name, value, decimals| Measure {
+        name,
+        value,
+        decimals,
+    };
+    let displacement = of("displacement", |own| Some(own.displacement), [3, 4]);
+    let departure = of("departure", Distance::departure, [2, 3]);
+    let measured = of(what, |own| Some(own.measured.abs()), [2, 3]);
     let is_plate = specimen.grids().is_some();
-    let of_model = |model: &str| {
-        let departure = is_plate.then(|| format!("{model}: departure"));
-        let displacement = [format!("{model}: displacement")];
-        let all = displacement.into_iter().chain(departure);
-        all.chain([format!("{model}: {what}")]).collect::<Vec<_>>()
-    };
-    let mut head = vec![specimen.along.head().to_owned()];
-    head.extend(
-        [ModelKind::MassSpring, ModelKind::Corrected]
-            .iter()
-            .flat_map(|kind| of_model(kind.style().name)),
-    );
-    let figures = |distance: Option<Distance>, decimals: [usize; 3]| {
-        let departure =
-            is_plate.then(|| figure(distance.and_then(|own| own.departure()), decimals[1]));
-        let displacement = figure(distance.map(|own| own.displacement), decimals[0]);
-        let measured = figure(distance.map(|own| own.measured.abs()), decimals[2]);
-        [displacement]
-            .into_iter()
-            .chain(departure)
-            .chain([measured])
-    };
-    let row = |(factor, deviation): (&f64, &Option<Deviation>)| {
-        let own = deviation.as_ref()?;
-        let springs = figures(own.springs, [3, 2, 2]);
-        let corrected = figures(Some(own.corrected), [4, 3, 3]);
-        let at = [specimen.along.value(*factor)].into_iter();
-        Some(at.chain(springs).chain(corrected).collect())
-    };
-    let rows: Vec<_> = specimen
-        .factors
-        .iter()
-        .zip(deviations)
-        .filter_map(row)
-        .collect();
-    if rows.is_empty() {
+    let departure = is_plate.then_some(departure);
+    [displacement]
+        .into_iter()
+        .chain(departure)
+        .chain([measured])
+        .collect()
+}
+
+/// The deviations of the load factors that have some.
+fn judged<'a>(
+    specimen: &'a Specimen,
+    deviations: &'a [Option<Deviation>],
+) -> impl Iterator<Item = (f64, &'a Deviation)> {
+    let factors = specimen.factors.iter().copied();
+    let pairs = factors.zip(deviations);
+    pairs.filter_map(|(factor, deviation)| Some((factor, deviation.as_ref()?)))
+}
+
+/// The deviations of springs and corrected field as a table for a terminal; empty where there are none.
+fn agreement(specimen: &Specimen, models: &Models, deviations: &[Option<Deviation>]) -> String {
+    let along = specimen.along;
+    let mut table = Table::of(judged(specimen, deviations))
+        .column(along.head(), |(factor, _)| along.value(*factor));
+    if table.is_empty() {
         return String::new();
     }
-    let table = Block::Table(head, rows).plain();
-    format!("deviation from the finite elements [%]\n{table}")
+    for (index, kind) in CORRECTED_LAST.into_iter().enumerate() {
+        for measure in measures(specimen, models) {
+            let head = format!("{}: {}", kind.style().name, measure.name);
+            table = table.column(head, |(_, deviation)| {
+                let value = deviation.of(kind).and_then(|own| (measure.value)(&own));
+                figure(value, measure.decimals[index])
+            });
+        }
+    }
+    format!(
+        "deviation from the finite elements [%]\n{}",
+        table.block().plain()
+    )
 }
+
+/// The models that are compared with the finite elements.
+const CORRECTED_LAST: [ModelKind; 2] = [ModelKind::MassSpring, ModelKind::Corrected];
 
 /// The figures of one load factor for machines.
 fn quantities(
@@ -142,12 +164,12 @@ fn quantities(
     deviation: Option<&Deviation>,
 ) -> Map<String, Value> {
     let all = models.all().into_iter();
-    all.map(|model| {
-        let key = model.style.key.to_owned();
-        let Some(mut quantities) = quantities_of_model(specimen, models, model, step) else {
+    all.map(|(kind, solution)| {
+        let key = kind.style().key.to_owned();
+        let Some(mut quantities) = quantities_of_model(specimen, models, solution, step) else {
             return (key, Value::Null);
         };
-        quantities.extend(match model.kind {
+        quantities.extend(match kind {
             ModelKind::MassSpring => deviation_json(deviation.and_then(|own| own.springs)),
             ModelKind::Corrected => {
                 let mut own = deviation_json(deviation.map(|own| own.corrected));
@@ -168,19 +190,16 @@ fn quantities(
 fn quantities_of_model(
     specimen: &Specimen,
     models: &Models,
-    model: ModelSeries,
+    solution: &Solution,
     step: usize,
 ) -> Option<Map<String, Value>> {
     let measured = &models.reference.measured;
-    let solution = model.solution;
     let state = solution.states.get(step)?;
-    let mut all = Map::new();
-    all.insert(
-        "groups".into(),
-        json!(forces::groups(specimen, solution, step)),
-    );
-    all.insert("energy_mJ".into(), json!(state.convergence.energy));
-    all.insert("residuals".into(), json!(state.convergence.residuals));
+    let mut all = object(json!({
+        "groups": forces::groups(specimen, solution, step),
+        "energy_mJ": state.convergence.energy,
+        "residuals": state.convergence.residuals,
+    }));
     if let Some(work) = solution.works.get(step).copied().flatten() {
         all.insert("stored_mJ".into(), json!(work.stored));
         all.insert("dissipated_mJ".into(), json!(work.dissipated));
@@ -197,19 +216,11 @@ fn quantities_of_model(
 
 /// How far a model is from the finite elements.
 fn deviation_json(distance: Option<Distance>) -> Map<String, Value> {
-    let mut all = Map::new();
-    all.insert(
-        "displacement_percent".into(),
-        json!(distance.map(|own| own.displacement)),
-    );
-    all.insert(
-        "measured_percent".into(),
-        json!(distance.map(|own| own.measured)),
-    );
-    all.insert(
-        "max_difference_mm".into(),
-        json!(distance.map(|own| own.largest)),
-    );
+    let mut all = object(json!({
+        "displacement_percent": distance.map(|own| own.displacement),
+        "measured_percent": distance.map(|own| own.measured),
+        "max_difference_mm": distance.map(|own| own.largest),
+    }));
     if let Some(departure) = distance.and_then(|own| own.departure()) {
         all.insert("departure_percent".into(), json!(departure));
     }
@@ -223,7 +234,7 @@ fn own_errors_json(
 ) -> Map<String, Value> {
     let reference = &models.reference;
     let own = |which: usize| deviation.map(|own| own.own[which]);
-    let all = json!({
+    object(json!({
         "displacement_discretisation_percent": reference.displacement_percent(step),
         "departure_discretisation_percent": own(1),
         "field_discretisation_percent": reference.field_percent(step),
@@ -231,8 +242,7 @@ fn own_errors_json(
         "three_meshes_percent": reference.three_meshes_percent(step),
         "recovery_percent": reference.recovered_percent(step),
         "estimated_energy_norm_percent": reference.energy_percent(step),
-    });
-    all.as_object().cloned().unwrap_or_default()
+    }))
 }
 
 /// A figure with some decimals; a dash where there is none.
@@ -248,78 +258,62 @@ fn deviation_table(
 ) -> Block {
     let is_plate = specimen.grids().is_some();
     let what = models.reference.measured.name();
-    let mut head = vec![
-        specimen.along.head().to_owned(),
-        "model".to_owned(),
-        "displacement [%]".to_owned(),
-    ];
-    head.extend(is_plate.then(|| "departure from affine [%]".to_owned()));
-    head.extend([
-        "largest difference [mm]".to_owned(),
-        format!("{what} [%]"),
-        "correction [%]".to_owned(),
-    ]);
-    let row = |factor: f64, kind: ModelKind, distance: Distance, correction: Option<f64>| {
-        let mut row = vec![
-            specimen.along.value(factor),
-            kind.style().name.to_owned(),
-            figure(Some(distance.displacement), 4),
-        ];
-        row.extend(is_plate.then(|| figure(distance.departure(), 3)));
-        row.extend([
-            figure(Some(distance.largest), 4),
-            or_dash(Some(distance.measured), |value| format!("{value:+.3}")),
-            figure(correction, 2),
-        ]);
-        row
-    };
-    let rows = specimen
-        .factors
-        .iter()
-        .zip(deviations)
-        .flat_map(|(factor, deviation)| {
-            let springs = deviation.and_then(|own| own.springs);
-            let springs = springs.map(|own| row(*factor, ModelKind::MassSpring, own, None));
-            let corrected = deviation.map(|own| {
-                row(
-                    *factor,
-                    ModelKind::Corrected,
-                    own.corrected,
-                    own.correction_percent(),
-                )
-            });
-            springs.into_iter().chain(corrected)
-        });
-    Block::Table(head, rows.collect())
+    let rows = judged(specimen, deviations).flat_map(|(factor, deviation)| {
+        let of = move |kind| Some((factor, kind, deviation.of(kind)?, deviation));
+        CORRECTED_LAST.into_iter().filter_map(of)
+    });
+    Table::of(rows)
+        .column(specimen.along.head(), |(factor, ..)| {
+            specimen.along.value(*factor)
+        })
+        .column("model", |(_, kind, ..)| kind.style().name.to_owned())
+        .column("displacement [%]", |(.., own, _)| {
+            figure(Some(own.displacement), 4)
+        })
+        .column_if(is_plate, "departure from affine [%]", |(.., own, _)| {
+            figure(own.departure(), 3)
+        })
+        .column("largest difference [mm]", |(.., own, _)| {
+            figure(Some(own.largest), 4)
+        })
+        .column(format!("{what} [%]"), |(.., own, _)| {
+            or_dash(Some(own.measured), |value| format!("{value:+.3}"))
+        })
+        .column("correction [%]", |(_, kind, _, deviation)| {
+            let is_corrected = *kind == ModelKind::Corrected;
+            figure(deviation.correction_percent().filter(|_| is_corrected), 2)
+        })
+        .block()
 }
 
 /// What is known of the finite elements' own error at every load factor.
 fn own_errors(specimen: &Specimen, models: &Models) -> Block {
-    let reference = &models.reference;
-    let measured = &reference.measured;
-    let what = measured.name();
-    let head = [
-        specimen.along.head(),
-        &format!("{what} [{}]", measured.unit()),
-        &format!("error of the {what}, by three meshes [%]"),
-        "the same, by recovery [%]",
-        "error of the displacement [%]",
-        "error of the field [%]",
-        "error of the field by recovery, energy norm [%]",
-    ];
-    let rows = (0..reference.reached()).map(|step| {
-        let value = measured.at(&reference.finest, step);
-        vec![
-            specimen.along.value(specimen.factors[step]),
-            or_dash(value, |value| decimals(value, 5)),
-            figure(reference.three_meshes_percent(step), 5),
-            figure(reference.recovered_percent(step), 5),
-            figure(reference.displacement_percent(step), 5),
-            figure(reference.field_percent(step), 5),
-            figure(reference.energy_percent(step), 4),
-        ]
-    });
-    Block::table(&head, rows)
+    let (along, reference) = (specimen.along, &models.reference);
+    let (measured, what) = (&reference.measured, reference.measured.name());
+    Table::of(0..reference.reached())
+        .column(along.head(), |step| along.value(specimen.factors[*step]))
+        .column(format!("{what} [{}]", measured.unit()), |step| {
+            or_dash(measured.at(&reference.finest, *step), |value| {
+                decimals(value, 5)
+            })
+        })
+        .column(
+            format!("error of the {what}, by three meshes [%]"),
+            |step| figure(reference.three_meshes_percent(*step), 5),
+        )
+        .column("the same, by recovery [%]", |step| {
+            figure(reference.recovered_percent(*step), 5)
+        })
+        .column("error of the displacement [%]", |step| {
+            figure(reference.displacement_percent(*step), 5)
+        })
+        .column("error of the field [%]", |step| {
+            figure(reference.field_percent(*step), 5)
+        })
+        .column("error of the field by recovery, energy norm [%]", |step| {
+            figure(reference.energy_percent(*step), 4)
+        })
+        .block()
 }
 
 fn introduction(specimen: &Specimen, models: &Models) -> String {

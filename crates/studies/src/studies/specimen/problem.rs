@@ -203,12 +203,7 @@ impl Specimen {
 
     /// What stresses follow from.
     pub fn sheet(&self) -> Sheet<'_> {
-        Sheet {
-            law: &*self.problem.law,
-            thickness: self.problem.thickness,
-            past: &[],
-            viscous: None,
-        }
+        Sheet::elastic(&*self.problem.law, self.problem.thickness)
     }
 
     /// The plate's grids, where the specimen is one.

@@ -4,6 +4,8 @@ use super::problem::Specimen;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
+use crate::studies::findings::{Examined, findings};
+use crate::studies::series::ModelSeries;
 use crate::studies::{ModelKind, OneModel, Progress};
 
 pub mod corrected_fields;
@@ -58,7 +60,13 @@ pub fn one_model(
         forces: measured_forces(specimen, &solution),
         multipliers,
         ends: ends.iter().map(end::End::error).collect(),
-        warnings: specimen.warnings_of_model(kind, &solution),
+        warnings: findings(Examined {
+            specimen,
+            series: &[ModelSeries::of(kind, &solution, &[])],
+            models: None,
+            has_springs: false,
+            is_motion: false,
+        }),
         solution,
     })
 }

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::problem::{PlateGrids, Specimen};
 use crate::problem::{Drive, Load, Support};
-use crate::results::Block;
+use crate::results::{Block, object};
 use crate::units::Linear;
 
 /// The specimen, its supports and loads.
@@ -50,14 +50,13 @@ pub fn json(specimen: &Specimen) -> Map<String, Value> {
         supports.map(|(group, own)| json!({ "group": group, "says": support_words(own) }));
     let loads = problem.loads.iter();
     let loads = loads.map(|(group, own)| json!({ "group": group, "says": load_words(own) }));
-    let all = json!({
+    let mut all = object(json!({
         "specimen": specimen.outline.describe(),
         "thickness_mm": problem.thickness,
         "supports": supports.collect::<Vec<_>>(),
         "loads": loads.collect::<Vec<_>>(),
         (format!("{}s", specimen.along.column())): specimen.factors,
-    });
-    let mut all = all.as_object().cloned().unwrap_or_default();
+    }));
     if let Some(grids) = specimen.grids() {
         all.extend(grids_json(grids));
     }
@@ -67,14 +66,13 @@ pub fn json(specimen: &Specimen) -> Map<String, Value> {
 /// The measures and grids of a plate.
 fn grids_json(grids: &PlateGrids) -> Map<String, Value> {
     let elements = &grids.elements;
-    let all = json!({
+    object(json!({
         "length_mm": grids.size[0],
         "width_mm": grids.size[1],
         "cells": grids.cells,
         "corrector": { "grading": grids.correction.grading },
         "reference": { "element": elements.element.name(), "cells": elements.cells, "grading": elements.grading },
-    });
-    all.as_object().cloned().unwrap_or_default()
+    }))
 }
 
 /// A support in words.

@@ -10,10 +10,10 @@ pub fn blocks(specimen: &Specimen, models: &Models) -> Vec<Block> {
         return Vec::new();
     }
     let all = models.all();
-    let names = all.map(|model| model.style.name);
+    let names = all.map(|(kind, _)| kind.style().name);
     let row = |(step, factor): (usize, &f64)| {
         let works = all.iter();
-        let works = works.map(|model| model.solution.works.get(step).copied().flatten());
+        let works = works.map(|(_, solution)| solution.works.get(step).copied().flatten());
         (specimen.along.value(*factor), works.collect())
     };
     let rows = specimen.factors.iter().enumerate().map(row);

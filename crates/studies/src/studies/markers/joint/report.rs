@@ -3,7 +3,8 @@
 use super::{CorrectedSpecimen, JointResults, JointStudy};
 use crate::error::Error;
 use crate::estimation::{Direction, FieldEstimate, ForcePrediction, JointEstimate, VAGUE};
-use crate::results::{Block, or_dash};
+use crate::results::{Block, Table, or_dash};
+use crate::statistics::Estimate;
 use crate::studies::markers::report::interval;
 use crate::units::decimals;
 
@@ -194,56 +195,48 @@ pub fn blocks(
 }
 
 fn parameters(study: &JointStudy, estimate: &JointEstimate, explained: bool) -> Block {
-    let rows = estimate.with_keys().map(|(parameter, value)| {
+    let uncertain = |value: &Estimate, words: String| {
         let [low, high] = value.interval;
-        let uncertain = |words: String| {
-            let shown = explained && low < high;
-            if shown { words } else { "–".to_owned() }
-        };
-        let stated = study.cards[0].parameter(parameter.key);
-        vec![
-            parameter.key.to_owned(),
-            decimals(value.value, 6),
-            parameter.unit().to_owned(),
-            uncertain(decimals(value.standard_error, 6)),
-            uncertain(format!("{} … {}", decimals(low, 6), decimals(high, 6))),
-            stated.map_or(String::new(), |value| decimals(value, 6)),
-        ]
-    });
-    let head = [
-        "parameter",
-        "value",
-        "unit",
-        "standard error",
-        "95 % interval",
-        "initial value",
-    ];
-    Block::table(&head, rows)
+        let shown = explained && low < high;
+        if shown { words } else { "–".to_owned() }
+    };
+    Table::of(estimate.with_keys())
+        .column("parameter", |(parameter, _)| parameter.key.to_owned())
+        .column("value", |(_, value)| decimals(value.value, 6))
+        .column("unit", |(parameter, _)| parameter.unit().to_owned())
+        .column("standard error", |(_, value)| {
+            uncertain(value, decimals(value.standard_error, 6))
+        })
+        .column("95 % interval", |(_, value)| {
+            let ends = value.interval.map(|end| decimals(end, 6));
+            uncertain(value, ends.join(" … "))
+        })
+        .column("initial value", |(parameter, _)| {
+            let stated = study.cards[0].parameter(parameter.key);
+            stated.map_or(String::new(), |value| decimals(value, 6))
+        })
+        .block()
 }
 
 fn determined(estimate: &JointEstimate) -> [Block; 3] {
-    let rows = estimate.directions.iter().map(|direction| {
-        let answer = if direction.is_determined() {
-            "yes"
-        } else {
-            "no"
-        };
-        vec![
-            combination(estimate, direction),
-            decimals(direction.relative_error.recip(), 4),
-            format!("{:.4}", 100.0 * direction.relative_error),
-            answer.to_owned(),
-        ]
-    });
-    let head = [
-        "combination (each parameter relative to its value)",
-        "singular value",
-        "relative standard error [%]",
-        "determined",
-    ];
+    let table = Table::of(&estimate.directions)
+        .column(
+            "combination (each parameter relative to its value)",
+            |direction| combination(estimate, direction),
+        )
+        .column("singular value", |direction| {
+            decimals(direction.relative_error.recip(), 4)
+        })
+        .column("relative standard error [%]", |direction| {
+            format!("{:.4}", 100.0 * direction.relative_error)
+        })
+        .column("determined", |direction| {
+            let is_determined = direction.is_determined();
+            if is_determined { "yes" } else { "no" }.to_owned()
+        });
     [
         Block::heading("What the data determine"),
-        Block::table(&head, rows),
+        table.block(),
         Block::paragraph(format!(
             "Singular values of the pooled sensitivity to the parameters (roots of the eigenvalues of their information matrix), edge motions \
              eliminated. A combination with a relative standard error above {:.0} % is treated as undetermined and kept as on the card, \
@@ -273,36 +266,32 @@ fn intervals(estimate: &JointEstimate, explained: bool) -> String {
 }
 
 fn predictions(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
-    let rows = forces(study, &joint.estimate);
-    let rows = rows.into_iter().map(|(name, frame, force)| {
-        let measured = &force.measured;
-        let difference = force
-            .predicted
-            .map(|predicted| 100.0 * (predicted / measured.force - 1.0));
-        vec![
-            name.to_owned(),
-            frame.to_string(),
-            measured.edge.clone(),
-            ["x", "y"][measured.axis].to_owned(),
-            decimals(measured.force, 6),
-            decimals(measured.standard_deviation, 6),
-            or_dash(force.predicted, |value| format!("{value:.6}")),
-            or_dash(difference, |value| format!("{value:.3}")),
-        ]
-    });
-    let head = [
-        "specimen",
-        "frame",
-        "edge",
-        "axis",
-        "measured force [N]",
-        "standard deviation [N]",
-        "predicted by the other frames [N]",
-        "difference [%]",
-    ];
+    let difference = |force: &ForcePrediction| {
+        let predicted = force.predicted?;
+        Some(100.0 * (predicted / force.measured.force - 1.0))
+    };
+    let table = Table::of(forces(study, &joint.estimate))
+        .column("specimen", |(name, ..)| (*name).to_owned())
+        .column("frame", |(_, frame, _)| frame.to_string())
+        .column("edge", |(.., force)| force.measured.edge.clone())
+        .column("axis", |(.., force)| {
+            ["x", "y"][force.measured.axis].to_owned()
+        })
+        .column("measured force [N]", |(.., force)| {
+            decimals(force.measured.force, 6)
+        })
+        .column("standard deviation [N]", |(.., force)| {
+            decimals(force.measured.standard_deviation, 6)
+        })
+        .column("predicted by the other frames [N]", |(.., force)| {
+            or_dash(force.predicted, |value| format!("{value:.6}"))
+        })
+        .column("difference [%]", |(.., force)| {
+            or_dash(difference(force), |value| format!("{value:.3}"))
+        });
     [
         Block::heading("Forces of left-out frames"),
-        Block::table(&head, rows),
+        table.block(),
         Block::paragraph(
             "Frames are left out in groups, one after the other; the law found from the other frames and the markers of the frame predict its \
              force. A dash: no other group has a measured force.",

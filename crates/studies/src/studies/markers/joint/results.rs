@@ -4,13 +4,13 @@ use serde_json::{Map, Value, json};
 
 use super::report::{self, ForceRow};
 use super::{CorrectedSpecimen, JointResults, JointStudy, card};
-use crate::document::write_records;
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
-    Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
+    Axis, Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
+    Table, object,
 };
 use crate::statistics::{extremes, larger};
-use crate::studies::markers::json::{object, of_estimate};
+use crate::studies::markers::json::of_estimate;
 
 /// The `kind` of these results.
 pub const KIND: &str = "parameters";
@@ -31,9 +31,13 @@ pub fn results(
     let ended = joint.estimate.ended.iter().map(|reason| {
         format!("the search for the parameters stopped before it converged: {reason}; frames, forces and thickness contradict each other")
     });
+    let scatter = force_scatter(&joint.estimate).into_iter();
+    let of_specimens = specimens.iter().filter_map(doubt);
     let doubts = ended
-        .chain(force_scatter(&joint.estimate))
-        .chain(specimens.iter().filter_map(doubt));
+        .map(|message| ("search-ended", message))
+        .chain(scatter.map(|message| ("force-scatter", message)))
+        .chain(of_specimens.map(|message| ("specimen", message)));
+    let doubts = doubts.map(|(rule, message)| Finding::doubt(rule, (message, String::new())));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let card = Content::Text(joint.card.text.clone());
     let outcome = Outcome {
@@ -46,7 +50,7 @@ pub fn results(
             (card::FILE.to_owned(), card),
             ("forces.csv".to_owned(), Content::Text(table(&rows))),
         ],
-        doubts: doubts.collect(),
+        findings: doubts.collect(),
         balance: estimates.map(|estimate| estimate.imbalance).reduce(larger),
         summary: report::summary(study, joint, specimens),
         ..Outcome::default()
@@ -172,31 +176,25 @@ fn problem(
 }
 
 fn table(rows: &[ForceRow]) -> String {
-    let head = [
-        "specimen",
-        "frame",
-        "edge",
-        "axis",
-        "measured_force [N]",
-        "standard_deviation [N]",
-        "predicted_by_others [N]",
-    ];
-    let record = |(name, frame, force): &ForceRow| {
-        let measured = &force.measured;
-        vec![
-            (*name).to_owned(),
-            frame.to_string(),
-            measured.edge.clone(),
-            ["x", "y"][measured.axis].to_owned(),
-            measured.force.to_string(),
-            measured.standard_deviation.to_string(),
+    Table::of(rows)
+        .column("specimen", |(name, ..)| (*name).to_owned())
+        .column("frame", |(_, frame, _)| frame.to_string())
+        .column("edge", |(.., force)| force.measured.edge.clone())
+        .column("axis", |(.., force)| {
+            ["x", "y"][force.measured.axis].to_owned()
+        })
+        .column("measured_force [N]", |(.., force)| {
+            force.measured.force.to_string()
+        })
+        .column("standard_deviation [N]", |(.., force)| {
+            force.measured.standard_deviation.to_string()
+        })
+        .column("predicted_by_others [N]", |(.., force)| {
             force
                 .predicted
-                .map_or(String::new(), |force| force.to_string()),
-        ]
-    };
-    let head = head.map(str::to_owned).to_vec();
-    write_records(std::iter::once(head).chain(rows.iter().map(record)))
+                .map_or(String::new(), |force| force.to_string())
+        })
+        .csv()
 }
 
 /// Predicted over measured forces; `None` where none was predicted.

@@ -7,7 +7,7 @@ use super::lattice::OnLattice;
 use super::reference::Reference;
 use crate::error::Error;
 use crate::problem::Solution;
-use crate::results::models::ModelStyle;
+use crate::studies::series::ModelSeries;
 use crate::studies::specimen::problem::Specimen;
 use crate::studies::{ModelKind, Progress};
 
@@ -21,17 +21,6 @@ pub struct Models {
     expected: [Vec<Vec<f64>>; 2],
     /// Wall-clock times: what was computed, and seconds.
     pub times: Vec<(String, f64)>,
-}
-
-/// The equilibria of one model along the path of a study.
-#[derive(Clone, Copy)]
-pub struct ModelSeries<'a> {
-    /// Which model it is.
-    pub kind: ModelKind,
-    /// Its name and colour.
-    pub style: ModelStyle,
-    /// Its states, as far as its path goes.
-    pub solution: &'a Solution,
 }
 
 impl Models {
@@ -84,46 +73,55 @@ impl Models {
         })
     }
 
-    /// A model.
-    pub fn of(&self, kind: ModelKind) -> ModelSeries<'_> {
-        ModelSeries {
-            kind,
-            style: kind.style(),
-            solution: match kind {
-                ModelKind::MassSpring => &self.on_lattice.uncorrected,
-                ModelKind::Corrected => &self.on_lattice.corrected,
-                ModelKind::FiniteElement => &self.reference.finest,
-            },
+    /// The equilibria of a model, as far as its path goes.
+    pub fn of(&self, kind: ModelKind) -> &Solution {
+        match kind {
+            ModelKind::MassSpring => &self.on_lattice.uncorrected,
+            ModelKind::Corrected => &self.on_lattice.corrected,
+            ModelKind::FiniteElement => &self.reference.finest,
         }
     }
 
     /// Springs, corrected springs, finite elements.
-    pub fn all(&self) -> [ModelSeries<'_>; 3] {
-        ModelKind::ALL.map(|kind| self.of(kind))
+    pub fn all(&self) -> [(ModelKind, &Solution); 3] {
+        ModelKind::ALL.map(|kind| (kind, self.of(kind)))
+    }
+
+    /// The states of a model with what pictures, grids and findings need of them.
+    pub fn series(&self, kind: ModelKind) -> ModelSeries<'_> {
+        ModelSeries::of(kind, self.of(kind), self.all_expected(kind))
+    }
+
+    /// Those of springs, corrected springs, finite elements.
+    pub fn all_series(&self) -> [ModelSeries<'_>; 3] {
+        ModelKind::ALL.map(|kind| self.series(kind))
     }
 
     /// The model that is nearest to the truth: the finite elements, or else the corrected field or the springs; `None` where none has
     /// reached a load factor.
-    pub fn best(&self) -> Option<ModelSeries<'_>> {
-        let all = self.all().into_iter().rev();
-        all.into_iter().find(|model| model.solution.reached() > 0)
+    pub fn best(&self) -> Option<ModelKind> {
+        let mut all = self.all().into_iter().rev();
+        all.find_map(|(kind, solution)| (solution.reached() > 0).then_some(kind))
     }
 
     /// How many load factors at least one model has reached.
     pub fn reached(&self) -> usize {
-        let reached = self.all().map(|model| model.solution.reached());
+        let reached = self.all().map(|(_, solution)| solution.reached());
         reached.into_iter().max().unwrap_or(0)
     }
 
     /// The finite elements' displacement at the nodes of springs or corrected field, at the load factor of a number; `None` where they
     /// have none.
     pub fn expected(&self, kind: ModelKind, step: usize) -> Option<&[f64]> {
-        let of_model = match kind {
+        self.all_expected(kind).get(step).map(Vec::as_slice)
+    }
+
+    fn all_expected(&self, kind: ModelKind) -> &[Vec<f64>] {
+        match kind {
             ModelKind::MassSpring => &self.expected[0],
             ModelKind::Corrected => &self.expected[1],
-            ModelKind::FiniteElement => return None,
-        };
-        of_model.get(step).map(Vec::as_slice)
+            ModelKind::FiniteElement => &[],
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Rounds of local refinement: whether their goal is reached, and their table.
 
-use super::reference::{Reference, Round};
+use super::reference::Reference;
 use crate::compare::judgement::Judgement;
-use crate::results::{Block, Check, Wanted, or_dash};
+use crate::results::{Block, Check, Table, Wanted, or_dash};
 use crate::studies::specimen::problem::Specimen;
 
 impl Reference {
@@ -32,26 +32,21 @@ impl Reference {
         if self.rounds.is_empty() {
             return outline.into_iter().collect();
         }
-        let head = [
-            "round",
-            "cells",
-            "nodes",
-            "error of the field by recovery, energy norm [%]",
-            &format!("error of the {} by recovery [%]", self.measured.name()),
-        ];
-        let row = |(number, round): (usize, &Round)| {
-            vec![
-                number.to_string(),
-                round.cells.to_string(),
-                round.nodes.to_string(),
-                figure(round.energy_percent, 4),
-                figure(round.measured_percent, 5),
-            ]
-        };
         let text = "Local refinement: in every round the cells that contribute half of the squared error are divided into four. Errors are those at \
                     the worst load factor.";
-        let rounds = self.rounds.iter().enumerate().map(row);
-        let history = [Block::Paragraph(text.into()), Block::table(&head, rounds)];
+        let table = Table::of(self.rounds.iter().enumerate())
+            .column("round", |(number, _)| number.to_string())
+            .column("cells", |(_, round)| round.cells.to_string())
+            .column("nodes", |(_, round)| round.nodes.to_string())
+            .column(
+                "error of the field by recovery, energy norm [%]",
+                |(_, round)| figure(round.energy_percent, 4),
+            )
+            .column(
+                format!("error of the {} by recovery [%]", self.measured.name()),
+                |(_, round)| figure(round.measured_percent, 5),
+            );
+        let history = [Block::Paragraph(text.into()), table.block()];
         outline.into_iter().chain(history).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! What a specimen's study requires, judged by finite elements with an error of their own.
 
-use super::models::{ModelSeries, Models};
+use super::models::Models;
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::{Judgement, judge, judge_correction};
 use crate::mesh::{Mesh, NodalField};
@@ -66,6 +66,15 @@ impl Distance {
 }
 
 impl Deviation {
+    /// Of springs or corrected field.
+    pub fn of(&self, kind: ModelKind) -> Option<Distance> {
+        match kind {
+            ModelKind::MassSpring => self.springs,
+            ModelKind::Corrected => Some(self.corrected),
+            ModelKind::FiniteElement => None,
+        }
+    }
+
     /// 100 (1 − e_corrected/e_mass-spring) of the displacement, in %.
     pub fn correction_percent(&self) -> Option<f64> {
         Some(100.0 * (1.0 - self.corrected.displacement / self.springs?.displacement))
@@ -76,18 +85,19 @@ impl Deviation {
 pub fn distance(
     specimen: &Specimen,
     models: &Models,
-    model: ModelSeries,
+    kind: ModelKind,
     step: usize,
 ) -> Option<Distance> {
     let (what, finest) = (&models.reference.measured, &models.reference.finest);
-    let expected = models.expected(model.kind, step)?;
-    let Solution { mesh, states, .. } = model.solution;
+    let expected = models.expected(kind, step)?;
+    let solution = models.of(kind);
+    let Solution { mesh, states, .. } = solution;
     let field = &states.get(step)?.displacement;
     let displacement = area_weighted_percent(mesh, field, expected);
-    let [value, measured] = [model.solution, finest].map(|solved| what.at(solved, step));
+    let [value, measured] = [solution, finest].map(|solved| what.at(solved, step));
     let (value, measured) = (value?, measured?);
     let measured = match what.none_of(finest, step) {
-        Some(_) if what.none_of(model.solution, step).is_some() => 0.0,
+        Some(_) if what.none_of(solution, step).is_some() => 0.0,
         Some(all) => 100.0 * (value - measured) / all,
         None if value == measured => 0.0,
         None => 100.0 * (value / measured - 1.0),
@@ -109,7 +119,7 @@ fn departure_share(specimen: &Specimen, mesh: &Mesh, factor: f64, field: &[f64])
 /// The deviations at each load factor, where there is a corrected field.
 pub fn deviations(specimen: &Specimen, models: &Models) -> Vec<Option<Deviation>> {
     let deviation = |step: usize| {
-        let of = |kind| distance(specimen, models, models.of(kind), step);
+        let of = |kind| distance(specimen, models, kind, step);
         let corrected = of(ModelKind::Corrected)?;
         let reference = &models.reference;
         let displacement = reference.displacement_percent(step).unwrap_or(f64::NAN);
@@ -123,8 +133,7 @@ pub fn deviations(specimen: &Specimen, models: &Models) -> Vec<Option<Deviation>
                 displacement / share,
                 reference.measured_percent(step).unwrap_or(f64::NAN),
             ],
-            measures_none: is_none(&reference.finest)
-                && is_none(models.of(ModelKind::Corrected).solution),
+            measures_none: is_none(&reference.finest) && is_none(models.of(ModelKind::Corrected)),
         })
     };
     (0..specimen.factors.len()).map(deviation).collect()
