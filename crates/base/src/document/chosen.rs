@@ -22,14 +22,14 @@ pub fn meaning<R: Copy>(names: &ColumnNames<R>, name: &str) -> Option<R> {
 
 /// Names that people and testing machines give to the time.
 pub const TIMES: &str =
-    "time t elapsed_time total_time test_time running_time prüfzeit zeit temps 时间";
+    "time t step_time elapsed_time total_time test_time running_time prüfzeit zeit temps 时间";
 
 /// Names that testing machines give to the displacement of their grip.
 pub const MACHINE_DISPLACEMENTS: &str = "tensile_extension compressive_extension tensile_displacement compressive_displacement axial_displacement crosshead \
      crosshead_displacement crosshead_position position stroke disp standardweg traversenweg traversenweg_absolut weg 位移";
 
 /// Names that testing machines give to the force.
-pub const MACHINE_FORCES: &str = "tensile_load compressive_load tensile_force compressive_force axial_load axial_force standard_force standardkraft kraft 力 载荷";
+pub const MACHINE_FORCES: &str = "tensile_load compressive_load tensile_force compressive_force axial_load axial_force static_force normal_force fz standard_force standardkraft kraft 力 载荷";
 
 /// Columns by their roles, as the user names them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! The columns of a table, and the lines above its rows that name them.
 
+use super::decimals::is_number;
 use super::lines::is_name;
 use crate::units::{self, Dimension};
 
@@ -17,15 +18,24 @@ pub struct Column {
 }
 
 impl Column {
-    /// Name and unit of `nominal stress [MPa]`, `Stress (kPa)`, `Force_N`, `Force/N` or `Kraft in N`.
+    /// Name and unit of `nominal stress [MPa]`, `Load(Linear:Load) (kN)`, `Force_N`, `Position (z), mm` or `Kraft in N`: of several brackets
+    /// the last one that is a unit, behind the name up to the first.
     pub(super) fn new(field: &str) -> Self {
         let field = unquoted(field);
-        let bracketed = field
-            .split_once(['[', '(', '（', '［'])
-            .map(|(name, unit)| (name, unit.trim_end_matches([']', ')', '）', '］'])));
-        let (name, unit) = bracketed
-            .or_else(|| glued(field))
-            .map_or((field, None), |(name, unit)| (name, Some(spelled(unit))));
+        let bracketed = |split: Option<(&str, &str)>| {
+            let (_, unit) = split?;
+            Some(unit.trim_end_matches([']', ')', '）', '］']).to_owned())
+        };
+        let first = bracketed(field.split_once(BRACKETS));
+        let last = bracketed(field.rsplit_once(BRACKETS)).filter(|unit| is_unit(unit));
+        let behind = glued(field);
+        let unit = match (last, behind) {
+            (Some(unit), _) => Some(spelled(&unit)),
+            (None, Some((_, unit))) => Some(spelled(unit)),
+            (None, None) => first.as_deref().map(spelled),
+        };
+        let name = behind.map_or(field, |(name, _)| name);
+        let name = name.split_once(BRACKETS).map_or(name, |(name, _)| name);
         Self {
             name: plain_name(name),
             unit,
@@ -51,6 +61,9 @@ impl Column {
         self.head.clone()
     }
 }
+
+/// What opens a unit, or a remark, behind a name.
+const BRACKETS: [char; 4] = ['[', '(', '（', '［'];
 
 /// The symbol of a unit, however it is spelled; any other text as it is.
 fn spelled(unit: &str) -> String {
@@ -117,17 +130,13 @@ pub(super) struct Above {
 impl Above {
     /// Finds the lines above the rows among the first lines of a file, split into fields.
     ///
-    /// There are as many names as fields in most lines. Lines before them are a preamble; a line of names below them
-    /// contains units, unless the first line is a title over groups of columns: one with empty or repeated fields.
+    /// There are as many names as fields in most lines. The lines of this width right above the first row of numbers are names and, below
+    /// them, units; titles over groups of columns, with empty or repeated fields, and all lines before them are a preamble.
     pub fn of(lines: &[Vec<String>]) -> Self {
         let width = most_frequent(lines.iter().map(Vec::len));
         let is_head = |line: &Vec<String>| line.iter().all(|field| is_name(unquoted(field)));
         let of_width = |line: &Vec<String>| Some(line.len()) == width;
-        let Some(names) = lines
-            .iter()
-            .position(|line| of_width(line) && is_head(line))
-            .filter(|names| !lines[..*names].iter().any(of_width))
-        else {
+        let Some(first_row) = lines.iter().position(|line| of_width(line) && is_row(line)) else {
             let heads = lines.iter().take_while(|line| is_head(line)).count();
             return Self {
                 names: (heads > 0).then_some(0),
@@ -135,19 +144,30 @@ impl Above {
                 first_row: heads,
             };
         };
-        let below = lines[names..].iter();
-        let heads = below.take_while(|line| of_width(line) && is_head(line));
-        let mut heads: Vec<_> = heads.collect();
-        let below = lines.get(names + heads.len());
-        heads.extend(below.filter(|line| of_width(line) && is_units(line)));
-        let title = heads.len() > 1 && is_title(heads[0]) && !is_title(heads[1]);
-        let skipped = usize::from(title);
+        let above = lines[..first_row].iter().rev();
+        let heads = above.take_while(|line| of_width(line) && (is_head(line) || is_units(line)));
+        let first = first_row - heads.count();
+        let heads = &lines[first..first_row];
+        let last_is_units = heads.len() > 1 && heads.last().is_some_and(|line| is_units(line));
+        let named = heads.len() - usize::from(last_is_units);
+        let titles = heads[..named]
+            .iter()
+            .take_while(|line| is_title(line))
+            .count();
+        let names = first + titles.min(named.saturating_sub(1));
+        let has_units = last_is_units || names + 1 < first_row;
         Self {
-            names: Some(names + skipped),
-            units: (heads.len() > 1 + skipped).then_some(names + skipped + 1),
-            first_row: names + heads.len(),
+            names: (named > 0).then_some(names),
+            units: (named > 0 && has_units).then_some(names + 1),
+            first_row,
         }
     }
+}
+
+/// Whether a line is a row of numbers, beside which texts may stand: two of its fields are numbers, and it is no line of units.
+fn is_row(line: &[String]) -> bool {
+    let numbers = line.iter().filter(|field| is_number(unquoted(field)));
+    numbers.count() >= 2 && !is_units(line)
 }
 
 /// The most frequent value, the first of those that are equally frequent.
@@ -176,7 +196,8 @@ fn is_title(line: &[String]) -> bool {
 fn is_unit(field: &str) -> bool {
     let plain = field.trim_matches(['(', ')', '[', ']', ' ']);
     let bracketed = plain.len() < field.len();
-    bracketed || ["", "-", "1"].contains(&plain) || is_pixel(plain) || units::is_known(plain)
+    let is_known = || units::symbol(plain).is_some() || units::is_known(plain);
+    bracketed || ["", "-", "1", "mm/mm"].contains(&plain) || is_pixel(plain) || is_known()
 }
 
 /// Whether a line contains units, some of which are 1, so that it may look like a row.
@@ -218,6 +239,14 @@ mod tests {
             ),
             ("L0;L0;L0\nx;y;u\n1;2;3\n4;5;6", expected(1, None, 2)),
             (
+                "Sample A;;\n1 _ 1;;\nTime;Force;Stroke\nsec;N;mm\n1;2;3\n4;5;6",
+                expected(2, Some(3), 4),
+            ),
+            (
+                "ISO;37a\nProbe;1\nWeg;Kraft\nmm;N\n1;2\n3;4",
+                expected(2, Some(3), 4),
+            ),
+            (
                 "L0;;\nx;y;u\nmm;mm;px\n1;2;3\n4;5;6",
                 expected(1, Some(2), 3),
             ),
@@ -250,6 +279,9 @@ mod tests {
             ("Kraft in N", "kraft", Some("N")),
             ("Force kN", "force", Some("kN")),
             ("Stress (KPa)", "stress", Some("kPa")),
+            ("Load(Linear:Load) (kN)", "load", Some("kN")),
+            ("Position (z), mm", "position", Some("mm")),
+            ("Strain (Strain 1) [%]", "strain", Some("%")),
             ("strain_%", "strain", Some("%")),
             ("Length/m", "length", Some("m")),
             ("strain_min", "strain_min", None),
