@@ -21,10 +21,13 @@ use crate::material::Code;
 mod abaqus;
 mod febio;
 mod model;
+mod sofa;
 mod text;
+mod xml;
 
 pub use model::Export;
 use model::Model;
+pub use sofa::Scene;
 
 /// An input file of another code.
 #[derive(Clone, Debug)]

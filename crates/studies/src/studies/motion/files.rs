@@ -10,8 +10,10 @@ use crate::results::models::CORRECTED;
 use crate::results::{
     Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
     GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, sheet_figures,
+    springs_csv,
 };
-use crate::units::number;
+use crate::studies::SPRINGS_TABLE;
+use crate::units::brief;
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
@@ -154,16 +156,6 @@ fn stress_figures(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> V
     instants.into_iter().flat_map(at_instant).collect()
 }
 
-/// A time without trailing zeros.
-fn brief(time: f64) -> String {
-    let text = number(time);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
 /// Velocity over displacement of a probe, part of the motion after part.
 fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
@@ -293,7 +285,20 @@ pub fn grids(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) -> Ve
         };
         GridSeries::instants(own.style.key, own.motion.iter().enumerate().map(grid))
     };
-    shown.iter().map(series).collect()
+    let mut all: Vec<GridSeries> = shown.iter().map(series).collect();
+    let last = motions.springs.instants().last();
+    all.extend(last.map(|now| {
+        let grid = Grid::springs(&sheet.lattice(), &now.displacement, &[]);
+        GridSeries::single("springs_end", grid)
+    }));
+    all
+}
+
+/// The springs at the last instant, with the forces of their stretch alone; `None` where there is none.
+pub fn springs_table(sheet: &MovingSheet, motions: &Motions) -> Option<(String, Content)> {
+    let now = motions.springs.instants().last()?;
+    let text = springs_csv(&sheet.lattice(), &now.displacement, &[]);
+    Some((SPRINGS_TABLE.to_owned(), Content::Text(text)))
 }
 
 /// Probes, energies and the measured group's force over time, one table for each model.

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::deviations::{Deviations, OwnError};
-use super::files::{animation, figures, grids, tables};
+use super::files::{animation, figures, grids, springs_table, tables};
 use super::headline::headline;
 use super::problem::MovingSheet;
 use super::shown::shown;
@@ -40,6 +40,7 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
     ];
     blocks.extend(statement::blocks(sheet));
     let mut files = tables(sheet, motions);
+    files.extend(springs_table(sheet, motions));
     let (shown, times) = (shown(sheet, motions), motions.times());
     let animation = Drawing::Animation(animation(&times, &shown));
     files.push(("motion.png".into(), Content::Picture(animation)));

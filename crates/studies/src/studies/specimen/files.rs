@@ -7,11 +7,11 @@ use super::results::models::{ModelSeries, Models};
 use super::results::verdict::Deviation;
 use crate::problem::GroupState;
 use crate::results::{
-    Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
-    Stroke, from_rest, material_chart, mesh_outlines, sheet_figures,
+    Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line,
+    LineChart, Panel, Stroke, from_rest, material_chart, mesh_outlines, sheet_figures, springs_csv,
 };
-use crate::studies::ModelKind;
 use crate::studies::pictures::Shown;
+use crate::studies::{ModelKind, SPRINGS_TABLE};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
@@ -284,6 +284,14 @@ pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
     all.insert(1, springs);
     all.retain(|series| !series.grids.is_empty());
     all
+}
+
+/// The springs at the last load factor that they reach; `None` where they have no field.
+pub fn springs_table(models: &Models) -> Option<(String, Content)> {
+    let state = models.of(ModelKind::MassSpring).solution.states.last()?;
+    let springs = &models.on_lattice.springs;
+    let text = springs_csv(springs, &state.displacement, &state.history);
+    Some((SPRINGS_TABLE.to_owned(), Content::Text(text)))
 }
 
 /// The fields of a model at one load factor.
