@@ -69,7 +69,8 @@ const FEBIO_OGDEN: Names = &[
 ];
 const FEBIO_GENT: Names = &[("g", Key("mu")), ("jm", Key("jm")), ("k", BulkModulus)];
 const FEBIO_VERONDA_WESTMANN: Names = &[("c1", Key("c")), ("c2", Key("beta")), ("k", BulkModulus)];
-const FEBIO_NEO_HOOKE: Names = &[("e", Young), ("v", PoissonRatio)];
+const FEBIO_NEO_HOOKE: Names = &[("c1", Key("c10")), ("k", BulkModulus)];
+const FEBIO_COUPLED_NEO_HOOKE: Names = &[("e", Young), ("v", PoissonRatio)];
 
 /// The names that a code has for the parameters of a law; empty where it has no such law.
 fn names(code: Code, law: &str) -> Names {
@@ -82,11 +83,12 @@ fn names(code: Code, law: &str) -> Names {
         (Code::Abaqus | Code::CalculiX, law) if law.starts_with("ogden-") && law.len() == 7 => {
             ABAQUS_OGDEN
         }
-        (Code::FeBio, "neo-hooke" | "mooney-rivlin") => FEBIO_MOONEY_RIVLIN,
+        (Code::FeBio, "neo-hooke") => FEBIO_NEO_HOOKE,
+        (Code::FeBio, "mooney-rivlin") => FEBIO_MOONEY_RIVLIN,
         (Code::FeBio, law) if law.starts_with("ogden-") && law.len() == 7 => FEBIO_OGDEN,
         (Code::FeBio, "gent") => FEBIO_GENT,
         (Code::FeBio, "veronda-westmann") => FEBIO_VERONDA_WESTMANN,
-        (Code::FeBio, "neo-hooke-simo-pister") => FEBIO_NEO_HOOKE,
+        (Code::FeBio, "neo-hooke-simo-pister") => FEBIO_COUPLED_NEO_HOOKE,
         _ => &[],
     }
 }
@@ -101,32 +103,11 @@ impl Known {
         code: Code,
         parameters: &[(String, String)],
     ) -> Result<Self, Error> {
-        let law = self.law.name;
-        let names = names(code, law);
-        if names.is_empty() {
-            let hint = "state the parameters by the card's keys, without --convention; `gelbench keys card` lists them";
-            let message = format!("the parameters of {law} in {} are not known", code.name());
-            return Err(Error::input(message, hint));
-        }
         self.choose_forms(code);
         for (name, value) in parameters {
-            // `mu_1` and `C10` are `mu1` and `c10`.
-            let plain = name.to_lowercase();
-            let matches =
-                |(known, _): &&(&str, Meaning)| *known == plain || *known == plain.replace('_', "");
-            let Some((_, meaning)) = names.iter().find(matches) else {
-                let all: Vec<&str> = names.iter().map(|(known, _)| *known).collect();
-                let message = format!(
-                    "{name} is not known as a parameter of {law} in {}",
-                    code.name()
-                );
-                return Err(Error::input(
-                    message,
-                    format!("known are {}", all.join(", ")),
-                ));
-            };
+            let meaning = meaning(code, self.law.name, name)?;
             match meaning {
-                Key(key) => self.parameters.push(((*key).to_owned(), value.clone())),
+                Key(key) => self.parameters.push((key.to_owned(), value.clone())),
                 BulkModulus => self.moduli.bulk = Some(quantity(name, value, Dimension::Stress)?),
                 Young => self.moduli.young = Some(quantity(name, value, Dimension::Stress)?),
                 Compliance => self.moduli.bulk = bulk_modulus(name, value)?,
@@ -161,6 +142,32 @@ fn quantity(name: &str, text: &str, dimension: Dimension) -> Result<f64, Error> 
     units::parse(text, dimension).map_err(|fault| {
         let remedy = fault.remedy(text, dimension);
         Error::input(format!("{name}: \"{text}\" {fault}"), remedy)
+    })
+}
+
+/// What a name of a code means in a law.
+fn meaning(code: Code, law: &str, name: &str) -> Result<Meaning, Error> {
+    let names = names(code, law);
+    if names.is_empty() {
+        let message = format!("the parameters of {law} in {} are not known", code.name());
+        let hint = "state the parameters by the card's keys, without --convention; `gelbench keys card` lists them";
+        return Err(Error::input(message, hint));
+    }
+    // `mu_1` and `C10` are `mu1` and `c10`.
+    let plain = name.to_lowercase();
+    let short = plain.replace('_', "");
+    let found = names
+        .iter()
+        .find(|(known, _)| *known == plain || *known == short);
+    found.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let code = code.name();
+        let all: Vec<&str> = names.iter().map(|(known, _)| *known).collect();
+        let coupled = match (law, &*plain) {
+            ("neo-hooke", "e" | "v") => "; E and v are those of neo-hooke-simo-pister",
+            _ => "",
+        };
+        let message = format!("{name} is not known as a parameter of {law} in {code}");
+        Error::input(message, format!("known are {}{coupled}", all.join(", ")))
     })
 }
 
