@@ -48,7 +48,7 @@ mod battery;
 
 pub use arruda_boyce::ArrudaBoyce;
 pub use body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-pub use card::{Card, ParameterUncertainty, SmallStrain};
+pub use card::{Card, ParameterUncertainty};
 pub use code::{Code, CodeLaw};
 pub use compressible_neo_hooke::CompressibleNeoHooke;
 pub use fung_demiray::FungDemiray;
@@ -70,5 +70,5 @@ pub use sheet::PlaneState;
 pub use softened_law::SoftenedLaw;
 pub use softening::Softening;
 pub use veronda_westmann::VerondaWestmann;
-pub use volume::{Volume, VolumeEnergy};
+pub use volume::{SmallStrain, Volume, VolumeEnergy};
 pub use yeoh::Yeoh;

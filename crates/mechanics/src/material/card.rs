@@ -22,7 +22,6 @@ mod provenance;
 mod published;
 mod resistance;
 
-pub use energy::SmallStrain;
 pub use parameter_uncertainty::ParameterUncertainty;
 
 /// A material: law, parameters and provenance.

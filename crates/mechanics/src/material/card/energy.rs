@@ -1,21 +1,8 @@
 //! The energy of a card as a formula, and what it amounts to at rest.
 
 use super::Card;
-use crate::material::volume::VolumeEnergy;
+use crate::material::volume::{SmallStrain, VolumeEnergy};
 use crate::units::brief;
-
-/// The moduli of a material at small strain; of one with fibres, in the axes of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SmallStrain {
-    /// E in MPa.
-    pub youngs_modulus: f64,
-    /// ν; ½ where the volume is constant.
-    pub poisson_ratio: f64,
-    /// μ in MPa.
-    pub shear_modulus: f64,
-    /// K in MPa; infinite where the volume is constant.
-    pub bulk_modulus: f64,
-}
 
 impl Card {
     /// The energy that is computed, in the convention of the card and with its change of volume:

@@ -49,18 +49,7 @@ impl Moduli {
     /// # Errors
     /// [`Error::Input`] where more than two moduli are stated, or two that contradict each other.
     pub(super) fn solved(&self) -> Result<SmallStrainModuli, Error> {
-        for (name, modulus) in [
-            ("Young's modulus", self.young),
-            ("the shear modulus", self.shear),
-            ("the bulk modulus", self.bulk),
-        ] {
-            if modulus.is_some_and(|modulus| !(modulus > 0.0 && modulus.is_finite())) {
-                return Err(Error::input(
-                    format!("{name} must be greater than zero"),
-                    "such as \"20 kPa\"",
-                ));
-            }
-        }
+        self.check_signs()?;
         let (shear, ratio) = match (self.young, self.poisson_ratio, self.shear, self.bulk) {
             (Some(young), None, Some(shear), None) => {
                 let ratio = 0.5 * young / shear - 1.0;
@@ -107,6 +96,25 @@ impl Moduli {
             poisson_ratio: ratio,
             bulk: self.bulk.filter(|_| self.poisson_ratio.is_none()),
         })
+    }
+}
+
+impl Moduli {
+    /// Refuses moduli that are not positive.
+    fn check_signs(&self) -> Result<(), Error> {
+        for (name, modulus) in [
+            ("Young's modulus", self.young),
+            ("the shear modulus", self.shear),
+            ("the bulk modulus", self.bulk),
+        ] {
+            if modulus.is_some_and(|modulus| !(modulus > 0.0 && modulus.is_finite())) {
+                return Err(Error::input(
+                    format!("{name} must be greater than zero"),
+                    "such as \"20 kPa\"",
+                ));
+            }
+        }
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! Pictures and grids of a specimen.
 
+use super::forces;
 use super::history;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
@@ -286,8 +287,15 @@ pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
     all
 }
 
+/// The tables for other programs.
+pub fn tables(specimen: &Specimen, models: &Models) -> Vec<(String, Content)> {
+    let forces = Content::Text(forces::csv(specimen, models));
+    let forces = ("forces.csv".to_owned(), forces);
+    [forces].into_iter().chain(springs_table(models)).collect()
+}
+
 /// The springs at the last load factor that they reach; `None` where they have no field.
-pub fn springs_table(models: &Models) -> Option<(String, Content)> {
+fn springs_table(models: &Models) -> Option<(String, Content)> {
     let state = models.of(ModelKind::MassSpring).solution.states.last()?;
     let springs = &models.on_lattice.springs;
     let text = springs_csv(springs, &state.displacement, &state.history);

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::files::{figures, grids, springs_table};
+use super::files::{figures, grids, tables};
 use super::forces::Balance;
 use super::headline::headline;
 use super::problem::Specimen;
@@ -11,7 +11,7 @@ use super::results::models::{ModelSeries, Models};
 use super::results::verdict::{Deviation, Distance, checks, deviations};
 use super::warnings::warnings;
 use super::{forces, history, statement, work};
-use crate::results::{Block, Content, Material, Outcome, Step, or_dash, pictures};
+use crate::results::{Block, Material, Outcome, Step, or_dash, pictures};
 use crate::studies::ModelKind;
 use crate::units::{decimals, number};
 
@@ -38,7 +38,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         steps: deviations.iter().enumerate().map(quantities).collect(),
         figures: figures(specimen, models, &deviations),
         grids: grids(specimen, models),
-        files: files(specimen, models),
+        files: tables(specimen, models),
         warnings,
         balance: forces::worst_balance(&balances),
         balances: forces::balances_json(&balances),
@@ -47,13 +47,6 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     };
     outcome.blocks = blocks(specimen, models, &deviations, &balances, &outcome);
     outcome
-}
-
-/// The tables for other programs.
-fn files(specimen: &Specimen, models: &Models) -> Vec<(String, Content)> {
-    let forces = Content::Text(forces::csv(specimen, models));
-    let forces = ("forces.csv".to_owned(), forces);
-    [forces].into_iter().chain(springs_table(models)).collect()
 }
 
 /// The tables of the report, with the pictures of `outcome` among them.
