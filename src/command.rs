@@ -47,6 +47,7 @@ mod journal;
 mod large;
 mod materials;
 mod message;
+mod new_card;
 mod progress;
 mod reference;
 mod schema;
@@ -71,6 +72,7 @@ const SAMPLES: &str = "Samples:
   gelbench validate                          reproduce the publication's claims, write output/validation/REPORT.md
   gelbench materials list                    the cards that are included
   gelbench materials show pva-10             one card with its moduli and its source
+  gelbench materials new --law neo-hooke --young \"20 kPa\" --poisson 0.45    a card of what is known
   gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
 
 Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n5 measured data are not explained, 70 a fault of gelbench itself, 130 interrupted.";
@@ -124,7 +126,7 @@ enum Command {
                       --study examples/measured_plate.toml"
     )]
     Correct(Box<correct::Options>),
-    /// Write a study as the input file of Abaqus, CalculiX or FEBio
+    /// Write a study as the input file of Abaqus, CalculiX or FEBio, or its springs as a scene of SOFA
     #[command(
         after_help = "Sample: gelbench export examples/dog_bone.toml --to calculix --output dog_bone.inp"
     )]

@@ -160,8 +160,8 @@ impl MaterialCard {
     }
 
     #[getter]
-    fn formula(&self) -> &str {
-        self.card.formula
+    fn formula(&self) -> String {
+        self.card.energy()
     }
 
     #[getter]

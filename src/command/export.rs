@@ -1,4 +1,4 @@
-//! `gelbench export`: a study as the input file of another code.
+//! `gelbench export`: a study as the input file of another code, or its lattice as a scene of SOFA.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::kinds;
 use gelbench_base::error::Error;
 use gelbench_mechanics::material::Code;
 use gelbench_report::output;
-use gelbench_report::output::export::{Export, InputFile};
+use gelbench_report::output::export::{Export, InputFile, Scene};
 use gelbench_studies::studies::sections;
 use gelbench_studies::studies::specimen;
 use gelbench_studies::studies::specimen::Specimen;
@@ -27,18 +27,52 @@ pub enum Level {
     Fine,
 }
 
+/// What is written for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The finite elements, for a code.
+    Elements(Code),
+    /// The lattice of springs, for SOFA.
+    Sofa,
+}
+
+const TARGETS: [(&str, Target); 4] = [
+    ("abaqus", Target::Elements(Code::Abaqus)),
+    ("calculix", Target::Elements(Code::CalculiX)),
+    ("febio", Target::Elements(Code::FeBio)),
+    ("sofa", Target::Sofa),
+];
+
+impl Target {
+    /// The name that the command line uses, and the extension of the files.
+    fn key_and_ending(self) -> [&'static str; 2] {
+        match self {
+            Self::Elements(code) => [code.key(), code.ending()],
+            Self::Sofa => ["sofa", "scn"],
+        }
+    }
+
+    /// The code's name as its makers write it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Elements(code) => code.name(),
+            Self::Sofa => "SOFA",
+        }
+    }
+}
+
 /// What the command line says about an export.
 #[derive(Args)]
 pub struct Options {
     /// The study file, of kind plate or specimen
     pub study: PathBuf,
-    /// The code to write for
-    #[arg(long = "to", value_name = "CODE", value_parser = one_of(&Code::NAMES))]
-    pub code: Code,
+    /// The code to write for: finite elements, or for SOFA the lattice of springs
+    #[arg(long = "to", value_name = "CODE", value_parser = one_of(&TARGETS))]
+    pub target: Target,
     /// File to write, or folder for it, instead of one in output/
     #[arg(long, value_name = "FILE|FOLDER")]
     pub output: Option<PathBuf>,
-    /// Which of the three finite-element meshes to write
+    /// Which of the three finite-element meshes to write; not for SOFA
     #[arg(long = "mesh", value_enum, default_value = "fine")]
     pub level: Level,
     /// Bulk modulus over the initial shear modulus, for CalculiX and FEBio
@@ -61,12 +95,15 @@ pub fn run(options: &Options) -> Outcome {
     let text = sections::read_text(path)?;
     let read = kinds::read_sheet(path, &text, options.large.budget())?;
     warn(&read.warnings);
-    let written = input_file(&read.title, &read.made, options)?;
+    let written = match options.target {
+        Target::Elements(code) => input_file(&read.title, &read.made, code, options)?,
+        Target::Sofa => scene(&read.title, &read.made)?,
+    };
     let stem = path
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into());
-    let code = options.code;
-    let name = format!("{stem}_{}.{}", code.key(), code.ending());
+    let [key, ending] = options.target.key_and_ending();
+    let name = format!("{stem}_{key}.{ending}");
     let target = match &options.output {
         Some(folder) if folder.is_dir() => folder.join(name),
         Some(file) => file.clone(),
@@ -75,12 +112,18 @@ pub fn run(options: &Options) -> Outcome {
     output::refuse_inputs(&target, &[path])?;
     save(&target, written.text.as_bytes())?;
     warn_words(written.remarks);
-    print(&format!("{} for {}\n", target.display(), code.name()))?;
+    let name = options.target.name();
+    print(&format!("{} for {name}\n", target.display()))?;
     Ok(0)
 }
 
 /// The problem in the other code's words, on the mesh that is asked for.
-fn input_file(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFile, Error> {
+fn input_file(
+    title: &str,
+    specimen: &Specimen,
+    code: Code,
+    options: &Options,
+) -> Result<InputFile, Error> {
     let mesh = match (specimen.refinement, options.level) {
         (_, Level::Fine) => specimen::finest_mesh(specimen)?,
         (None, level) => specimen.outline.reference_mesh(level as usize),
@@ -97,5 +140,17 @@ fn input_file(title: &str, specimen: &Specimen, options: &Options) -> Result<Inp
         factors: &specimen.factors,
         bulk_ratio: options.bulk_ratio,
     };
-    export.input_file(options.code)
+    export.input_file(code)
+}
+
+/// The lattice of the study as a scene.
+fn scene(title: &str, specimen: &Specimen) -> Result<InputFile, Error> {
+    let scene = Scene {
+        title,
+        problem: &specimen.problem,
+        card: &specimen.card,
+        springs: &specimen.springs(),
+        factors: &specimen.factors,
+    };
+    scene.input_file()
 }

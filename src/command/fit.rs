@@ -311,7 +311,8 @@ fn guard(card: &Path, data: &[String], others: &[PathBuf]) -> Result<(), Error> 
     other.map_or(Ok(()), |path| refuse(path, "not written by a fit"))
 }
 
-fn a_law() -> impl TypedValueParser<Value = &'static Law> {
+/// The parser of a law by its name.
+pub fn a_law() -> impl TypedValueParser<Value = &'static Law> {
     let names = LAWS.iter().map(|law| law.name);
     PossibleValuesParser::new(names)
         .map(|name| Law::named(&name).expect("clap has found the name among the laws"))

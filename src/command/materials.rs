@@ -7,6 +7,7 @@ use clap::Subcommand;
 use super::convert::{ConvertArguments, convert};
 use super::fit::{FitArguments, fit, load, refit, together};
 use super::message;
+use super::new_card::{CheckCards, NEW_HELP, NewCard, check_cards, new_card};
 use super::terminal::{Outcome, print, save};
 use gelbench_base::error::Error;
 use gelbench_mechanics::material::registry::{CARDS, LAWS};
@@ -49,6 +50,12 @@ pub enum Materials {
         )]
         output: PathBuf,
     },
+    /// Write a card of what is known: moduli and parameters, without a test
+    #[command(after_help = NEW_HELP)]
+    New(Box<NewCard>),
+    /// Read cards and report every fault; with --share also what others would have to know
+    #[command(after_help = "Sample: gelbench materials check materials/my_gel.toml --share")]
+    Check(CheckCards),
     /// Fit a law to measured curves and write a card, a picture and the figures
     #[command(after_help = FIT_HELP)]
     Fit(Box<FitArguments>),
@@ -92,6 +99,8 @@ pub fn run(command: Materials) -> Outcome {
         Materials::Show { card } => show(&card),
         Materials::Plot { card, output } => plot(&card, output),
         Materials::Compare { cards, output } => compare(&cards, &output),
+        Materials::New(options) => new_card(&options),
+        Materials::Check(options) => check_cards(&options),
         Materials::Fit(arguments) => fit(*arguments),
         Materials::Refit { card } => refit(&card),
         Materials::Convert(arguments) => convert(*arguments),

@@ -64,7 +64,10 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) 
 /// One line of the list of cards.
 pub fn card_line(card: &Card) -> String {
     let [low, high] = card.stretch_range;
-    let range = format!("λ {low} … {high}");
+    let range = match card.range_is_stated {
+        true => format!("λ {low} … {high}"),
+        false => String::new(),
+    };
     format!(
         "{:<18} {:<20} {range:<20} {}\n",
         card.name, card.law_name, card.title
@@ -153,10 +156,11 @@ fn softening(card: &Card) -> String {
 
 /// Everything about a card.
 pub fn card(card: &Card) -> String {
-    let [low, high] = card.stretch_range;
     let mut text = format!(
         "{}\n\n  law        {}: {}\n",
-        card.title, card.law_name, card.formula
+        card.title,
+        card.law_name,
+        card.energy()
     );
     for parameter in &card.parameters {
         let (key, value, unit) = (parameter.key, parameter.value, parameter.unit());
@@ -177,7 +181,7 @@ pub fn card(card: &Card) -> String {
         card.strain_measure.name(),
         card.offset.name()
     );
-    text += &format!("  range      λ = {low} … {high}{}\n", card.in_tests());
+    text += &format!("  range      {}\n", card.describe_range());
     let [first, last] = SEARCHED;
     for (name, mode) in Mode::ALL {
         let [low, high] = stable_range(&*card.law, mode);

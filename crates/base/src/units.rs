@@ -11,7 +11,7 @@ mod ranges;
 mod remedy;
 mod sheet_size;
 
-pub use figures::{decimals, extents, number};
+pub use figures::{brief, decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
 pub use remedy::{bare_ratio, could_be_stretch_ratios, symbol};

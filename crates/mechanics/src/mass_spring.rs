@@ -205,6 +205,19 @@ impl MassSpring {
         self.lattice.pose(spring, u)
     }
 
+    /// The stiffness k = a E/x₀ of a spring at rest in N/mm.
+    pub fn stiffness_at_rest(&self, spring: usize) -> f64 {
+        let Spring {
+            rest_length, area, ..
+        } = self.springs[spring];
+        area * self.pose(spring, &[0.0; 4]).response.slope / rest_length
+    }
+
+    /// κ of the area terms in N/mm; zero where there are none.
+    pub fn area_stiffness(&self) -> f64 {
+        self.lattice.area_stiffness
+    }
+
     /// The lattice's energy as a potential of the nodal displacements.
     pub fn potential(&self) -> &dyn Remembering {
         &self.lattice

@@ -8,4 +8,4 @@ pub mod results;
 
 use gelbench_base::{document, error, statistics, units};
 use gelbench_calibration::{calibration, identification};
-use gelbench_mechanics::{finite_element, markers, mass_spring, material, mesh, problem};
+use gelbench_mechanics::{dynamics, finite_element, markers, mass_spring, material, mesh, problem};

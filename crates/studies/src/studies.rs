@@ -100,7 +100,12 @@ pub struct OutputSettings {
     pub plots: bool,
     /// Whether reports are written.
     pub report: bool,
+    /// Whether the table of the springs is written.
+    pub springs: bool,
 }
+
+/// The file with the springs of a lattice.
+pub const SPRINGS_TABLE: &str = "springs.csv";
 
 impl Default for OutputSettings {
     fn default() -> Self {
@@ -109,6 +114,7 @@ impl Default for OutputSettings {
             vtk: true,
             plots: true,
             report: true,
+            springs: true,
         }
     }
 }
@@ -121,6 +127,7 @@ impl OutputSettings {
             vtk: section.flag("vtk"),
             plots: section.flag("plots"),
             report: section.flag("report"),
+            springs: !section.has("springs") || section.flag("springs"),
         };
         section.unknown_keys();
         settings
@@ -130,6 +137,9 @@ impl OutputSettings {
     fn apply(&self, outcome: &mut Outcome) {
         if !self.vtk {
             outcome.explored = std::mem::take(&mut outcome.grids);
+        }
+        if !self.springs {
+            outcome.files.retain(|(name, _)| name != SPRINGS_TABLE);
         }
         if !self.plots {
             outcome.figures.clear();

@@ -143,7 +143,7 @@ impl Materials {
             }
         };
         ui.label(RichText::new(&card.title).strong());
-        ui.label(card.formula);
+        ui.label(card.energy());
         parameters(ui, &file, card, table);
         for (name, [low, high]) in stable_ranges(card) {
             ui.label(format!(

@@ -24,6 +24,16 @@ pub fn number(value: f64) -> String {
     format!("{value:.2e}")
 }
 
+/// A number as [`number`] writes it, without trailing zeros.
+pub fn brief(value: f64) -> String {
+    let text = number(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
 /// Length and width of something in mm, as messages say them.
 pub fn extents([length, width]: [f64; 2]) -> String {
     format!("{} × {} mm", decimals(length, 4), decimals(width, 4))

@@ -16,7 +16,9 @@ use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
 mod changed;
+mod energy;
 mod parameter_uncertainty;
+mod provenance;
 mod published;
 mod resistance;
 
@@ -31,7 +33,7 @@ pub struct Card {
     pub title: String,
     /// The law's name: in the registry, or that of a law that a program defines.
     pub law_name: String,
-    /// The law's formula.
+    /// The law's formula, in the convention of the card; [`energy`](Card::energy) adds the change of volume.
     pub formula: &'static str,
     /// The law with its parameters, including the resistance to a change of volume.
     pub law: Arc<dyn HyperelasticLaw>,
@@ -57,8 +59,10 @@ pub struct Card {
     pub offset: OffsetTreatment,
     /// The kind of test behind the card.
     pub test: String,
-    /// The stretches within which the card was calibrated.
+    /// The stretches within which the card was calibrated; those that curves are drawn for where the card does not state them.
     pub stretch_range: [f64; 2],
+    /// Whether the card states the range.
+    pub range_is_stated: bool,
     /// Full citation.
     pub citation: String,
     /// DOI; empty when the source has none.
@@ -162,7 +166,9 @@ impl Card {
         let unread = Arc::new(NeoHooke { c10: f64::NAN });
         let mut card = Self::of_law(name, unread, [1.0, 1.0]);
         card.text = text.to_owned();
-        card.title = root.text("title");
+        if root.has("title") {
+            card.title = root.text("title");
+        }
         let laws: Vec<_> = LAWS.iter().map(|law| (law.name, law)).collect();
         let law = root.choice("law", &laws);
         card.density = root
@@ -173,7 +179,8 @@ impl Card {
         }
         let softening = root.has("softening").then(|| root.section("softening"));
         let softening = softening.map(|section| Softening::read(&section));
-        card.read_data(&root.section("data"));
+        let is_curve = law.is_some_and(|law| law.is_measured_curve());
+        card.read_data(&root.section("data"), is_curve);
         card.read_source(&root.section("source"));
         card.fit = root.has("fit").then(|| read_fit(&root.section("fit")));
         let parameters = root.section("parameters");
@@ -184,9 +191,9 @@ impl Card {
         };
         let parameters = Parameters::of_card(parameters, card.stress_measure, card.strain_measure);
         card.law = (law.read)(&parameters).into();
-        (card.law_name, card.formula) = (law.name.to_owned(), law.formula);
         let entries = parameters.finish_with(|key| of_other_laws(key, law.name));
         (card.parameters, card.choices) = (entries.parameters, entries.choices);
+        (card.law_name, card.formula) = (law.name.to_owned(), law.formula_of(&card.choices));
         if let Some(volume) = volume {
             card.resist(&volume);
         }
@@ -218,6 +225,7 @@ impl Card {
             offset: OffsetTreatment::Subtract,
             test: "no".to_owned(),
             stretch_range,
+            range_is_stated: true,
             citation: unstated(),
             doi: String::new(),
             specimen: unstated(),
@@ -225,42 +233,6 @@ impl Card {
             fit: None,
             text: String::new(),
             overlooked: None,
-        }
-    }
-
-    fn read_data(&mut self, data: &Section) {
-        let stress = data.choice("stress_measure", &StressMeasure::NAMES);
-        self.stress_measure = stress.unwrap_or(StressMeasure::Nominal);
-        let strain = data.choice("strain_measure", &StrainMeasure::NAMES);
-        self.strain_measure = strain.unwrap_or(StrainMeasure::Nominal);
-        let offset = data.choice("offset", &OffsetTreatment::NAMES);
-        self.offset = offset.unwrap_or(OffsetTreatment::Subtract);
-        self.test = data.text("test");
-        let range = data.multiples("stretch_range", Bound::Positive, f64::INFINITY);
-        match range[..] {
-            [low, high] if low < high => self.stretch_range = [low, high],
-            _ if !data.has("stretch_range") => {}
-            _ => {
-                let message = "must be two increasing stretches";
-                data.fault("stretch_range", message, "such as [1.0, 2.0]");
-            }
-        }
-        data.unknown_keys();
-    }
-
-    fn read_source(&mut self, source: &Section) {
-        self.citation = source.text("citation");
-        self.doi = source.optional_text("doi");
-        self.specimen = source.text("specimen");
-        self.note = source.optional_text("note");
-        source.unknown_keys();
-    }
-
-    /// ` (uniaxial test)`; empty where the card is not based on a test.
-    pub fn in_tests(&self) -> String {
-        match &*self.test {
-            "none" => String::new(),
-            test => format!(" ({test} test)"),
         }
     }
 
@@ -275,11 +247,6 @@ impl Card {
                 "bulk_modulus" => self.bulk_modulus(),
                 _ => None,
             })
-    }
-
-    /// Whether the card may be used at the stretch `lambda`.
-    pub fn covers(&self, lambda: f64) -> bool {
-        (self.stretch_range[0]..=self.stretch_range[1] * (1.0 + 1e-12)).contains(&lambda)
     }
 }
 

@@ -21,10 +21,10 @@ use crate::document::Bound;
 /// |---|---|---|---|---|
 /// | μᵢ | `mu_1` … | MPa | any | share of the initial shear modulus |
 /// | αᵢ | `alpha_1` … | – | not 0 | exponents |
-/// | | `convention` | | `"2mu/alpha^2"`, `"mu/alpha"` | the factor before each sum |
+/// | | `convention` | | `"2mu/alpha^2"`, `"mu/alpha"`, `"mu/alpha^2"` | the factor before each sum |
 ///
 /// With `convention = "mu/alpha"` the card's μᵢ are those of Ψ = Σ μᵢ/αᵢ (…), as Ogden wrote it; they become
-/// μᵢ αᵢ/2 here.
+/// μᵢ αᵢ/2 here. With `"mu/alpha^2"` they are FEBio's cᵢ, and become μᵢ/2.
 ///
 /// **Derivation.** With m = ln J and z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1 a term is
 ///
@@ -52,10 +52,32 @@ pub struct Ogden {
 }
 
 /// The factor before the sum of powers.
-#[derive(Clone, Copy, Debug)]
-enum Convention {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Convention {
+    /// 2 μ/α², of Abaqus and CalculiX.
     TwoMuByAlphaSquared,
+    /// μ/α, of Ogden and Ansys.
     MuByAlpha,
+    /// μ/α², of FEBio.
+    MuByAlphaSquared,
+}
+
+impl Convention {
+    /// The names that cards use.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("2mu/alpha^2", Self::TwoMuByAlphaSquared),
+        ("mu/alpha", Self::MuByAlpha),
+        ("mu/alpha^2", Self::MuByAlphaSquared),
+    ];
+
+    /// The law's energy in this convention.
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Self::TwoMuByAlphaSquared => "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)",
+            Self::MuByAlpha => "Ψ = Σ μᵢ/αᵢ (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)",
+            Self::MuByAlphaSquared => "Ψ = Σ μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)",
+        }
+    }
 }
 
 const KEYS: [[&str; 2]; 4] = [
@@ -68,17 +90,14 @@ const KEYS: [[&str; 2]; 4] = [
 impl Ogden {
     /// Reads the parameters of a card with `N` terms.
     pub fn from_card<const N: usize>(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
-        let conventions = [
-            ("2mu/alpha^2", Convention::TwoMuByAlphaSquared),
-            ("mu/alpha", Convention::MuByAlpha),
-        ];
-        let convention = parameters.choice("convention", &conventions);
+        let convention = parameters.choice("convention", &Convention::NAMES);
         let term = |[mu, alpha]: [&'static str; 2]| {
             let mu = parameters.stress(mu, Bound::Any);
             let exponent = parameters.exponent(alpha);
             match convention {
                 Convention::TwoMuByAlphaSquared => [mu, exponent],
                 Convention::MuByAlpha => [mu * exponent / 2.0, exponent],
+                Convention::MuByAlphaSquared => [mu / 2.0, exponent],
             }
         };
         Box::new(Self {

@@ -2,6 +2,7 @@
 
 use super::law::HyperelasticLaw;
 use super::marlow::{ExponentialCurve, TableCurve};
+use super::ogden::Convention;
 use super::parameters::{CardEntries, Parameters, StrainMeasure, StressMeasure};
 use super::{
     ArrudaBoyce, CompressibleNeoHooke, FungDemiray, Gent, HolzapfelGasserOgden, LinearElastic,
@@ -44,6 +45,21 @@ impl Law {
     /// The law with a name.
     pub fn named(name: &str) -> Option<&'static Self> {
         LAWS.iter().find(|law| law.name == name)
+    }
+
+    /// Whether the law is the curve of a test, whose measures belong to it.
+    pub fn is_measured_curve(&self) -> bool {
+        [MARLOW_EXPONENTIAL, MARLOW_TABLE].contains(&self.name)
+    }
+
+    /// Its energy in the convention that a card chooses.
+    pub fn formula_of(&self, choices: &[(&'static str, String)]) -> &'static str {
+        let named = choices.iter().find(|(key, _)| *key == "convention");
+        let convention = named.and_then(|(_, name)| {
+            let mut known = Convention::NAMES.iter();
+            known.find(|(known, _)| known == name)
+        });
+        convention.map_or(self.formula, |(_, convention)| convention.formula())
     }
 
     /// The law with parameter values in internal units, and the entries that it read.
@@ -127,7 +143,7 @@ pub const LAWS: &[Law] = &[
         read: VerondaWestmann::from_card,
     },
     Law {
-        name: "marlow-exponential",
+        name: MARLOW_EXPONENTIAL,
         formula: "Ψ(I₁) from the tension curve A (e^(b ε) − 1)",
         read: ExponentialCurve::from_card,
     },
@@ -191,7 +207,11 @@ pub const LAWS: &[Law] = &[
 const OGDEN_HILL: &str =
     "W = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3 + (J^(−αᵢ βᵢ) − 1)/βᵢ), βᵢ = νᵢ/(1 − 2νᵢ)";
 
-const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)";
+/// Ogden's law in the first convention.
+const OGDEN: &str = Convention::TwoMuByAlphaSquared.formula();
+
+/// The law that is the exponential tension curve of a test.
+const MARLOW_EXPONENTIAL: &str = "marlow-exponential";
 
 /// The law of a swollen network, of which tests alone determine too little.
 pub const SWELLING: &str = "flory-rehner";

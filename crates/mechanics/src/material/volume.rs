@@ -102,6 +102,19 @@ impl Volume {
     }
 }
 
+/// The moduli of a material at small strain; of one with fibres, in the axes of the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmallStrain {
+    /// E in MPa.
+    pub youngs_modulus: f64,
+    /// ν; ½ where the volume is constant.
+    pub poisson_ratio: f64,
+    /// μ in MPa.
+    pub shear_modulus: f64,
+    /// K in MPa; infinite where the volume is constant.
+    pub bulk_modulus: f64,
+}
+
 /// κ in MPa from a shear modulus in MPa and Poisson's ratio ν < ½.
 ///
 /// ```text

@@ -20,21 +20,16 @@ use crate::material::Code;
 
 mod abaqus;
 mod febio;
+mod input_file;
 mod model;
+mod sofa;
 mod text;
+mod xml;
 
+pub use input_file::InputFile;
 pub use model::Export;
 use model::Model;
-
-/// An input file of another code.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct InputFile {
-    /// Its text.
-    pub text: String,
-    /// Where it differs from the study.
-    pub remarks: Vec<String>,
-}
+pub use sofa::Scene;
 
 impl Export<'_> {
     /// The problem as an input file of a code.

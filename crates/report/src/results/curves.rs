@@ -53,7 +53,9 @@ pub fn material_chart(card: &Card) -> LineChart {
     let x = Axis::new("stretch λ, in shear 1 + γ [–]", Scale::Interval);
     let y = Axis::linear("nominal stress [MPa]");
     LineChart {
-        band: Some(([low, high], "range of the card".to_owned())),
+        band: card
+            .range_is_stated
+            .then(|| ([low, high], "range of the card".to_owned())),
         ..LineChart::new(&card.title, x, y, lines)
     }
 }

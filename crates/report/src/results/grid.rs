@@ -82,11 +82,16 @@ impl Grid {
         let states = model.spring_states(displacement, history);
         let of =
             |name, value: fn(&SpringState) -> f64| Array::scalars(name, states.iter().map(value));
+        let springs = model.springs.iter();
+        let stiffness = (0..model.springs.len()).map(|spring| model.stiffness_at_rest(spring));
         Self::new(&model.mesh.nodes, cells, connectivity.collect())
             .with([Array::displacement(displacement)])
             .with_in_cells([
                 of("force_N", |state| state.force),
                 of("stretch", |state| state.stretch),
+                Array::scalars("rest_length_mm", springs.clone().map(|one| one.rest_length)),
+                Array::scalars("cross_section_mm2", springs.map(|one| one.area)),
+                Array::scalars("stiffness_at_rest_N_per_mm", stiffness),
             ])
     }
 

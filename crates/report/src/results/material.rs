@@ -40,12 +40,12 @@ fn json(card: &Card) -> Value {
     json!({
         "card": card.name,
         "law": card.law_name,
-        "formula": card.formula,
+        "formula": card.energy(),
         "parameters": parameters.chain(choices).collect::<Map<_, _>>(),
         "youngs_modulus_MPa": card.youngs_modulus(),
         "bulk_modulus_MPa": card.bulk_modulus(),
         "sheet": card.law.plane_state().name(),
-        "stretch_range": card.stretch_range,
+        "stretch_range": card.range_is_stated.then_some(card.stretch_range),
         "fit_error_percent": card.fit_error_percent(),
         "text": card.text,
     })
@@ -54,11 +54,10 @@ fn json(card: &Card) -> Value {
 /// The card of a study: law, parameters, measures, ranges, source.
 fn statement(card: &Card) -> Vec<Block> {
     let law: &dyn HyperelasticLaw = &*card.law;
-    let [low, high] = card.stretch_range;
     let row = |key: &str, value: String| vec![key.to_owned(), value];
     let mut rows = vec![
         row("card", card.name.clone()),
-        row("law", format!("{}: {}", card.law_name, card.formula)),
+        row("law", format!("{}: {}", card.law_name, card.energy())),
     ];
     let parameters = card.parameters.iter();
     rows.extend(parameters.map(|parameter| {
@@ -78,10 +77,7 @@ fn statement(card: &Card) -> Vec<Block> {
             "initial Young's modulus E₀",
             format!("{:.6} MPa", card.youngs_modulus()),
         ),
-        row(
-            "calibrated range",
-            format!("λ = {low} … {high}{}", card.in_tests()),
-        ),
+        row("calibrated range", card.describe_range()),
         row(
             "measures",
             format!(

@@ -63,7 +63,7 @@ impl Stretches {
     /// What is to be said of them, as of `at 30 % stretch`; nothing within the range, or where corners alone leave it.
     pub fn reason(&self, card: &Card, load: &str) -> Option<String> {
         let [low, high] = card.stretch_range;
-        (self.share > WORTH_A_WARNING).then(|| {
+        (card.range_is_stated && self.share > WORTH_A_WARNING).then(|| {
             format!(
                 "principal stretches in the plane reach {:.3} … {:.3}{load}; on {:.1} % of the area they are outside the range of the card `{}` (by more than {:.0} %), which \
                  was calibrated from λ = {low} to {high}{}",

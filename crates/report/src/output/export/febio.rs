@@ -16,11 +16,10 @@ use crate::mesh::CellShape;
 
 mod columns;
 mod curves;
-mod xml;
 
+use super::xml::Xml;
 use columns::Columns;
 use curves::Curves;
-use xml::Xml;
 
 /// Steps of time within a load factor to begin with.
 const TIME_STEPS: u32 = 10;

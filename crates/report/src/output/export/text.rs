@@ -66,3 +66,9 @@ pub fn number(value: f64) -> String {
     let short = short.into_iter().find(|text| text.len() <= 17);
     short.unwrap_or_else(|| format!("{value:.11e}"))
 }
+
+/// Numbers with blanks between them.
+pub fn words<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {
+    let words = numbers.into_iter().map(|number| number.to_string());
+    words.collect::<Vec<_>>().join(" ")
+}

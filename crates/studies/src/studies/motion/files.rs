@@ -6,12 +6,12 @@ use super::solution::{ModelMotion, Motions};
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::results::models::CORRECTED;
 use crate::results::{
-    Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, GridSeries, Line, LineChart,
-    PALETTE, Panel, Series, Stroke, csv,
+    Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
+    LineChart, PALETTE, Panel, Series, Stroke, csv, springs_csv,
 };
-use crate::studies::ModelKind;
 use crate::studies::series::{ModelSeries, stress_figures};
-use crate::units::number;
+use crate::studies::{ModelKind, SPRINGS_TABLE};
+use crate::units::brief;
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
@@ -146,16 +146,6 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
     Some(Figure::new("motion_force.png", &caption, charts))
 }
 
-/// A time without trailing zeros.
-fn brief(time: f64) -> String {
-    let text = number(time);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
 /// Velocity over displacement of a probe, part of the motion after part.
 fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
@@ -257,15 +247,28 @@ pub fn animation(times: &[f64], series: &[ModelSeries]) -> Animation {
     }
 }
 
-/// The fields of each model and of the corrected motion.
-pub fn grids(sheet: &MovingSheet, series: &[ModelSeries]) -> Vec<GridSeries> {
+/// The fields of each model and of the corrected motion, and the springs at the last instant.
+pub fn grids(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -> Vec<GridSeries> {
     let of_model = |model: &ModelSeries| {
         let states = model.states.iter().enumerate();
         let grids =
             states.map(|(instant, state)| (state.at, model.grid(sheet.specimen.sheet(), instant)));
         GridSeries::instants(model.style.key, grids)
     };
-    series.iter().map(of_model).collect()
+    let mut all: Vec<GridSeries> = series.iter().map(of_model).collect();
+    let last = motions.springs.instants().last();
+    all.extend(last.map(|now| {
+        let grid = Grid::springs(&sheet.lattice(), &now.displacement, &[]);
+        GridSeries::single("springs_end", grid)
+    }));
+    all
+}
+
+/// The springs at the last instant, with the forces of their stretch alone; `None` where there is none.
+pub fn springs_table(sheet: &MovingSheet, motions: &Motions) -> Option<(String, Content)> {
+    let now = motions.springs.instants().last()?;
+    let text = springs_csv(&sheet.lattice(), &now.displacement, &[]);
+    Some((SPRINGS_TABLE.to_owned(), Content::Text(text)))
 }
 
 /// Probes, energies and the measured group's force over time, one table for each model.

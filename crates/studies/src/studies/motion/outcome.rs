@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::deviations::{Deviations, OwnError};
-use super::files::{animation, figures, grids, tables};
+use super::files::{animation, figures, grids, springs_table, tables};
 use super::headline::headline;
 use super::problem::MovingSheet;
 use super::solution::{ModelMotion, Motions};
@@ -42,6 +42,7 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
     ];
     blocks.extend(statement::blocks(sheet));
     let mut files = tables(sheet, motions);
+    files.extend(springs_table(sheet, motions));
     let (series, times) = (motions.series(), motions.times());
     let reference = &series[series.len() - 1];
     let animation = Drawing::Animation(animation(&times, &series));
@@ -56,7 +57,7 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
         steps: steps(sheet, motions, &deviations),
         figures: figures(sheet, motions, &series),
         style: sheet.specimen.pictures.style.clone(),
-        grids: grids(sheet, &series),
+        grids: grids(sheet, motions, &series),
         findings: findings(Examined {
             specimen: &sheet.specimen,
             series: &series,

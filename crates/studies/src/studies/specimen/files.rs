@@ -1,5 +1,6 @@
 //! Pictures and grids of a specimen.
 
+use super::forces;
 use super::history;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
@@ -7,12 +8,12 @@ use super::results::models::Models;
 use super::results::verdict::Deviation;
 use crate::problem::GroupState;
 use crate::results::{
-    Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel, Stroke,
-    from_rest, material_chart, mesh_outlines,
+    Array, Axis, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
+    Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
 };
-use crate::studies::ModelKind;
 use crate::studies::pictures::Shown;
 use crate::studies::series::{ModelSeries, stress_figures};
+use crate::studies::{ModelKind, SPRINGS_TABLE};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
@@ -239,6 +240,21 @@ pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
     all.insert(1, springs);
     all.retain(|series| !series.grids.is_empty());
     all
+}
+
+/// The tables for other programs.
+pub fn tables(specimen: &Specimen, models: &Models) -> Vec<(String, Content)> {
+    let forces = Content::Text(forces::csv(specimen, models));
+    let forces = ("forces.csv".to_owned(), forces);
+    [forces].into_iter().chain(springs_table(models)).collect()
+}
+
+/// The springs at the last load factor that they reach; `None` where they have no field.
+fn springs_table(models: &Models) -> Option<(String, Content)> {
+    let state = models.of(ModelKind::MassSpring).states.last()?;
+    let springs = &models.on_lattice.springs;
+    let text = springs_csv(springs, &state.displacement, &state.history);
+    Some((SPRINGS_TABLE.to_owned(), Content::Text(text)))
 }
 
 /// The fields of a model at one load factor.

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::files::{figures, grids};
+use super::files::{figures, grids, tables};
 use super::forces::Balance;
 use super::headline::headline;
 use super::problem::Specimen;
@@ -11,7 +11,7 @@ use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance, checks, deviations};
 use super::{forces, history, statement, work};
 use crate::problem::Solution;
-use crate::results::{Block, Content, Material, Outcome, Step, Table, object, or_dash, pictures};
+use crate::results::{Block, Material, Outcome, Step, Table, object, or_dash, pictures};
 use crate::studies::ModelKind;
 use crate::studies::findings::{Examined, findings};
 use crate::units::{decimals, number};
@@ -36,10 +36,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         steps: deviations.iter().enumerate().map(quantities).collect(),
         figures: figures(specimen, models, &deviations),
         grids: grids(specimen, models),
-        files: vec![(
-            "forces.csv".to_owned(),
-            Content::Text(forces::csv(specimen, models)),
-        )],
+        files: tables(specimen, models),
         findings: findings(Examined {
             specimen,
             series: &models.all_series(),

@@ -1,8 +1,8 @@
 //! How loads and turns grow with time.
 
-use super::xml::Xml;
 use crate::output::export::model::{Constraint, Model};
 use crate::output::export::text::number;
+use crate::output::export::xml::Xml;
 
 /// Points of the path of a turn between two load factors.
 const TURN_POINTS: u32 = 8;

@@ -1,0 +1,261 @@
+use super::*;
+use crate::material::Code;
+use crate::material::registry::LAWS;
+use crate::material::samples::{CHANGING_VOLUME, SAMPLES};
+use crate::material::sheet::Kinematics;
+use crate::material::{CodeLaw, SmallStrain};
+use crate::units::{self, Dimension};
+
+fn parameters(of: &[(&str, &str)]) -> Vec<(String, String)> {
+    of.iter()
+        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
+        .collect()
+}
+
+fn law(name: &str) -> Known {
+    Known::of(Law::named(name).unwrap())
+}
+
+fn card(known: &Known) -> Card {
+    let text = known.card_text("gel").unwrap();
+    Card::parse("gel", "gel", &text).unwrap()
+}
+
+fn refused(known: &Known) -> String {
+    known.card_text("gel").unwrap_err().to_string()
+}
+
+/// The parameters of a sample of the law but those that follow from E and ν.
+fn sample(name: &str) -> Vec<(String, String)> {
+    let of_curve = ("marlow-exponential", "exponent = 2.2");
+    let of_neo_hooke = [("neo-hooke", ""), ("mooney-rivlin", "c01 = \"1 kPa\"")];
+    let all = SAMPLES
+        .iter()
+        .chain(CHANGING_VOLUME)
+        .chain([&of_curve])
+        .chain(&of_neo_hooke);
+    let (_, text) = all.into_iter().find(|(known, _)| *known == name).unwrap();
+    let pairs = text.lines().filter_map(|line| line.split_once(" = "));
+    let is_stress = |value: &str| units::parse(value, Dimension::Stress).is_ok();
+    // The first parameter that is a stress follows from E.
+    let mut followed = name == "mooney-rivlin";
+    let mut stated = Vec::new();
+    for (key, value) in pairs {
+        let value = value.trim_matches('"');
+        let follows = is_stress(value) && !followed;
+        followed |= follows;
+        if !follows && key != "poisson_ratio" && !key.starts_with("nu_") {
+            stated.push((key.to_owned(), value.to_owned()));
+        }
+    }
+    stated
+}
+
+/// The tangent at rest of a sheet of E and ν in plane stress, to 1e-10.
+fn check_tangent(card: &Card, young: f64, ratio: f64) {
+    let tangent = card.law.response(&Kinematics::rest()).tangent;
+    let along = young / (1.0 - ratio * ratio);
+    let shear = 0.5 * young / (1.0 + ratio);
+    for (place, expected) in [
+        ((0, 0), along),
+        ((3, 3), along),
+        ((0, 3), ratio * along),
+        ((1, 1), shear),
+        ((1, 2), shear),
+    ] {
+        let found = tangent[place];
+        let context = format!("{}, ν = {ratio}, {place:?}: {found} {expected}", card.text);
+        assert!((found - expected).abs() < 1e-10 * young, "{context}");
+    }
+}
+
+/// Every law but those that E and ν do not determine.
+#[test]
+fn a_card_of_young_and_poisson_has_their_tangent_at_rest() {
+    let mut count = 0;
+    for law in LAWS {
+        if [MARLOW_TABLE, SWELLING, "holzapfel-gasser-ogden"].contains(&law.name) {
+            continue;
+        }
+        for (young, ratio) in [
+            (0.02, 0.45),
+            (3.0, 0.3),
+            (5e-4, 0.5),
+            (0.1, -0.2),
+            (0.05, 0.4999),
+        ] {
+            let mut known = Known::of(law);
+            known.moduli.young = Some(young);
+            known.moduli.poisson_ratio = Some(ratio);
+            known.parameters = sample(law.name);
+            if ratio == 0.5 && CHANGING_VOLUME.iter().any(|(name, _)| *name == law.name) {
+                assert!(
+                    refused(&known).contains("changes its volume"),
+                    "{}",
+                    law.name
+                );
+                continue;
+            }
+            let card = card(&known);
+            check_tangent(&card, young, ratio);
+            let SmallStrain { poisson_ratio, .. } = card.small_strain();
+            assert!((poisson_ratio - ratio).abs() < 1e-10, "{}", card.text);
+            count += 1;
+        }
+    }
+    assert!(count > 80, "{count}");
+}
+
+#[test]
+fn the_formula_is_the_one_that_is_computed() {
+    let mut known = law("ogden-1");
+    known.parameters = parameters(&[("mu_1", "20 kPa"), ("alpha_1", "4")]);
+    assert!(refused(&known).contains("factor before the sums"));
+    for (convention, factor, shear) in [
+        ("2mu/alpha^2", "Σ 2 μᵢ/αᵢ²", 0.02),
+        ("mu/alpha", "Σ μᵢ/αᵢ ", 0.04),
+        ("mu/alpha^2", "Σ μᵢ/αᵢ²", 0.01),
+    ] {
+        known.convention = Some(convention.to_owned());
+        let card = card(&known);
+        assert!(card.energy().contains(factor), "{}", card.energy());
+        assert!((card.law.shear_modulus() - shear).abs() < 1e-15);
+        assert_eq!(card.symbols(), ["μ₁ = 0.02 MPa", "α₁ = 4"]);
+    }
+    let mut known = law("neo-hooke");
+    known.moduli.young = Some(0.02);
+    known.moduli.poisson_ratio = Some(0.25);
+    let card = card(&known);
+    assert_eq!(card.energy(), "W = Ψ + ½ κ (J − 1)², Ψ = C₁₀ (Ī₁ − 3)");
+    assert!(
+        card.symbols()[1].starts_with("κ = 0.013333 MPa"),
+        "{:?}",
+        card.symbols()
+    );
+}
+
+/// What a code is given as parameters comes back from the export to it.
+#[test]
+fn parameters_by_the_names_of_another_code_are_those_of_its_export() {
+    for (code, name, stated) in [
+        (
+            Code::FeBio,
+            "neo-hooke",
+            &[("c1", "0.1 MPa"), ("k", "5 MPa")][..],
+        ),
+        (
+            Code::FeBio,
+            "mooney-rivlin",
+            &[("c1", "0.1 MPa"), ("c2", "0.02 MPa"), ("k", "5 MPa")],
+        ),
+        (
+            Code::FeBio,
+            "ogden-2",
+            &[
+                ("c1", "0.1 MPa"),
+                ("m1", "3"),
+                ("c2", "0.2 MPa"),
+                ("m2", "-2"),
+                ("k", "5 MPa"),
+            ],
+        ),
+        (
+            Code::FeBio,
+            "gent",
+            &[("G", "0.1 MPa"), ("Jm", "30"), ("k", "5 MPa")],
+        ),
+        (
+            Code::FeBio,
+            "veronda-westmann",
+            &[("c1", "0.1 MPa"), ("c2", "0.7"), ("k", "5 MPa")],
+        ),
+        (
+            Code::Abaqus,
+            "neo-hooke",
+            &[("C10", "0.1 MPa"), ("D1", "0.4 1/MPa")],
+        ),
+        (
+            Code::Abaqus,
+            "yeoh",
+            &[
+                ("C10", "0.1 MPa"),
+                ("C20", "0.01 MPa"),
+                ("C30", "0.002 MPa"),
+                ("D1", "0.4 mm^2/N"),
+            ],
+        ),
+        (
+            Code::CalculiX,
+            "ogden-1",
+            &[("mu_1", "0.1 MPa"), ("alpha_1", "3"), ("D1", "0.4 1/MPa")],
+        ),
+        (
+            Code::Abaqus,
+            "arruda-boyce",
+            &[("mu", "0.1 MPa"), ("lambda_m", "2.5"), ("D", "0.4 1/MPa")],
+        ),
+    ] {
+        let stated = parameters(stated);
+        let card = card(&law(name).with_parameters_of(code, &stated).unwrap());
+        assert!((card.volume.unwrap().bulk_modulus - 5.0).abs() < 1e-14);
+        let isochoric = card.isochoric.as_ref().unwrap();
+        let Some(CodeLaw::Named { parameters, .. }) = isochoric.in_code(code, 5.0) else {
+            panic!("{name} of {code:?}")
+        };
+        for (key, text) in &stated {
+            let plain = |name: &str| name.to_lowercase();
+            let found = parameters.iter().find(|(own, _)| plain(own) == plain(key));
+            let number: f64 = text.split(' ').next().unwrap().parse().unwrap();
+            let (_, found) = found.unwrap_or_else(|| panic!("{name} {key}: {parameters:?}"));
+            assert!((found - number).abs() < 1e-15, "{name} {key}: {found}");
+        }
+    }
+    let stated = parameters(&[("C10", "0.1 MPa"), ("D1", "0 1/MPa")]);
+    let incompressible = law("neo-hooke")
+        .with_parameters_of(Code::Abaqus, &stated)
+        .unwrap();
+    assert!(card(&incompressible).bulk_modulus().is_none());
+    let stated = parameters(&[("E", "20 kPa"), ("v", "0.3")]);
+    let coupled = law("neo-hooke-simo-pister")
+        .with_parameters_of(Code::FeBio, &stated)
+        .unwrap();
+    check_tangent(&card(&coupled), 0.02, 0.3);
+}
+
+#[test]
+fn what_is_missing_or_contradicts_is_told_with_a_remedy() {
+    let young = |name: &str, stated: &[(&str, &str)]| {
+        let mut known = law(name);
+        known.moduli.young = Some(0.02);
+        known.parameters = parameters(stated);
+        refused(&known)
+    };
+    for (found, expected) in [
+        (young("gent", &[]), "needs jm too"),
+        (young("mooney-rivlin", &[]), "does not determine c10, c01"),
+        (
+            young("yeoh", &[("c10", "1 kPa"), ("c20", "0 MPa")]),
+            "does not depend on c30",
+        ),
+        (
+            young("neo-hooke", &[("c10", "1 kPa")]),
+            "a modulus that follows from them",
+        ),
+        (young("neo-hooke", &[("c1", "1 kPa")]), "did you mean `c10`"),
+        (young("gent", &[("jm", "30 MPa")]), "--parameter jm"),
+        (young("linear-elastic", &[]), "--poisson"),
+        (young("flory-rehner", &[]), "--parameter KEY=VALUE"),
+        (young("marlow-table", &[]), "materials fit"),
+        (refused(&law("gent")), "add --parameter jm=…"),
+    ] {
+        assert!(found.contains(expected), "{expected}: {found}");
+    }
+    let stated = parameters(&[("C10", "0.1 MPa"), ("D1", "0.4")]);
+    let fault = law("neo-hooke")
+        .with_parameters_of(Code::Abaqus, &stated)
+        .unwrap_err();
+    assert!(
+        fault.to_string().contains("reciprocal of a stress"),
+        "{fault}"
+    );
+}
