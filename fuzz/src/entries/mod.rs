@@ -38,6 +38,8 @@ pub const TARGETS: &[(&str, Entry)] = &[
     ("study", readers::study),
     ("card", readers::card),
     ("tables", readers::tables),
+    ("formats", readers::formats),
+    ("spreadsheet", readers::spreadsheet),
     ("markers", readers::markers),
     ("outline", readers::outline),
     ("gmsh", readers::gmsh),

@@ -6,6 +6,7 @@ use super::frames::MarkerSeries;
 use super::rows::{FileRows, ReadSettings};
 use super::understood::Understood;
 use super::{matrices, on_mesh, plausible, table};
+use crate::document::is_table_path;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 
@@ -34,7 +35,7 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
     for (group, number) in groups.iter().zip(frame_numbers(&groups)) {
         let mut found = match group[..] {
             [u, v] => matrices::read(u, v, settings)?,
-            _ if is_table(group[0]) => table::read(group[0], settings)?,
+            _ if is_table_path(group[0]) => table::read(group[0], settings)?,
             _ => on_mesh::read(group[0], settings)?,
         };
         if several {
@@ -60,12 +61,6 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
         understood,
         warnings,
     })
-}
-
-fn is_table(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    let known = ["csv", "txt", "dat", "tsv"];
-    ending.is_some_and(|ending| known.iter().any(|known| ending == *known))
 }
 
 /// Adds the frames of one more file, which must be of the same kind.

@@ -276,6 +276,7 @@ impl<'a> Reader<'a> {
         Understood {
             layout: self.layout,
             encoding: self.table.encoding.map(|encoding| encoding.name()),
+            part: self.table.part.clone(),
             columns: of_length.chain(others).collect(),
             turned_up: self.downwards,
             taken_to_rest: self.deformed,
