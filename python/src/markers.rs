@@ -31,6 +31,7 @@ pub struct Options {
     encoding: Option<String>,
     y_axis: Option<String>,
     places: Option<String>,
+    rest: Option<PathBuf>,
     mesh: Option<PathBuf>,
     mesh_unit: String,
     merge_nodes: Option<f64>,
@@ -65,6 +66,7 @@ impl Options {
             encoding: encoding.transpose()?,
             downwards: either("y_axis", self.y_axis.as_deref(), ["down", "up"])?,
             deformed: either("places", self.places.as_deref(), ["frame", "rest"])?,
+            rest: self.rest.clone(),
         })
     }
 

@@ -43,6 +43,7 @@ pub const TARGETS: &[(&str, Entry)] = &[
     ("markers", readers::markers),
     ("outline", readers::outline),
     ("gmsh", readers::gmsh),
+    ("abaqus", readers::abaqus),
     ("vtk", readers::vtk),
     ("vtu", readers::vtu),
     ("pvd", readers::pvd),

@@ -58,7 +58,9 @@ pub fn tables(bytes: &[u8]) -> Became {
 
 /// A table in the format of another program is read; `.xlsx` permits the names of sheets.
 pub fn formats(bytes: &[u8]) -> Became {
-    with_file("table.xlsx", bytes, |file| Table::read(file, "").is_ok().into())
+    with_file("table.xlsx", bytes, |file| {
+        Table::read(file, "").is_ok().into()
+    })
 }
 
 /// A workbook is read: sheet, texts and formats are the parts of the input between zeros.
@@ -67,7 +69,8 @@ pub fn spreadsheet(bytes: &[u8]) -> Became {
     let mut part = || parts.next().unwrap_or_default();
     let [sheet, texts, styles] = [part(), part(), part()];
     let workbook = br#"<workbook><sheets><sheet name="a" r:id="r1"/></sheets></workbook>"#;
-    let references = br#"<Relationships><Relationship Id="r1" Target="sheet1.xml"/></Relationships>"#;
+    let references =
+        br#"<Relationships><Relationship Id="r1" Target="sheet1.xml"/></Relationships>"#;
     let archive = stored(&[
         ("xl/workbook.xml", workbook),
         ("xl/_rels/workbook.xml.rels", references),
@@ -85,13 +88,38 @@ fn stored(files: &[(&str, &[u8])]) -> Vec<u8> {
         let size = (bytes.len() as u32).to_le_bytes();
         let lengths = [(name.len() as u16).to_le_bytes(), [0; 2]].concat();
         let offset = (archive.len() as u32).to_le_bytes();
-        let common = [&[20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0][..], &checksum(bytes).to_le_bytes(), &size, &size, &lengths].concat();
+        let common = [
+            &[20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0][..],
+            &checksum(bytes).to_le_bytes(),
+            &size,
+            &size,
+            &lengths,
+        ]
+        .concat();
         archive.extend([b"PK\x03\x04", &common[..], name.as_bytes(), bytes].concat());
-        directory.extend([b"PK\x01\x02\x14\0", &common[..], &[0; 10], &offset, name.as_bytes()].concat());
+        directory.extend(
+            [
+                b"PK\x01\x02\x14\0",
+                &common[..],
+                &[0; 10],
+                &offset,
+                name.as_bytes(),
+            ]
+            .concat(),
+        );
     }
     let count = (files.len() as u16).to_le_bytes();
-    let [size, start] = [directory.len(), archive.len()].map(|length| (length as u32).to_le_bytes());
-    let end = [&b"PK\x05\x06\0\0\0\0"[..], &count, &count, &size, &start, &[0; 2]].concat();
+    let [size, start] =
+        [directory.len(), archive.len()].map(|length| (length as u32).to_le_bytes());
+    let end = [
+        &b"PK\x05\x06\0\0\0\0"[..],
+        &count,
+        &count,
+        &size,
+        &start,
+        &[0; 2],
+    ]
+    .concat();
     [archive, directory, end].concat()
 }
 
@@ -139,6 +167,11 @@ fn mesh_file(name: &str, bytes: &[u8]) -> Became {
 /// Gmsh's files.
 pub fn gmsh(bytes: &[u8]) -> Became {
     mesh_file("mesh.msh", bytes)
+}
+
+/// Abaqus' input files.
+pub fn abaqus(bytes: &[u8]) -> Became {
+    mesh_file("mesh.inp", bytes)
 }
 
 /// VTK's legacy files.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::frames::MarkerSeries;
 use super::rows::{FileRows, ReadSettings};
 use super::understood::Understood;
-use super::{matrices, on_mesh, plausible, table};
+use super::{matrices, on_mesh, plausible, positions, table};
 use crate::document::is_table_path;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
@@ -34,6 +34,7 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
     let mut whole: Option<FileRows> = None;
     for (group, number) in groups.iter().zip(frame_numbers(&groups)) {
         let mut found = match group[..] {
+            [frame] if settings.rest.is_some() => positions::read(frame, settings)?,
             [u, v] => matrices::read(u, v, settings)?,
             _ if is_table_path(group[0]) => table::read(group[0], settings)?,
             _ => on_mesh::read(group[0], settings)?,
