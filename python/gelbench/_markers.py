@@ -100,6 +100,7 @@ def correct(
     robust: str | None = None,
     physics: str | None = None,
     fit: Sequence[str] = (),
+    sheet: str | None = None,
     conditions: PathLike | None = None,
     unit: str | None = None,
     array: str | None = None,
@@ -109,6 +110,7 @@ def correct(
     encoding: str | None = None,
     y_axis: str | None = None,
     places: str | None = None,
+    rest: PathLike | None = None,
     mesh: PathLike | None = None,
     mesh_unit: str = "mm",
     merge_nodes: Quantity | None = None,
@@ -155,9 +157,12 @@ def correct(
     fit : sequence of str
         Parameters of the law to estimate with the field, or ``["all"]``, see `Correction.parameters`; a force must be measured.
         One frame seldom determines more than one.
+    sheet : {"plane-stress", "plane-strain"}, optional
+        A thin sheet with free surfaces (if omitted), or a thick body between walls, whose material needs a resistance to a change of
+        volume.
     conditions : path, optional
-        A file with the known conditions, instead of the arguments from `free` to `fit`.
-    unit, array, grid, columns, ignore_columns, encoding, y_axis, places
+        A file with the known conditions, instead of the arguments from `free` to `sheet`.
+    unit, array, grid, columns, ignore_columns, encoding, y_axis, places, rest
         How files are read; see the options of ``gelbench correct``.
     mesh, mesh_unit, merge_nodes, allow, outline, cell_size, refine, cells, holes
         The specimen's mesh or outline, and how it is meshed; see the same options. `mesh_unit` is a unit of length.
@@ -188,6 +193,7 @@ def correct(
         "robust": robust,
         "physics": physics,
         "fit": ([fit] if isinstance(fit, str) else list(fit)) or None,
+        "sheet": sheet,
     }
     listed = _edges(free, rigid, known or {})
     measured = _forces(force or {})
@@ -211,6 +217,7 @@ def correct(
         "encoding": encoding,
         "y_axis": y_axis,
         "places": places,
+        "rest": _path(rest),
         "mesh": _path(mesh),
         "mesh_unit": mesh_unit,
         "merge_nodes": None if merge_nodes is None else number(merge_nodes, "mm", "merge_nodes"),

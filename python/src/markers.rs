@@ -32,6 +32,7 @@ pub struct Options {
     encoding: Option<String>,
     y_axis: Option<String>,
     places: Option<String>,
+    rest: Option<PathBuf>,
     mesh: Option<PathBuf>,
     mesh_unit: String,
     merge_nodes: Option<f64>,
@@ -66,6 +67,7 @@ impl Options {
             encoding: encoding.transpose()?,
             downwards: either("y_axis", self.y_axis.as_deref(), ["down", "up"])?,
             deformed: either("places", self.places.as_deref(), ["frame", "rest"])?,
+            rest: self.rest.clone(),
         })
     }
 

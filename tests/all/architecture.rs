@@ -60,6 +60,7 @@ const DOORS: &[(&str, &[&str])] = &[
             "crates/base/src/document/table.rs",
         ],
     ),
+    ("zip::", &["crates/base/src/document/archive.rs"]),
     ("encoding_rs::", &["crates/base/src/document/encoding.rs"]),
     ("statrs::", &["crates/base/src/statistics.rs"]),
     (

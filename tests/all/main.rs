@@ -34,6 +34,7 @@ mod one_study;
 mod other_codes;
 mod own_errors;
 mod own_laws;
+mod plane_strain;
 mod relaxation;
 mod report_schema;
 mod resume;

@@ -15,6 +15,7 @@ mod matrices;
 mod on_mesh;
 mod outside;
 mod plausible;
+mod positions;
 mod read;
 mod role;
 mod rows;

@@ -55,6 +55,73 @@ pub fn tables(bytes: &[u8]) -> Became {
         .into()
 }
 
+/// A table in the format of another program is read; `.xlsx` permits the names of sheets.
+pub fn formats(bytes: &[u8]) -> Became {
+    with_file("table.xlsx", bytes, |file| {
+        Table::read(file, "").is_ok().into()
+    })
+}
+
+/// A workbook is read: sheet, texts and formats are the parts of the input between zeros.
+pub fn spreadsheet(bytes: &[u8]) -> Became {
+    let mut parts = bytes.splitn(3, |byte| *byte == 0);
+    let mut part = || parts.next().unwrap_or_default();
+    let [sheet, texts, styles] = [part(), part(), part()];
+    let workbook = br#"<workbook><sheets><sheet name="a" r:id="r1"/></sheets></workbook>"#;
+    let references =
+        br#"<Relationships><Relationship Id="r1" Target="sheet1.xml"/></Relationships>"#;
+    let archive = stored(&[
+        ("xl/workbook.xml", workbook),
+        ("xl/_rels/workbook.xml.rels", references),
+        ("xl/sheet1.xml", sheet),
+        ("xl/sharedStrings.xml", texts),
+        ("xl/styles.xml", styles),
+    ]);
+    formats(&archive)
+}
+
+/// An archive of files that are not compressed.
+fn stored(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let (mut archive, mut directory) = (Vec::new(), Vec::new());
+    for (name, bytes) in files {
+        let size = (bytes.len() as u32).to_le_bytes();
+        let lengths = [(name.len() as u16).to_le_bytes(), [0; 2]].concat();
+        let offset = (archive.len() as u32).to_le_bytes();
+        let common = [
+            &[20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0][..],
+            &checksum(bytes).to_le_bytes(),
+            &size,
+            &size,
+            &lengths,
+        ]
+        .concat();
+        archive.extend([b"PK\x03\x04", &common[..], name.as_bytes(), bytes].concat());
+        directory.extend(
+            [
+                b"PK\x01\x02\x14\0",
+                &common[..],
+                &[0; 10],
+                &offset,
+                name.as_bytes(),
+            ]
+            .concat(),
+        );
+    }
+    let count = (files.len() as u16).to_le_bytes();
+    let [size, start] =
+        [directory.len(), archive.len()].map(|length| (length as u32).to_le_bytes());
+    let end = [
+        &b"PK\x05\x06\0\0\0\0"[..],
+        &count,
+        &count,
+        &size,
+        &start,
+        &[0; 2],
+    ]
+    .concat();
+    [archive, directory, end].concat()
+}
+
 /// Markers are read, and an outline is laid around them.
 pub fn markers(bytes: &[u8]) -> Became {
     let settings = ReadSettings {
@@ -99,6 +166,11 @@ fn mesh_file(name: &str, bytes: &[u8]) -> Became {
 /// Gmsh's files.
 pub fn gmsh(bytes: &[u8]) -> Became {
     mesh_file("mesh.msh", bytes)
+}
+
+/// Abaqus' input files.
+pub fn abaqus(bytes: &[u8]) -> Became {
+    mesh_file("mesh.inp", bytes)
 }
 
 /// VTK's legacy files.

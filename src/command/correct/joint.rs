@@ -18,7 +18,9 @@ use gelbench_report::output::ResultFolder;
 use gelbench_studies::studies::markers::joint::{
     CorrectedSpecimen, JointStudy, NamedSpecimen, given_the_law, results, undetermined,
 };
-use gelbench_studies::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
+use gelbench_studies::studies::markers::{
+    Conditions, MarkerStudy, Request, in_plane, worst_answer,
+};
 use gelbench_studies::studies::name;
 
 /// Estimates the parameters, corrects, prints, and writes.
@@ -106,17 +108,41 @@ fn read(options: Options, inputs: &mut Vec<PathBuf>) -> Result<JointStudy, Error
     for file in files {
         specimens.push(of_file(&file, &like, inputs)?);
     }
+    let cards = in_common_plane(cards?, &specimens)?;
     Ok(JointStudy {
         specimens,
-        cards: cards?,
+        cards,
         fit,
         settings,
     })
 }
 
+/// The cards in the plane state of all specimens.
+///
+/// # Errors
+/// [`Error::Input`] where specimens differ in it, or a card has no stress in it.
+fn in_common_plane(cards: Vec<Card>, specimens: &[NamedSpecimen]) -> Result<Vec<Card>, Error> {
+    let mut planes = specimens
+        .iter()
+        .map(|(_, study)| study.card.law.plane_state());
+    let first = planes.next();
+    if planes.any(|plane| Some(plane) != first) {
+        let hint = "pool specimens in plane stress, or specimens in plane strain; --sheet states it for all";
+        return Err(Error::input(
+            "some specimens are in plane stress and others in plane strain",
+            hint,
+        ));
+    }
+    cards
+        .into_iter()
+        .map(|card| in_plane(card, first))
+        .collect()
+}
+
 /// The specimen of a file; both are added to the `inputs`.
 fn of_file(file: &Path, like: &Request, inputs: &mut Vec<PathBuf>) -> Result<NamedSpecimen, Error> {
     let mut conditions = Conditions::of_file(file)?;
+    conditions.sheet = like.conditions.sheet.or(conditions.sheet);
     let Some(specimen) = conditions.specimen.take() else {
         return Err(Error::input(
             format!("{} has no [specimen]", file.display()),

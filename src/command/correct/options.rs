@@ -12,6 +12,7 @@ use crate::command::large::Large;
 use crate::command::terminal::Printed;
 use gelbench_base::document::TextEncoding;
 use gelbench_estimation::estimation::{JointSettings, MeasuredForce, Physics, Robust};
+use gelbench_mechanics::material::PlaneState;
 use gelbench_mechanics::mesh::{CellShape, Exemptions};
 use gelbench_studies::studies::markers::ForceColumn;
 
@@ -29,6 +30,10 @@ pub struct Options {
     /// Thickness at rest, such as "2 mm"
     #[arg(long, value_name = "LENGTH", value_parser = size, allow_hyphen_values = true, required_unless_present = "specimen")]
     pub thickness: Option<f64>,
+    /// A thin sheet with free surfaces (plane stress, the default), or a thick body between walls (plane strain), whose card needs a
+    /// `[volume]`
+    #[arg(long, value_parser = one_of(&PlaneState::NAMES))]
+    pub sheet: Option<PlaneState>,
     /// What else is known: a file with edge conditions and noise
     #[arg(long, value_name = "FILE")]
     pub study: Option<PathBuf>,
@@ -64,7 +69,7 @@ pub struct Options {
     /// Into how many groups the frames are split; the groups are left out one after the other
     #[arg(long, value_name = "GROUPS", default_value_t = JointSettings::default().groups)]
     pub leave_out: usize,
-    /// The specimen's mesh: .msh, .vtu or .vtk
+    /// The specimen's mesh: .msh, .inp, .vtu or .vtk
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
     /// The unit of the mesh
@@ -104,6 +109,9 @@ pub struct Options {
     /// The positions in a table, at rest or in the frame, if not as usual for the program that wrote it
     #[arg(long, value_parser = one_of(&PLACES))]
     pub places: Option<bool>,
+    /// The positions at rest, if FIELD holds positions instead of displacements: tables with x, y, and id where points are numbered
+    #[arg(long, value_name = "FILE")]
+    pub rest: Option<PathBuf>,
     /// The encoding of a table, such as latin1, gb18030 or shift_jis, if its bytes do not show it
     #[arg(long, value_name = "NAME", value_parser = encoding)]
     pub encoding: Option<TextEncoding>,
@@ -166,7 +174,13 @@ impl Options {
 
     /// The files that the results follow from.
     pub fn inputs(&self) -> Vec<PathBuf> {
-        let others = [&self.study, &self.mesh, &self.outline, &self.forces];
+        let others = [
+            &self.study,
+            &self.mesh,
+            &self.outline,
+            &self.forces,
+            &self.rest,
+        ];
         let named = others.into_iter().flatten().cloned();
         let card = PathBuf::from(&self.material);
         self.fields

@@ -22,6 +22,7 @@ pub fn request(options: Options) -> Result<Request, Error> {
             encoding: options.encoding,
             downwards: options.y_axis,
             deformed: options.places,
+            rest: options.rest,
         },
         forces: options.forces,
         files: options.fields,
@@ -53,6 +54,7 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
         .force_columns
         .extend_from_slice(&options.force_column);
     conditions.fit.extend_from_slice(&options.fit);
+    conditions.sheet = options.sheet.or(conditions.sheet);
     conditions.noise = options.noise.or(conditions.noise);
     conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);
     conditions.scale_deviation = options.scale_error.unwrap_or(conditions.scale_deviation);

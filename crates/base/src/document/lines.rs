@@ -7,8 +7,8 @@ use super::decimals::is_number;
 /// The number of lines by which separators, names, units and rows are distinguished.
 pub(super) const SURVEYED: usize = 1000;
 
-/// A text without byte-order mark and old line ends; lines that begin with stars, as some programs write them first,
-/// become remarks.
+/// A text without byte-order mark and old line ends; lines that begin with stars or per cent signs, as some programs write
+/// them first, become remarks.
 pub(super) fn plain_text(text: &str) -> String {
     let text = text.trim_start_matches('\u{feff}');
     let text = if text.contains('\n') {
@@ -16,14 +16,30 @@ pub(super) fn plain_text(text: &str) -> String {
     } else {
         text.replace('\r', "\n")
     };
-    if !text.starts_with("***") {
-        return text;
+    if text.starts_with("***") {
+        let remark = |line: &str| remark_of(line, '*').unwrap_or_else(|| line.to_owned());
+        text.split_inclusive('\n').map(remark).collect()
+    } else if text.trim_start().starts_with('%') {
+        matlab_remarks(&text)
+    } else {
+        text
     }
-    let remark = |line: &str| match line.strip_prefix('*') {
-        Some(rest) => format!("#{rest}"),
-        None => line.to_owned(),
+}
+
+/// MATLAB's remarks above the rows; below them a per cent sign is a unit.
+fn matlab_remarks(text: &str) -> String {
+    let mut above = true;
+    let line = |line: &str| {
+        above &= line.trim().is_empty() || line.starts_with(['%', '#']);
+        let remark = above.then(|| remark_of(line, '%')).flatten();
+        remark.unwrap_or_else(|| line.to_owned())
     };
-    text.split_inclusive('\n').map(remark).collect()
+    text.split_inclusive('\n').map(line).collect()
+}
+
+/// A line that begins with a sign as a remark.
+fn remark_of(line: &str, sign: char) -> Option<String> {
+    line.strip_prefix(sign).map(|rest| format!("#{rest}"))
 }
 
 /// The separator of the columns: that of the first line that is not a comment, if it gives as many fields in most
@@ -65,8 +81,7 @@ pub(super) fn blanks_to_tabs(text: String) -> String {
     let mut bytes = text.clone().into_bytes();
     let mut start = 0;
     for line in text.split_inclusive('\n') {
-        let all = [1, 2].map(|least| gaps(line, least));
-        let fitting = all.into_iter().find(|gaps| gaps.len() + 1 == width);
+        let fitting = fitting_gaps(line, width);
         for gap in fitting.filter(|_| is_record(&line)).unwrap_or_default() {
             bytes[start + gap] = b'\t';
         }
@@ -80,6 +95,65 @@ fn numbers(line: &str) -> Option<usize> {
     let is_plain = |field: &str| is_number(field) && !field.ends_with(',');
     let fields = || line.trim_end().split(' ').filter(|field| !field.is_empty());
     (fields().count() > 1 && fields().all(is_plain)).then(|| fields().count())
+}
+
+/// The gaps that make so many fields of a line.
+fn fitting_gaps(line: &str, width: usize) -> Option<Vec<usize>> {
+    let all = [gaps(line, 1), gaps(line, 2), gaps_of_units(line)];
+    all.into_iter().find(|gaps| gaps.len() + 1 == width)
+}
+
+/// The gaps of a line of units in brackets; none in any other line.
+fn gaps_of_units(line: &str) -> Vec<usize> {
+    if !line
+        .split_whitespace()
+        .all(|field| field.starts_with(['[', '(']))
+    {
+        return Vec::new();
+    }
+    let before_next = [" [", " ("].map(|start| line.match_indices(start));
+    let mut gaps: Vec<usize> = before_next
+        .into_iter()
+        .flatten()
+        .map(|(at, _)| at)
+        .collect();
+    gaps.sort_unstable();
+    gaps.retain(|gap| !line[..*gap].trim().is_empty());
+    gaps
+}
+
+/// The names of so many columns in a remark without its sign, however they are separated.
+pub(super) fn names_in_remark(remark: &str, width: usize) -> Option<Vec<&str>> {
+    let by_signs = [';', '\t', ','].map(|sign| remark.split(sign).collect());
+    let by_blanks = fitting_gaps(remark, width).map(|gaps| {
+        let ends = gaps.iter().copied().chain([remark.len()]);
+        let starts = std::iter::once(0).chain(gaps.iter().copied());
+        starts
+            .zip(ends)
+            .map(|(start, end)| &remark[start..end])
+            .collect()
+    });
+    let mut all = by_signs.into_iter().chain(by_blanks);
+    all.find(|names: &Vec<&str>| {
+        names.len() == width
+            && names
+                .iter()
+                .all(|name| is_name(name.trim()) && !name.contains(':'))
+    })
+}
+
+/// Words that name quantities; other words above rows may be a sentence.
+const QUANTITIES: &str = "x y z u v w ux uy uz u_x u_y id node point marker frame time t stress strain stretch force load \
+    displacement extension position length lambda spannung dehnung kraft weg zeit";
+
+/// Whether words are names of columns, and not a sentence: one has a unit, or two are quantities.
+pub(super) fn are_quantities(names: &[&str]) -> bool {
+    let is_known = |name: &&&str| {
+        let name = name.trim().to_lowercase();
+        QUANTITIES.split_whitespace().any(|known| known == name)
+    };
+    let has_unit = |name: &&str| name.trim_end().ends_with([']', ')']);
+    names.iter().any(has_unit) || names.iter().filter(is_known).count() >= 2
 }
 
 /// Where the blanks between fields begin, at least so many: not within brackets or quotes, nor before a unit in brackets.

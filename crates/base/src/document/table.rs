@@ -5,12 +5,14 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::Faults;
 use super::columns::{Above, Column, unquoted};
 use super::decimals::{Decimals, NotANumber, is_hole};
 use super::encoding::TextEncoding;
-use super::lines::{SURVEYED, blanks_to_tabs, delimiter, is_name};
-use super::lines::{line_at, plain_text, remark_above};
-use super::{Faults, text::read_data};
+use super::file::MOST_OF_DATA;
+use super::formats::{self, TableText};
+use super::lines::{SURVEYED, blanks_to_tabs, delimiter, line_at, plain_text};
+use super::text::{bytes, text_of_data};
 use crate::error::{Diagnostic, Error, Source};
 
 /// A field that is not a number: its row and the fault.
@@ -23,6 +25,8 @@ pub struct Table {
     pub source: Arc<Source>,
     /// The encoding in which it was written, where it was read from a file.
     pub encoding: Option<TextEncoding>,
+    /// The name of the sheet or the array that was read, where the file has several tables.
+    pub part: Option<String>,
     /// The columns.
     pub columns: Vec<Column>,
     /// The place of the line that names the columns.
@@ -54,12 +58,45 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
     pub fn read_as(path: &Path, wanted: Option<TextEncoding>, hint: &str) -> Result<Self, Error> {
-        let (text, encoding) = read_data(path, wanted, hint)?;
+        let (file, part) = formats::file_and_part(path);
+        let bytes = bytes(&file, MOST_OF_DATA, hint)?;
+        let tables = formats::tables(&bytes, part.as_deref()).map_err(|fault| {
+            Error::input(format!("{} {}", file.display(), fault.message), fault.hint)
+        })?;
+        if let Some(tables) = tables {
+            return Self::first(&file, &tables);
+        }
+        let (text, encoding) = text_of_data(&file, &bytes, wanted, hint)?;
         let table = Self::parse(&path.display().to_string(), &text)?;
         Ok(Self {
             encoding: Some(encoding),
             ..table
         })
+    }
+
+    /// The first of several texts that is a table.
+    fn first(file: &Path, texts: &[TableText]) -> Result<Self, Error> {
+        let read = |text: &TableText| {
+            let file = file.display();
+            let name = match &text.name {
+                Some(name) => format!("{file}#{name}"),
+                None => file.to_string(),
+            };
+            let table = Self::separated(&name, text.text.clone(), b'\t')?;
+            Ok(Self {
+                part: text.name.clone(),
+                ..table
+            })
+        };
+        let mut refused = None;
+        for text in texts {
+            match read(text) {
+                Ok(table) => return Ok(table),
+                Err(fault) => refused = refused.or(Some(fault)),
+            }
+        }
+        let empty = || Error::input(format!("{} has no table", file.display()), Self::HINT);
+        Err(refused.unwrap_or_else(empty))
     }
 
     /// Reads a text.
@@ -68,35 +105,51 @@ impl Table {
     /// [`Error::Input`] with every fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let text = blanks_to_tabs(plain_text(text));
-        let delimiter = delimiter(&text);
-        let mut table = Self {
+        match delimiter(&text) {
+            Some(delimiter) => Self::separated(name, text, delimiter),
+            None => Err(Self::empty(name, text, b',').without_columns()),
+        }
+    }
+
+    fn empty(name: &str, text: String, delimiter: u8) -> Self {
+        Self {
             source: Arc::new(Source {
                 name: name.to_owned(),
-                text: text.clone(),
+                text,
             }),
             encoding: None,
-            delimiter: delimiter.unwrap_or(b','),
+            part: None,
+            delimiter,
             columns: Vec::new(),
             columns_place: 0..0,
             rows: Vec::new(),
             faults: Vec::new(),
             nonsense: Vec::new(),
-        };
-        if delimiter.is_none() {
-            let hint =
-                "a table has at least two columns, separated by commas, semicolons, tabs or blanks";
-            return Err(table.refuse(0..0, "there are no columns in this file", hint));
         }
+    }
+
+    fn without_columns(&self) -> Error {
+        let hint =
+            "a table has at least two columns, separated by commas, semicolons, tabs or blanks";
+        self.refuse(0..0, "there are no columns in this file", hint)
+    }
+
+    /// Reads a text whose columns have a known separator.
+    fn separated(name: &str, text: String, delimiter: u8) -> Result<Self, Error> {
+        let mut table = Self::empty(name, text.clone(), delimiter);
         let faults = Faults::default();
         table.read_records(&text, &faults);
         faults.finish()?;
-        if table.rows.is_empty() {
+        if table.columns.len() == 1 {
+            Err(table.without_columns())
+        } else if table.rows.is_empty() {
             Err(table.refuse(
                 0..0,
                 "there are no rows of numbers",
                 "a table has a header line of names with units, and rows of numbers",
             ))
         } else {
+            table.settle();
             Ok(table)
         }
     }
@@ -155,21 +208,6 @@ impl Table {
             if !unit.is_empty() {
                 column.add_unit(unit);
             }
-        }
-    }
-
-    /// Takes names from the remark right above the rows, as some programs write them, if no other line names the columns.
-    pub fn name_by_remark(&mut self) {
-        let unnamed = self.columns.iter().all(|column| column.name.is_empty());
-        let first_row = self.rows.first().map_or(0, |(_, place)| place.start);
-        let Some(place) = remark_above(&self.source.text, first_row).filter(|_| unnamed) else {
-            return;
-        };
-        let remark = self.source.text[place.clone()].trim_start_matches('#');
-        let names: Vec<&str> = remark.split(char::from(self.delimiter)).collect();
-        if names.len() == self.columns.len() && names.iter().all(|name| is_name(name.trim())) {
-            self.columns = names.into_iter().map(Column::new).collect();
-            self.columns_place = place;
         }
     }
 
@@ -234,6 +272,7 @@ impl Table {
             source: Arc::clone(&self.source),
             columns: self.columns.clone(),
             columns_place: self.columns_place.clone(),
+            part: self.part.clone(),
             rows: kept.iter().map(|row| self.rows[*row].clone()).collect(),
             faults: self.faults.iter().enumerate().map(first).collect(),
             nonsense: self.nonsense.iter().map(again).collect(),
@@ -317,5 +356,9 @@ impl Table {
     }
 }
 
+mod settled;
+
+#[cfg(test)]
+mod dialects;
 #[cfg(test)]
 mod tests;

@@ -9,14 +9,14 @@ use crate::error::Error;
 /// The text of a file of data in any encoding, or in the `wanted` one; `hint` describes what the file should be.
 ///
 /// # Errors
-/// [`Error::Input`] when it cannot be read or is not a text.
-pub fn read_data(
+/// [`Error::Input`] when it is not a text.
+pub fn text_of_data(
     path: &Path,
+    bytes: &[u8],
     wanted: Option<TextEncoding>,
     hint: &str,
 ) -> Result<(String, TextEncoding), Error> {
-    let bytes = bytes(path, file::MOST_OF_DATA, hint)?;
-    decode(&bytes, wanted).ok_or_else(|| {
+    decode(bytes, wanted).ok_or_else(|| {
         let name = path.display();
         match wanted {
             None => Error::input(format!("{name} is not a text file"), hint),
@@ -28,7 +28,11 @@ pub fn read_data(
     })
 }
 
-fn bytes(path: &Path, most: u64, hint: &str) -> Result<Vec<u8>, Error> {
+/// The bytes of a file of so many at most.
+///
+/// # Errors
+/// [`Error::Input`] when it cannot be read.
+pub fn bytes(path: &Path, most: u64, hint: &str) -> Result<Vec<u8>, Error> {
     let name = path.display();
     file::read_bytes(path, most)
         .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))

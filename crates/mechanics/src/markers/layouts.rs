@@ -7,6 +7,8 @@
 //! | DICe, stereo | `MODEL_DISPLACEMENT_X` | in the calibration's unit | as it is |
 //! | muDIC | `ux`, `true_strain_xx` | in pixels, in the frame | downwards |
 //! | pyALDIC | `x_px`, `disp_u` | in pixels | downwards |
+//! | pyvale | `subset_x`, `displacement_u` | in pixels | downwards |
+//! | OpenCorr | `u0`, `v0`, `ZNCC` | in pixels | downwards |
 //! | VIC-3D | `X`, `Y`, `U`, `V` with `sigma` or `exx` | in the calibration's unit | as it is |
 //! | VIC-2D | `x`, `y`, `u`, `v` with `sigma` and `exx`, in pixels | in pixels | downwards |
 //! | MatchID | `disp.Horizontal Displacement U`, or `x_pic` and `u` | in mm or pixels | downwards |
@@ -20,6 +22,8 @@
 //! *in the frame*, so that the displacement is subtracted from them.
 //! pyALDIC: `export_csv` in `src/al_dic/export/export_csv.py` of github.com/zachtong/pyALDIC, which writes coordinates and
 //! displacements of the image; `compute_strain.py` turns both signs for axes that point up.
+//! pyvale: the tables of `pyvale.dic`, whose `converged` is 0 where no match was found. OpenCorr: `IO2D::saveTable2D` of
+//! github.com/vincentjzy/OpenCorr; `ICGN2D1::compute` gives a ZNCC below zero to points outside of the image or without convergence.
 //! VIC-3D: `DICreader2D` in `peripydic/IO/dic.py` of github.com/lm2-poly/PeriPyDIC (`sigma` = −1: not found) and
 //! `pydictoolkit/dic/measurements.py` of github.com/ilyasst/pydictoolkit (`X`, `Y` in mm beside `x`, `y` in pixels); heads with
 //! units such as `"X [mm]"`, `"sigma [pixel]"` stand below a line of titles. VIC-2D: `read_vic2d_export` and `Vic2DDataset`,
@@ -42,6 +46,8 @@ pub(super) struct Layout {
     pub out_of_plane: [Names; 2],
     /// A column that is below zero where a point was not found.
     pub lost: Names,
+    /// A column that is zero where a point was not found.
+    pub converged: Names,
     /// Columns that the program writes and that contain nothing about the displacement.
     pub harmless: Names,
     /// Whether the y axis points downwards, as in an image.
@@ -59,6 +65,7 @@ const COLUMNS: Layout = Layout {
     deviation: &["standard_deviation", "sigma"],
     out_of_plane: [HEIGHT, LIFT],
     lost: &[],
+    converged: &[],
     harmless: &[],
     downwards: false,
     deformed: false,
@@ -118,6 +125,38 @@ const PYALDIC: Layout = Layout {
     ..COLUMNS
 };
 
+const PYVALE: Layout = Layout {
+    name: "pyvale",
+    places: [&["subset_x"], &["subset_y"]],
+    displacements: [&["displacement_u"], &["displacement_v"]],
+    deviation: &[],
+    converged: &["converged"],
+    harmless: &["displacement_mag", "cost", "ftol", "xtol", "num_iterations"],
+    downwards: true,
+    pixels: true,
+    ..COLUMNS
+};
+
+const OPENCORR: Layout = Layout {
+    name: "OpenCorr",
+    displacements: [&["u"], &["v"]],
+    deviation: &[],
+    lost: &["zncc"],
+    // The initial values of the search, and how it ended.
+    harmless: &[
+        "u0",
+        "v0",
+        "iteration",
+        "convergence",
+        "feature",
+        "subset_rx",
+        "subset_ry",
+    ],
+    downwards: true,
+    pixels: true,
+    ..COLUMNS
+};
+
 const VIC_3D: Layout = Layout {
     name: "VIC-3D",
     places: [&["=X"], &["=Y"]],
@@ -161,6 +200,7 @@ const MATCHID: Layout = Layout {
         "coordinates.image_y",
         "x_pic",
         "y_pic",
+        "deltathick:_dthick",
     ],
     downwards: true,
     ..COLUMNS
@@ -203,6 +243,8 @@ pub(super) fn recognise(table: &Table) -> &'static Layout {
         () if all(&["displacement_x", "coordinate_x"]) => &DICE,
         () if all(&["true_strain_xx", "ux"]) => &MUDIC,
         () if all(&["x_px", "disp_u"]) => &PYALDIC,
+        () if all(&["subset_x", "displacement_u"]) => &PYVALE,
+        () if all(&["x", "y", "u", "v", "u0", "v0", "zncc"]) => &OPENCORR,
         () if any("disp.horizontal_displacement_u") || all(&["x_pic", "u"]) => &MATCHID,
         () if all(&["x_undef", "u"]) => &GOM_NODEMAP,
         () if all(&["x", "displacement_x"]) && (any("displacement_z") || any("epsilon_x")) => {

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use super::frames::MarkerSeries;
 use super::rows::{FileRows, ReadSettings};
 use super::understood::Understood;
-use super::{matrices, on_mesh, plausible, table};
+use super::{matrices, on_mesh, plausible, positions, table};
+use crate::document::is_table_path;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 
@@ -33,8 +34,9 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
     let mut whole: Option<FileRows> = None;
     for (group, number) in groups.iter().zip(frame_numbers(&groups)) {
         let mut found = match group[..] {
+            [frame] if settings.rest.is_some() => positions::read(frame, settings)?,
             [u, v] => matrices::read(u, v, settings)?,
-            _ if is_table(group[0]) => table::read(group[0], settings)?,
+            _ if is_table_path(group[0]) => table::read(group[0], settings)?,
             _ => on_mesh::read(group[0], settings)?,
         };
         if several {
@@ -60,12 +62,6 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
         understood,
         warnings,
     })
-}
-
-fn is_table(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    let known = ["csv", "txt", "dat", "tsv"];
-    ending.is_some_and(|ending| known.iter().any(|known| ending == *known))
 }
 
 /// Adds the frames of one more file, which must be of the same kind.

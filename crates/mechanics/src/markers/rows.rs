@@ -1,6 +1,7 @@
 //! The markers of files as they stand there, and how they are gathered into frames.
 
 use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
 
 use super::frames::{Frame, Marker, MarkerSeries};
 use super::outside::within;
@@ -29,6 +30,8 @@ pub struct ReadSettings {
     pub downwards: Option<bool>,
     /// Whether places in tables are those of the frame, where it is not as their layout says.
     pub deformed: Option<bool>,
+    /// The table of the positions at rest, where those of the frames are tables of positions too.
+    pub rest: Option<PathBuf>,
 }
 
 /// A marker of a file, before markers have numbers.

@@ -68,7 +68,7 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
 }
 
 /// Columns of a point's own number.
-const NAME: Names = &["id", "subset_id", "marker", "point", "node", "node_id"];
+pub(super) const NAME: Names = &["id", "subset_id", "marker", "point", "node", "node_id"];
 
 /// A table and the columns that are read.
 struct Reader<'a> {
@@ -85,6 +85,7 @@ struct Reader<'a> {
     name: Option<usize>,
     mismatch: Option<usize>,
     lost: Option<usize>,
+    converged: Option<usize>,
     /// Whether places are in pixels.
     in_pixels: bool,
     /// What says the units of lengths that the heads do not say.
@@ -141,6 +142,7 @@ impl<'a> Reader<'a> {
             name: plain_column(Role::Id, NAME),
             mismatch: plain(table, &["match"]),
             lost: plain(table, layout.lost),
+            converged: plain(table, layout.converged),
             in_pixels: heads[0]
                 .as_ref()
                 .is_some_and(|(_, unit)| unit.as_deref().map_or(units.pixels, is_pixel)),
@@ -202,7 +204,7 @@ impl<'a> Reader<'a> {
         let lengths = self.places.into_iter().chain(self.displacements);
         let lengths = lengths.chain(self.deviation).map(|(column, _)| column);
         let time = self.time.map(|(column, _)| column);
-        let others = [self.frame, time, self.lost];
+        let others = [self.frame, time, self.lost, self.converged];
         lengths.chain(others.into_iter().flatten())
     }
 
@@ -221,7 +223,8 @@ impl<'a> Reader<'a> {
             let hint = "leave it empty where it is not known";
             return Err(refuse("a standard deviation is negative", hint));
         }
-        if lost || self.mismatch.is_some_and(|column| values[column] != 0.0) {
+        let unconverged = self.converged.is_some_and(|column| values[column] == 0.0);
+        if lost || unconverged || self.mismatch.is_some_and(|column| values[column] != 0.0) {
             displacement = [f64::NAN; 2];
         }
         if place.iter().any(|x| !x.is_finite()) {
@@ -273,6 +276,7 @@ impl<'a> Reader<'a> {
         Understood {
             layout: self.layout,
             encoding: self.table.encoding.map(|encoding| encoding.name()),
+            part: self.table.part.clone(),
             columns: of_length.chain(others).collect(),
             turned_up: self.downwards,
             taken_to_rest: self.deformed,

@@ -9,6 +9,8 @@ pub struct Understood {
     pub layout: &'static str,
     /// The encoding of its text.
     pub encoding: Option<&'static str>,
+    /// The sheet or the array that was read, where the file has several tables.
+    pub part: Option<String>,
     /// What was taken from which column.
     pub columns: Vec<ColumnTaken>,
     /// Whether the file's y axis points down, as in an image, and was turned up.

@@ -1,4 +1,4 @@
-//! Meshes of other programs: Gmsh (ASCII, 2.2 and 4.1) and VTK (`.vtu`, `.vtk`).
+//! Meshes of other programs: Gmsh (ASCII, 2.2 and 4.1), Abaqus and CalculiX (`.inp`), and VTK (`.vtu`, `.vtk`).
 //!
 //! Lines with a physical group make up the named parts of the boundary. Regardless of the names in the file, the edges on the
 //! four sides of the mesh's box are `left`, `right`, `bottom` and `top`, and all edges of the boundary `boundary`.
@@ -10,6 +10,7 @@ use super::cells::Mesh;
 use super::faults::Exemptions;
 use crate::error::{Diagnostic, Severity};
 
+mod abaqus;
 mod field;
 mod frd;
 mod given;
@@ -67,7 +68,8 @@ pub fn import(
 }
 
 fn unreadable(name: &str, reason: Unreadable) -> Vec<Diagnostic> {
-    let hint = "a mesh file is Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
+    let hint =
+        "a mesh file is Gmsh's .msh (ASCII, 2.2 or 4.1), Abaqus' .inp, .vtu or .vtk, and is flat";
     vec![Diagnostic::error("", format!("{name} {reason}")).hint(hint)]
 }
 
@@ -112,8 +114,9 @@ fn read(path: &Path) -> Result<Raw, Unreadable> {
         .map(|ending| ending.to_string_lossy().to_lowercase());
     match ending.as_deref() {
         Some("msh") => gmsh::read(&read_text(path)?),
+        Some("inp") => abaqus::read(&read_text(path)?),
         Some("vtu" | "vtk") => vtk::read(path),
-        _ => Err("is not a .msh, .vtu or .vtk file".into()),
+        _ => Err("is not a .msh, .inp, .vtu or .vtk file".into()),
     }
 }
 

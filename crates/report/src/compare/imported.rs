@@ -10,7 +10,7 @@
 
 use std::path::Path;
 
-use crate::document::Table;
+use crate::document::{Table, is_table_path};
 use crate::error::Error;
 use crate::markers::unit_ratio;
 use crate::mesh::geometry::bounding_box;
@@ -175,15 +175,12 @@ pub enum Mismatch {
 }
 
 impl ExternalField {
-    /// Reads `.vtu`, `.vtk`, `.pvd`, `.msh`, `.frd` or `.csv`.
+    /// Reads `.vtu`, `.vtk`, `.pvd`, `.msh`, `.frd` or a table.
     ///
     /// # Errors
     /// [`Error::Input`] with a description of the fault.
     pub fn read(path: &Path, settings: &ImportSettings) -> Result<Self, Error> {
-        let is_table = path
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-        if is_table {
+        if is_table_path(path) {
             return table::read(&Table::read(path, Table::HINT)?, settings).map(Self::AtPoints);
         }
         let field = import_field(
@@ -193,7 +190,7 @@ impl ExternalField {
             settings.time.unwrap_or(settings.factor),
         );
         field.map(|field| Self::OnMesh(Box::new(field))).map_err(|reason| {
-            let hint = "a field is read from .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with $NodeData, CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";
+            let hint = "a field is read from .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with $NodeData, CalculiX' .frd (ASCII), or a table (.csv, .xlsx, .npz …) with X, Y, ux, uy";
             let hint = reason.remedy.as_deref().unwrap_or(hint);
             Error::input(format!("{} {reason}", path.display()), hint)
         })

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::document::Section;
-use crate::error::Error;
+use crate::error::{Diagnostic, Error};
 use crate::material::parameters::OffsetTreatment;
 use crate::material::sheet::Kinematics;
 use crate::material::volume::{LARGEST_POISSON_RATIO, bulk_modulus};
@@ -113,41 +113,43 @@ fn plane_state(section: &Section<'_>) -> Option<PlaneState> {
     }
 }
 
-/// The card in a plane state.
+/// The card in the plane state of a section; that it has none is recorded.
 fn in_plane(section: &Section<'_>, plane: PlaneState, card: Card) -> Option<Card> {
+    card_in_plane(card, plane)
+        .map_err(|fault| section.fault(SHEET, &fault.message, fault.hint.as_deref().unwrap_or("")))
+        .ok()
+}
+
+/// The card in a plane state. In plane strain it must change its volume, and as much as displacements alone can say: beyond,
+/// pressures of κ times what rounding and iteration leave of a change of volume hide the stress.
+///
+/// # Errors
+/// What the card lacks, and the remedy.
+pub fn card_in_plane(card: Card, plane: PlaneState) -> Result<Card, Diagnostic> {
+    const ROUNDED: f64 = 1.001;
     if plane == PlaneState::Stress {
-        return Some(card);
+        return Ok(card);
     }
     let name = card.name.clone();
-    let found = card.in_plane_strain();
-    if found.is_none() {
+    let card = card.in_plane_strain().ok_or_else(|| {
         let message = format!(
             "the card `{name}` is incompressible: in plane strain its stress does not follow from the strain"
         );
         let hint = "give the card a `[volume]` with `poisson_ratio` or `bulk_modulus`";
-        section.fault(SHEET, &message, hint);
-    }
-    found.filter(|card| changes_volume_enough(section, card))
-}
-
-/// Whether a sheet in plane strain changes its volume as much as displacements alone can say; that it does not is recorded. Beyond,
-/// pressures of κ times what rounding and iteration leave of a change of volume hide the stress.
-fn changes_volume_enough(section: &Section<'_>, card: &Card) -> bool {
-    const ROUNDED: f64 = 1.001;
+        Diagnostic::error("", message).hint(hint)
+    })?;
     let largest = bulk_modulus(1.0, LARGEST_POISSON_RATIO);
     let ratio = card.law.bulk_modulus().unwrap_or(0.0) / card.law.shear_modulus();
-    let enough = ratio <= ROUNDED * largest;
-    if !enough {
-        let message = format!(
-            "the card `{}` has a bulk modulus of {ratio:.0} times its shear modulus: in plane strain the limit is {largest:.0} times, a Poisson's \
-             ratio of {LARGEST_POISSON_RATIO}",
-            card.name
-        );
-        let hint = format!(
-            "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses then differ by about 0.02 % from those of an \
-             incompressible body"
-        );
-        section.fault(SHEET, &message, &hint);
+    if ratio <= ROUNDED * largest {
+        return Ok(card);
     }
-    enough
+    let message = format!(
+        "the card `{name}` has a bulk modulus of {ratio:.0} times its shear modulus: in plane strain the limit is {largest:.0} times, a Poisson's \
+         ratio of {LARGEST_POISSON_RATIO}"
+    );
+    let hint = format!(
+        "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses then differ by about 0.02 % from those of an \
+         incompressible body"
+    );
+    Err(Diagnostic::error("", message).hint(hint))
 }

@@ -16,9 +16,10 @@ use crate::estimation::{
 };
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::softened_law::check_memory;
-use crate::material::{Card, HyperelasticLaw};
+use crate::material::{Card, HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
 use crate::results::{Finding, locking};
+use crate::studies::card::card_in_plane;
 
 mod alike;
 mod area;
@@ -121,6 +122,15 @@ fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Fi
     all.map(doubt).collect()
 }
 
+/// The card in the plane state that is stated, else in its own.
+///
+/// # Errors
+/// [`Error::Input`] where it has no stress in it.
+pub fn in_plane(card: Card, stated: Option<PlaneState>) -> Result<Card, Error> {
+    let plane = stated.unwrap_or(card.law.plane_state());
+    card_in_plane(card, plane).map_err(|fault| Error::Input(vec![fault]))
+}
+
 impl MarkerStudy {
     /// Reads everything.
     ///
@@ -137,6 +147,7 @@ impl MarkerStudy {
     /// As [`Self::prepare`].
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
         check_memory(&*card.law, "a correction of measured fields")?;
+        let card = in_plane(card, request.conditions.sheet)?;
         let mut field = read(&request.files, &request.reading)?;
         let told = request
             .conditions
@@ -174,7 +185,9 @@ impl MarkerStudy {
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
         warnings.extend(of_material(&card, &mesh));
-        let thickness = check_thickness(&mesh, request.thickness);
+        let thickness = (card.law.plane_state() == PlaneState::Stress)
+            .then(|| check_thickness(&mesh, request.thickness))
+            .flatten();
         Ok(Self {
             card,
             thickness: request.thickness,

@@ -6,16 +6,19 @@ use super::area::Area;
 use super::finding::none_of;
 use super::machine::{self, ForceColumn, FrameForces};
 use super::specimen_file::SpecimenFile;
-use crate::document::{Bound, Document, Faults, Key, Section};
+use crate::document::{Document, Faults};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::estimation::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
 use crate::markers::MarkerSeries;
-use crate::material::Card;
+use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::studies::sections;
-use crate::units::Dimension;
+
+mod stated;
+
+pub use stated::keys;
 
 /// An edge by its name, with what is known of it.
 pub type EdgesByName = Vec<(String, EdgeCondition)>;
@@ -50,6 +53,8 @@ pub struct Conditions {
     pub edge_gap: Option<f64>,
     /// Relative standard deviation of the scale of the pictures.
     pub scale_deviation: f64,
+    /// Plane stress or plane strain; plane stress where it is not given.
+    pub sheet: Option<PlaneState>,
     /// The specimen itself, where the file holds it.
     pub specimen: Option<SpecimenFile>,
 }
@@ -73,14 +78,6 @@ pub fn measured_force(
     }
 }
 
-/// The conditions of edges by their names; the displacements of a known one follow.
-const CONDITIONS: [(&str, EdgeCondition); 4] = [
-    ("free", EdgeCondition::Free),
-    ("known", EdgeCondition::Known([None; 2])),
-    ("rigid", EdgeCondition::Rigid),
-    ("unknown", EdgeCondition::Unknown),
-];
-
 impl Conditions {
     /// Reads a file.
     ///
@@ -96,7 +93,7 @@ impl Conditions {
     /// As [`Self::of_file`].
     pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
         let faults = Faults::default();
-        let conditions = read(&Document::parse(file, text, &faults).root(None, &faults));
+        let conditions = stated::read(&Document::parse(file, text, &faults).root(None, &faults));
         faults.finish()?;
         Ok(conditions)
     }
@@ -249,145 +246,5 @@ impl Conditions {
             forces_are_checks: self.forces_are_checks,
             ..Knowledge::default()
         }
-    }
-}
-
-/// The keys that are asked for when a text is read.
-pub fn keys(text: &str) -> Vec<Key> {
-    let faults = Faults::default();
-    let document = Document::parse("", text, &faults);
-    read(&document.root(None, &faults));
-    drop(document);
-    faults.keys()
-}
-
-fn read(root: &Section) -> Conditions {
-    let length = |key, bound| {
-        let has = root.has(key);
-        has.then(|| root.quantity(key, Dimension::Length, bound))
-    };
-    let title = root.has("title").then(|| root.heading("title"));
-    let mut conditions = Conditions {
-        title: title.unwrap_or_default(),
-        noise: length("noise", Bound::Positive),
-        edge_gap: length("edge_gap", Bound::NonNegative),
-        ..Conditions::default()
-    };
-    if root.has("scale_error") {
-        let bound = Bound::Within(0.0, 0.5);
-        conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, bound);
-    }
-    if root.has("robust") {
-        conditions.robust = root.choice("robust", &Robust::NAMES);
-    }
-    if root.has("physics") {
-        conditions.physics = root.choice("physics", &Physics::NAMES).unwrap_or_default();
-    }
-    if root.has("unnamed") {
-        conditions.unnamed = root.choice("unnamed", &Unnamed::NAMES).unwrap_or_default();
-    }
-    if root.has("fit") {
-        conditions.fit = root.texts("fit");
-    }
-    if root.has("specimen") {
-        conditions.specimen = Some(SpecimenFile::read(&root.section("specimen")));
-    }
-    if root.has("force") {
-        for section in &root.tables("force") {
-            if section.has("column") && !section.has("force") {
-                conditions.force_columns.push(force_column(section));
-            } else {
-                conditions.forces.push(force(section));
-            }
-        }
-    }
-    if root.has("edges") {
-        for section in root.tables("edges") {
-            let names = section.texts("names");
-            let condition = condition(&section);
-            if section.has("area") {
-                conditions.areas.extend(area(&section, &names));
-            }
-            let edges = names.into_iter().map(|name| (name, condition));
-            conditions.edges.extend(edges);
-            section.unknown_keys();
-        }
-    }
-    root.unknown_keys();
-    conditions
-}
-
-/// The area of a pad, and the only name that it has.
-fn area(section: &Section, names: &[String]) -> Option<(String, Area)> {
-    let lengths = section.quantities("area", Dimension::Length, Bound::Any);
-    let area = Area::of(&lengths);
-    let hint = "write x and y of the lower left and of the upper right corner, or x, y and the radius of a disc";
-    match (area, names) {
-        (Some(area), [name]) => return Some((name.clone(), area)),
-        (None, _) => section.fault("area", "must be a rectangle or a disc", hint),
-        _ => section.fault(
-            "names",
-            "must be one name where there is an area",
-            "give each pad a section of its own",
-        ),
-    }
-    None
-}
-
-/// A force that stands in a column of a testing machine's table.
-fn force_column(section: &Section) -> ForceColumn {
-    let (edge, axis) = edge_and_axis(section);
-    let column = ForceColumn {
-        edge,
-        axis,
-        column: section.text("column"),
-        standard_deviation: deviation(section),
-    };
-    section.unknown_keys();
-    column
-}
-
-fn edge_and_axis(section: &Section) -> (String, usize) {
-    let edge = section.text("edge");
-    let axis = section.choice("axis", &[("x", 0), ("y", 1)]);
-    (edge, axis.unwrap_or(0))
-}
-
-fn deviation(section: &Section) -> Option<f64> {
-    let key = "standard_deviation";
-    let has = section.has(key);
-    has.then(|| section.quantity(key, Dimension::Force, Bound::Positive))
-}
-
-fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
-    let (edge, axis) = edge_and_axis(section);
-    if section.has("column") {
-        section.text("column");
-        let hint = "leave out the column, or the force";
-        section.fault("column", "must not be given together with a force", hint);
-    }
-    let force = section.quantity("force", Dimension::Force, Bound::Any);
-    let deviation = deviation(section);
-    let has_frame = section.has("frame");
-    let frame = has_frame.then(|| section.count("frame", 0, usize::MAX >> 1));
-    section.unknown_keys();
-    (frame, measured_force(&edge, axis, force, deviation))
-}
-
-fn condition(section: &Section) -> EdgeCondition {
-    let along = |key: &'static str| {
-        let has = section.has(key);
-        has.then(|| section.quantity(key, Dimension::Length, Bound::Any))
-    };
-    match section.choice("condition", &CONDITIONS) {
-        Some(EdgeCondition::Known(_)) => {
-            let displacement = [along("ux"), along("uy")];
-            if displacement == [None, None] {
-                let hint = "add ux = \"5 mm\", uy = \"0 mm\", or one of them";
-                section.fault("condition", "`known` needs a displacement", hint);
-            }
-            EdgeCondition::Known(displacement)
-        }
-        condition => condition.unwrap_or(EdgeCondition::Free),
     }
 }

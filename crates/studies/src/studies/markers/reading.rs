@@ -9,7 +9,9 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
         return Vec::new();
     }
     let encoding = understood.encoding.map(|name| format!("Text in {name}. "));
-    let mut words = encoding.unwrap_or_default();
+    let part = understood.part.as_ref();
+    let part = part.map(|name| format!("The table `{name}` of the file. "));
+    let mut words = encoding.or(part).unwrap_or_default();
     words += understood.axes();
     words += &understood
         .places()
@@ -48,5 +50,7 @@ pub fn short(understood: &Understood) -> String {
     } else {
         ""
     };
-    format!("{}{turned}", understood.layout)
+    let part = understood.part.as_ref();
+    let part = part.map_or(String::new(), |name| format!(" of `{name}`"));
+    format!("{}{part}{turned}", understood.layout)
 }

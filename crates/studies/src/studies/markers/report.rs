@@ -92,11 +92,12 @@ pub(super) fn interval(value: &Estimate, explained: bool, exact: &str) -> String
 /// The tables of a correction.
 pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let mut blocks = vec![Block::paragraph(format!(
-        "{} frames, read as {}. Material {} ({}), {} mm thick. Mesh {}: {}.",
+        "{} frames, read as {}. Material {} ({}): {}, {} mm thick. Mesh {}: {}.",
         estimates.len(),
         study.understood.layout,
         study.card.name,
         study.card.title,
+        study.card.describe_sheet(),
         study.thickness,
         study.mesh_origin,
         study.mesh.describe()

@@ -12,6 +12,7 @@
 
 use crate::estimation::FieldEstimate;
 use crate::markers::Frame;
+use crate::material::PlaneState;
 use crate::results::{
     Array, Content, Grid, GridSeries, Material, NamedGrid, Outcome, Results, Sheet,
 };
@@ -173,10 +174,14 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
         return grid;
     }
     let cells = estimate.cells.iter();
-    // Nothing acts across a sheet in plane stress.
+    // Nothing acts across a sheet in plane stress; in plane strain that error is not estimated.
+    let across = match law.plane_state() {
+        PlaneState::Stress => 0.0,
+        PlaneState::Strain => f64::NAN,
+    };
     let stress = cells.clone().flat_map(|cell| {
         let [xx, xy, yx, yy] = nominal(cell.stress_error);
-        [xx, xy, yx, yy, 0.0]
+        [xx, xy, yx, yy, across]
     });
     let thickness = cells.map(|cell| cell.thickness_error);
     let [of_displacement, of_stress, of_thickness] = if estimate.is_explained() {

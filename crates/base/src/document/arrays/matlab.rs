@@ -1,0 +1,256 @@
+//! Matrices in files of MATLAB, version 5 (`save` without `-v7.3`): those of real numbers, also in structures.
+//!
+//! # References
+//! The MathWorks, MAT-File Format, "Level 5 MAT-File Format".
+
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+
+use super::super::formats::{Unconvertible, afford};
+use super::Array;
+use super::numpy::by_rows;
+
+/// Types of elements.
+const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+/// Classes of matrices: structures, and the first and last of those of numbers.
+const STRUCTURE: u8 = 2;
+const NUMBERS: std::ops::RangeInclusive<u8> = 6..=15;
+/// How deep structures are looked into.
+const DEEPEST: usize = 4;
+
+/// The arrays of real numbers, in the order of the file; those in structures as `structure.field`.
+///
+/// # Errors
+/// [`Unconvertible`] where the file is damaged or too large.
+pub fn arrays(bytes: &[u8]) -> Result<Vec<Array>, Unconvertible> {
+    let big_endian = match bytes.get(126..128) {
+        Some(b"MI") => true,
+        Some(b"IM") => false,
+        _ => return Err(damaged()),
+    };
+    let mut elements = Elements {
+        rest: &bytes[128..],
+        big_endian,
+    };
+    let mut all = Vec::new();
+    while !elements.rest.is_empty() {
+        let (kind, data) = elements.next().ok_or_else(damaged)?;
+        let unpacked = if kind == COMPRESSED {
+            Some(unpack(data, big_endian)?)
+        } else {
+            None
+        };
+        let mut inner = Elements {
+            rest: unpacked.as_deref().unwrap_or_default(),
+            big_endian,
+        };
+        let (kind, data) = if kind == COMPRESSED {
+            inner.next().ok_or_else(damaged)?
+        } else {
+            (kind, data)
+        };
+        if kind == MATRIX {
+            matrix(
+                Elements {
+                    rest: data,
+                    big_endian,
+                },
+                None,
+                DEEPEST,
+                &mut all,
+            )
+            .ok_or_else(damaged)??;
+        }
+    }
+    Ok(all)
+}
+
+fn damaged() -> Unconvertible {
+    let hint = "save it again in MATLAB by save('a.mat', 'x', 'ux', '-v7'), or in Python by scipy.io.savemat";
+    Unconvertible::new("is a damaged file of MATLAB", hint)
+}
+
+/// Unpacks an element of the size that its first bytes state.
+fn unpack(data: &[u8], big_endian: bool) -> Result<Vec<u8>, Unconvertible> {
+    let mut decoder = ZlibDecoder::new(data);
+    let mut tag = [0; 8];
+    decoder.read_exact(&mut tag).map_err(|_| damaged())?;
+    let size = u64::from(word(&tag[4..], big_endian));
+    afford(size as f64, 0.0)?;
+    let mut all = tag.to_vec();
+    decoder
+        .take(size)
+        .read_to_end(&mut all)
+        .map_err(|_| damaged())?;
+    Ok(all)
+}
+
+fn word(bytes: &[u8], big_endian: bool) -> u32 {
+    let bytes = [bytes[0], bytes[1], bytes[2], bytes[3]];
+    if big_endian {
+        u32::from_be_bytes(bytes)
+    } else {
+        u32::from_le_bytes(bytes)
+    }
+}
+
+/// The elements of a file or of a matrix.
+struct Elements<'a> {
+    rest: &'a [u8],
+    big_endian: bool,
+}
+
+impl<'a> Elements<'a> {
+    /// The type and the data of the next element; small ones share four bytes with their tag.
+    fn next(&mut self) -> Option<(u32, &'a [u8])> {
+        let first = word(self.rest.get(..4)?, self.big_endian);
+        if first >> 16 != 0 {
+            let data = self.rest.get(4..4 + (first >> 16) as usize)?;
+            self.rest = self.rest.get(8..)?;
+            return Some((first & 0xffff, data));
+        }
+        let size = word(self.rest.get(4..8)?, self.big_endian) as usize;
+        let data = self.rest.get(8..8_usize.checked_add(size)?)?;
+        let padded = if first == COMPRESSED {
+            size
+        } else {
+            size.next_multiple_of(8)
+        };
+        self.rest = self.rest.get(8 + padded..).unwrap_or_default();
+        Some((first, data))
+    }
+
+    fn words(&mut self) -> Option<Vec<u32>> {
+        let (_, data) = self.next()?;
+        Some(
+            data.chunks_exact(4)
+                .map(|bytes| word(bytes, self.big_endian))
+                .collect(),
+        )
+    }
+
+    fn text(&mut self) -> Option<String> {
+        let (_, data) = self.next()?;
+        Some(text(data))
+    }
+
+    /// Numbers of any type.
+    fn numbers(&mut self) -> Option<Vec<f64>> {
+        let (kind, data) = self.next()?;
+        let size = match kind {
+            1 | 2 => 1,
+            3 | 4 => 2,
+            5..=7 => 4,
+            9 | 12 | 13 => 8,
+            _ => return None,
+        };
+        Some(
+            data.chunks_exact(size)
+                .map(|bytes| number(kind, bytes, self.big_endian))
+                .collect(),
+        )
+    }
+}
+
+/// A text up to its end or to the zero there.
+fn text(data: &[u8]) -> String {
+    let data = data.split(|byte| *byte == 0).next().unwrap_or_default();
+    String::from_utf8_lossy(data).into_owned()
+}
+
+fn number(kind: u32, bytes: &[u8], big_endian: bool) -> f64 {
+    let mut little = [0; 8];
+    little[..bytes.len()].copy_from_slice(bytes);
+    if big_endian {
+        little[..bytes.len()].reverse();
+    }
+    let whole = u64::from_le_bytes(little);
+    match kind {
+        1 => f64::from(whole as i8),
+        3 => f64::from(whole as i16),
+        5 => f64::from(whole as i32),
+        7 => f64::from(f32::from_bits(whole as u32)),
+        9 => f64::from_bits(whole),
+        12 => whole as i64 as f64,
+        _ => whole as f64,
+    }
+}
+
+/// Adds the arrays of a matrix or a structure; what is neither is passed over. `None` where it is damaged.
+fn matrix(
+    mut elements: Elements,
+    name: Option<String>,
+    depth: usize,
+    all: &mut Vec<Array>,
+) -> Option<Result<(), Unconvertible>> {
+    const COMPLEX: u32 = 0x800;
+    if elements.rest.is_empty() {
+        return Some(Ok(()));
+    }
+    let flags = *elements.words()?.first()?;
+    let class = flags as u8;
+    if class != STRUCTURE && !NUMBERS.contains(&class) {
+        return Some(Ok(()));
+    }
+    let shape: Vec<usize> = elements
+        .words()?
+        .into_iter()
+        .map(|size| size as usize)
+        .collect();
+    let written = elements.text()?;
+    let name = name.unwrap_or(written);
+    let count = shape
+        .iter()
+        .try_fold(1_usize, |all, size| all.checked_mul(*size))?;
+    if class == STRUCTURE {
+        let looked_into = depth > 0 && count == 1;
+        return if looked_into {
+            structure(elements, &name, depth, all)
+        } else {
+            Some(Ok(()))
+        };
+    }
+    if let Err(excess) = afford(0.0, count as f64) {
+        return Some(Err(excess));
+    }
+    let numbers = elements.numbers()?;
+    if numbers.len() != count {
+        return None;
+    }
+    if flags & COMPLEX == 0 {
+        let numbers = by_rows(&numbers, &shape);
+        all.push(Array {
+            name,
+            fields: Vec::new(),
+            shape,
+            numbers,
+        });
+    }
+    Some(Ok(()))
+}
+
+fn structure(
+    mut elements: Elements,
+    name: &str,
+    depth: usize,
+    all: &mut Vec<Array>,
+) -> Option<Result<(), Unconvertible>> {
+    let length = *elements.words()?.first()? as usize;
+    let (_, names) = elements.next()?;
+    for field in names.chunks_exact(length.max(1)) {
+        let (kind, data) = elements.next()?;
+        if kind == MATRIX {
+            let inner = Elements {
+                rest: data,
+                ..elements
+            };
+            let name = format!("{name}.{}", text(field));
+            if let Err(fault) = matrix(inner, Some(name), depth - 1, all)? {
+                return Some(Err(fault));
+            }
+        }
+    }
+    Some(Ok(()))
+}

@@ -1,0 +1,144 @@
+//! Tables in the formats of other programs, turned into the text of a table.
+//!
+//! | file | known by | what is a table |
+//! |---|---|---|
+//! | `.xlsx` | a ZIP archive with a workbook | a sheet |
+//! | `.npy` | `\x93NUMPY` | two dimensions without names, or a structure with names |
+//! | `.npz` | a ZIP archive of `.npy` | one such array, or arrays of one shape, each a column |
+//! | `.mat` | `MATLAB 5.0 MAT-file` | a matrix, or vectors of one length, each a column |
+//!
+//! One of several sheets or arrays is named behind the file: `tests.xlsx#uniaxial`.
+
+use std::path::{Path, PathBuf};
+
+use super::archive::Archive;
+use super::{arrays, spreadsheet};
+use crate::budget::{Budget, Need};
+
+/// The endings of tables, in lower case.
+const TABLES: [&str; 9] = [
+    "csv", "txt", "dat", "tsv", "out", "xlsx", "npy", "npz", "mat",
+];
+
+/// The endings of files whose tables have names.
+const WITH_PARTS: [&str; 4] = [".xlsx", ".xlsm", ".npz", ".mat"];
+
+/// Why a file is not turned into a table, and the remedy.
+#[derive(Debug)]
+pub(super) struct Unconvertible {
+    pub message: String,
+    pub hint: String,
+}
+
+impl Unconvertible {
+    pub fn new(message: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            hint: hint.into(),
+        }
+    }
+}
+
+/// A table's name within its file, if it has one, and its text: fields with tabs between them.
+#[derive(Debug)]
+pub(super) struct TableText {
+    pub name: Option<String>,
+    pub text: String,
+}
+
+/// A file and the name of the table in it, where one is named: `tests.xlsx#uniaxial`.
+pub(super) fn file_and_part(path: &Path) -> (PathBuf, Option<String>) {
+    let whole = path.to_string_lossy();
+    let ends = |(at, _): &(usize, &str)| {
+        let file = whole[..*at].to_lowercase();
+        WITH_PARTS.iter().any(|ending| file.ends_with(ending))
+    };
+    match whole.match_indices('#').find(ends) {
+        Some((at, _)) => (
+            PathBuf::from(&whole[..at]),
+            Some(whole[at + 1..].to_owned()),
+        ),
+        None => (path.to_owned(), None),
+    }
+}
+
+/// Whether a path is that of a table, by its ending.
+pub fn is_table_path(path: &Path) -> bool {
+    let ending = file_and_part(path)
+        .0
+        .extension()
+        .map(|ending| ending.to_ascii_lowercase());
+    ending.is_some_and(|ending| TABLES.iter().any(|known| ending == *known))
+}
+
+/// The tables of a file that is no text, those that are meant first; `None` for any other file.
+///
+/// # Errors
+/// [`Unconvertible`] where it has no table, not the one of this name, or is too large.
+pub(super) fn tables(
+    bytes: &[u8],
+    part: Option<&str>,
+) -> Result<Option<Vec<TableText>>, Unconvertible> {
+    match bytes {
+        [b'P', b'K', 3, 4, ..] => of_archive(bytes, part).map(Some),
+        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => arrays::of_npy(bytes).map(Some),
+        _ if bytes.starts_with(b"MATLAB 5.0 MAT-file") => arrays::of_mat(bytes, part).map(Some),
+        _ if bytes.starts_with(b"MATLAB 7.3 MAT-file") || bytes.starts_with(b"\x89HDF") => {
+            let hint = "save it in MATLAB by save('a.mat', 'x', 'ux', '-v7'), or as text by writematrix(x, 'a.csv')";
+            Err(Unconvertible::new(
+                "is a file of HDF5, which is not read",
+                hint,
+            ))
+        }
+        [0xd0, 0xcf, 0x11, 0xe0, ..] => {
+            let hint = "save it as .xlsx or as .csv";
+            Err(Unconvertible::new(
+                "is a workbook of an old version of Excel",
+                hint,
+            ))
+        }
+        _ => Ok(None),
+    }
+}
+
+fn of_archive(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>, Unconvertible> {
+    let archive = Archive::open(bytes)?;
+    let names = archive.names();
+    match () {
+        () if names.iter().any(|name| name.ends_with("workbook.xml")) => {
+            spreadsheet::tables(archive, part)
+        }
+        () if !names.is_empty() && names.iter().all(|name| name.ends_with(".npy")) => {
+            arrays::of_npz(archive, part)
+        }
+        () => {
+            let hint = "give a table as text, .xlsx, .npy, .npz or .mat";
+            Err(Unconvertible::new(
+                "is an archive without a workbook or arrays of NumPy",
+                hint,
+            ))
+        }
+    }
+}
+
+/// Checks that a table of so many bytes of text and numbers has room in memory, before it is decoded.
+///
+/// # Errors
+/// [`Unconvertible`] with the need.
+pub(super) fn afford(bytes: f64, numbers: f64) -> Result<(), Unconvertible> {
+    /// Bytes of a number: its digits twice, and its value with its share of the row.
+    const OF_A_NUMBER: f64 = 80.0;
+    let need = Need {
+        bytes: 2.0 * bytes + OF_A_NUMBER * numbers,
+        ..Need::default()
+    };
+    Budget::USUAL.afford(need).map_err(|excess| {
+        Unconvertible::new(
+            excess.to_string(),
+            "keep the part that is wanted in a file of its own",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests;
