@@ -5,11 +5,11 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use gelbench::material::volume::bulk_modulus;
 use gelbench::material::{HyperelasticLaw, NeoHooke, PlaneState, Volume, VolumeEnergy};
 use gelbench::mesh::{CellShape, Mesh};
 use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
+use gelbench_mechanics::material::volume::bulk_modulus;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -207,3 +207,10 @@ pub fn recording(bytes: &[u8]) -> Became {
         .is_ok()
         .into()
 }
+
+/// CRC-32 as in zlib.
+fn checksum(bytes: &[u8]) -> u32 {
+    let step = |crc: u32, _: u32| (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
+    let byte = |crc: u32, byte: &u8| (0..8).fold(crc ^ u32::from(*byte), step);
+    !bytes.iter().fold(!0, byte)
+}
