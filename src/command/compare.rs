@@ -22,6 +22,7 @@ use crate::kinds;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
 use crate::output::{self, ResultFolder};
+use crate::problem::{Region, SheetLaws};
 use crate::results::{Array, Block, Grid, GridSeries, Sheet};
 use crate::studies;
 use crate::studies::sections;
@@ -67,6 +68,7 @@ const PERCENTAGE: f64 = 5.0;
 struct Comparison {
     title: String,
     law: Arc<dyn HyperelasticLaw>,
+    regions: Vec<Region>,
     thickness: f64,
     factor: f64,
     imported: ExternalField,
@@ -131,6 +133,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     Ok(Comparison {
         title,
         law: Arc::clone(&specimen.problem.law),
+        regions: specimen.problem.regions.clone(),
         thickness: specimen.problem.thickness,
         factor,
         imported,
@@ -216,7 +219,10 @@ fn write(
     folder: &mut ResultFolder,
 ) -> Result<Vec<Diagnostic>, Error> {
     let sheet = Sheet {
-        law: &*compared.law,
+        laws: SheetLaws {
+            law: &compared.law,
+            regions: &compared.regions,
+        },
         thickness: compared.thickness,
         past: &[],
         viscous: None,

@@ -95,6 +95,7 @@ fn input_file(title: &str, specimen: &Specimen, options: &Options) -> Result<Inp
         title,
         problem: &specimen.problem,
         card: &specimen.card,
+        regions: &specimen.regions,
         mesh: &mesh,
         factors: &specimen.factors,
         bulk_ratio: options.bulk_ratio,

@@ -32,6 +32,7 @@ mod one_study;
 mod other_codes;
 mod own_errors;
 mod own_laws;
+mod regions;
 mod relaxation;
 mod report_schema;
 mod resume;

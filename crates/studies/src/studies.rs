@@ -18,6 +18,7 @@ pub mod motion;
 pub mod other_files;
 pub mod pictures;
 pub mod plate;
+mod regions;
 pub mod sections;
 pub mod specimen;
 

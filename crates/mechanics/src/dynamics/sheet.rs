@@ -1,6 +1,7 @@
 //! The viscous forces of a sheet of finite elements.
 
 use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
+use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
@@ -38,13 +39,14 @@ impl<'a> SheetViscosity<'a> {
 
     fn point_stress(
         &self,
+        law: &dyn HyperelasticLaw,
         kinematics: &Kinematics,
         rate: &PlaneTensor,
         memory: &[f64],
         elapsed: f64,
         with_tangents: bool,
     ) -> PointStress {
-        let (law, material) = (self.energy.law(), self.material);
+        let material = self.material;
         let mut stress = material.newtonian_stress(kinematics, rate);
         let mut by_displacement = nalgebra::Matrix4::zeros();
         if !material.relaxation.is_empty() {
@@ -106,9 +108,11 @@ impl Viscosity for SheetViscosity<'_> {
         motion: ElementMotion<'_>,
         mut local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible> {
+        let law = self.energy.laws().of(element);
         let points = self.points(element, motion.displacement)?;
         for (index, (point, kinematics)) in points.into_iter().enumerate() {
             let own = self.point_stress(
+                law,
                 &kinematics,
                 &point.gradient(motion.velocity),
                 self.part(motion.memory, index),
@@ -131,9 +135,10 @@ impl Viscosity for SheetViscosity<'_> {
         motion: ElementMotion<'_>,
         next: &mut [f64],
     ) -> Result<(), Inadmissible> {
+        let law = self.energy.laws().of(element);
         let points = self.points(element, motion.displacement)?;
         for (index, (_, kinematics)) in points.into_iter().enumerate() {
-            let (_, long) = self.energy.law().stress(&kinematics);
+            let (_, long) = law.stress(&kinematics);
             let now = second_piola_kirchhoff(&kinematics, &long);
             let part = self.part(motion.memory, index);
             let branches = self.material.branches(part, now, motion.elapsed);

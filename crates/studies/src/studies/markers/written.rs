@@ -157,7 +157,7 @@ fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
 fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     let law = field.law(estimate);
     let sheet = Sheet {
-        law: &*law,
+        laws: (&law).into(),
         thickness: field.thickness,
         past: &[],
         viscous: None,

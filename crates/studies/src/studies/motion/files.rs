@@ -136,7 +136,7 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
 /// Stresses and strains at the instants that the study chooses, else at the last one.
 fn stress_figures(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> Vec<Figure> {
     let pictures = &sheet.specimen.pictures;
-    let law = &*sheet.specimen.problem.law;
+    let laws = sheet.specimen.problem.laws();
     let at_instant = |instant: usize| {
         let deformed = shown.iter().filter_map(|own| {
             let [displacement, _] = *own.motion.get(instant)?;
@@ -148,7 +148,7 @@ fn stress_figures(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> V
         let deformed: Vec<_> = deformed.collect();
         let at = format!("t = {} s", brief(times[instant]));
         let file = |field: &str| format!("motion_{field}_{:05}.png", instant + 1);
-        sheet_figures(&pictures.fields, law, &deformed, &at, &file)
+        sheet_figures(&pictures.fields, laws, &deformed, &at, &file)
     };
     let instants = pictures.shown.instants(times);
     instants.into_iter().flat_map(at_instant).collect()

@@ -47,7 +47,7 @@ pub fn headline(sheet: &MovingSheet, motions: &Motions, shown: &[ShownSheet]) ->
                 "{} s, with most energy stored",
                 number(instants[stored].time)
             ),
-            law: &*specimen.problem.law,
+            laws: specimen.problem.laws(),
             deformed: Deformed {
                 viscous: viscous.map_or(&[], |viscous| &viscous.at_nodes),
                 ..Deformed::elastic(

@@ -37,7 +37,7 @@ pub fn warnings(sheet: &MovingSheet, times: &[f64], shown: &[ShownSheet]) -> Vec
     });
     let states: Vec<_> = states.collect();
     all.extend(strained::warnings(
-        &sheet.specimen.card,
+        &[&sheet.specimen.card],
         own.style.name,
         own.mesh,
         &states,

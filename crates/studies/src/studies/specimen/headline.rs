@@ -36,7 +36,7 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
         steps: states.collect(),
         state: LoadedSheet {
             at: along.describe(specimen.factors[largest]),
-            law: specimen.sheet().law,
+            laws: specimen.problem.laws(),
             deformed: Deformed::elastic(model.style.name, mesh, fields),
             // Supports were checked when the study was read.
             singular: specimen.problem.singular_points(mesh).unwrap_or_default(),

@@ -3,6 +3,7 @@
 use super::problem::Specimen;
 use super::results::models::Models;
 use crate::mass_spring;
+use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::strained::{self, StrainedSheet};
@@ -15,17 +16,16 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     let solution = models
         .best()
         .map(|model| (model.style.name, model.solution));
-    let law = &*specimen.problem.law;
-    let mut all: Vec<String> = match specimen.grids() {
+    let mut all = of_materials(specimen, |card| match specimen.grids() {
         Some(grids) if grids.lattice.area_term => None,
-        Some(_) => mass_spring::warning_of_plate(law),
-        None => mass_spring::warning(law),
-    }
-    .into_iter()
-    .collect();
+        Some(_) => mass_spring::warning_of_plate(&*card.law),
+        None => mass_spring::warning(&*card.law),
+    });
     all.extend(locking_cells(specimen, models));
-    let left_out = specimen.card.viscosity.left_out();
-    all.extend(left_out.map(|told| format!("{told}.")));
+    all.extend(of_materials(specimen, |card| {
+        let told = card.viscosity.left_out()?;
+        Some(format!("{told}."))
+    }));
     if let Some((_, solution)) = solution {
         let mesh = &solution.mesh;
         all.extend(idle_loads(specimen, mesh));
@@ -40,8 +40,18 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all
 }
 
-/// The warning about corrected field and finite elements whose cells lock.
-fn locking_cells(specimen: &Specimen, models: &Models) -> Option<String> {
+/// What is to be said of the material; of several, with the name of the region.
+fn of_materials(specimen: &Specimen, say: impl Fn(&Card) -> Option<String>) -> Vec<String> {
+    let regions = specimen.numbered_regions();
+    if regions.is_empty() {
+        return say(&specimen.card).into_iter().collect();
+    }
+    let told = |(_, name, card): (usize, &str, &Card)| Some(format!("{name}: {}", say(card)?));
+    regions.into_iter().filter_map(told).collect()
+}
+
+/// The warnings about corrected field and finite elements whose cells lock.
+fn locking_cells(specimen: &Specimen, models: &Models) -> Vec<String> {
     let of_plate = specimen.grids().map(|grids| {
         let scheme = grids.correction.scheme.side() == 1;
         let remedy = "Take the scheme \"biquadratic\" for the corrected field";
@@ -64,7 +74,7 @@ fn locking_cells(specimen: &Specimen, models: &Models) -> Option<String> {
     let named: Vec<_> = both
         .map(|(model, _, remedy)| (model.style.name, remedy))
         .collect();
-    locking::warning(&*specimen.problem.law, &named)
+    of_materials(specimen, |card| locking::warning(&*card.law, &named))
 }
 
 impl Specimen {
@@ -77,10 +87,11 @@ impl Specimen {
         };
         let name = kind.style().name;
         let remedy = remedy.filter(|_| locking::locks(&solution.mesh));
-        let locking =
-            remedy.and_then(|remedy| locking::warning(&*self.problem.law, &[(name, remedy)]));
-        let of_states = self.warnings_of_states(name, solution);
-        locking.into_iter().chain(of_states).collect()
+        let mut all = of_materials(self, |card| {
+            locking::warning(&*card.law, &[(name, remedy?)])
+        });
+        all.extend(self.warnings_of_states(name, solution));
+        all
     }
 
     /// What is said of the states of one model: compression, loss of stability, the range of the card.
@@ -91,7 +102,7 @@ impl Specimen {
             displacement: &state.displacement,
         });
         let states: Vec<_> = states.collect();
-        strained::warnings(&self.card, model, &solution.mesh, &states)
+        strained::warnings(&self.cards(), model, &solution.mesh, &states)
     }
 }
 
