@@ -60,6 +60,7 @@ fn main() {
     let problem = BoundaryProblem {
         thickness: 2.0,
         law: Arc::new(NeoHooke { c10: 0.05 }),
+        regions: Vec::new(),
         supports: named([("left", held(0.0, 0.0)), ("right", held(50.0, 0.0))]),
         loads: Vec::new(),
     };

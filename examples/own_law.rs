@@ -36,6 +36,7 @@ pub fn report() -> Result<String, Box<dyn Error>> {
     let problem = BoundaryProblem {
         thickness: 2.0,
         law: Arc::new(Quadratic(0.03, 0.004)),
+        regions: Vec::new(),
         supports: vec![("left".into(), clamp(0.0)), ("right".into(), clamp(45.0))],
         loads: vec![],
     };

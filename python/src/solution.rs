@@ -198,7 +198,7 @@ impl Solution {
         let Sheet { law, thickness, .. } = &self.own;
         let grid = caught(py, || {
             let sheet = results::Sheet {
-                law: &**law,
+                laws: law.into(),
                 thickness: *thickness,
                 past: &[],
                 viscous: None,

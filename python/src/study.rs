@@ -88,13 +88,21 @@ fn read_sheet(
     allow_large: bool,
 ) -> Result<Loaded<Specimen>, Error> {
     let budget = budget(allow_large);
-    with_files(files, || match mesh {
+    let read = with_files(files, || match mesh {
         Some(GivenMesh(mesh)) => {
             let file = Path::new(specimen::KIND);
             specimen::load_on(mesh, specimen_kind(), file, study, budget)
         }
         None => kinds::read_sheet(Path::new("sheet"), study, budget),
-    })
+    })?;
+    if !read.made.regions.is_empty() {
+        let message = "the study states several materials, and a sheet in Python has the one that it is given";
+        return Err(Error::input(
+            message,
+            "compute the study's file: gelbench.run",
+        ));
+    }
+    Ok(read)
 }
 
 /// A mesh of the caller's.

@@ -19,6 +19,7 @@ use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::{self, Dimension};
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::mesh::Mesh;
+use gelbench_mechanics::problem::{Region, SheetLaws};
 use gelbench_report::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, ModelFields, Sites,
 };
@@ -67,6 +68,7 @@ const PERCENTAGE: f64 = 5.0;
 struct Comparison {
     title: String,
     law: Arc<dyn HyperelasticLaw>,
+    regions: Vec<Region>,
     thickness: f64,
     factor: f64,
     imported: ExternalField,
@@ -131,6 +133,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     Ok(Comparison {
         title,
         law: Arc::clone(&specimen.problem.law),
+        regions: specimen.problem.regions.clone(),
         thickness: specimen.problem.thickness,
         factor,
         imported,
@@ -223,7 +226,11 @@ fn write(
     file: &Path,
     folder: &mut ResultFolder,
 ) -> Result<Vec<Diagnostic>, Error> {
-    let sheet = Sheet::elastic(&*compared.law, compared.thickness);
+    let laws = SheetLaws {
+        law: &compared.law,
+        regions: &compared.regions,
+    };
+    let sheet = Sheet::elastic(laws, compared.thickness);
     for field in &compared.models.fields {
         let grid = match &compared.imported {
             ExternalField::OnMesh(imported) => {

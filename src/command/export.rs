@@ -136,6 +136,7 @@ fn input_file(
         title,
         problem: &specimen.problem,
         card: &specimen.card,
+        regions: &specimen.regions,
         mesh: &mesh,
         factors: &specimen.factors,
         bulk_ratio: options.bulk_ratio,

@@ -77,6 +77,13 @@ fn any_of(found: &FoundKey) -> Value {
     let mut all: Vec<Value> = found.key.takes.iter().map(of_value).collect();
     match all.len() {
         0 => Value::Object(Map::new()),
+        _ if found.key.takes == [Takes::Section, Takes::Sections] => {
+            // Each keyword concerns tables or lists alone.
+            let mut table = object();
+            table["type"] = json!(["object", "array"]);
+            table["items"] = object();
+            table
+        }
         1 => all.swap_remove(0),
         _ => json!({ "anyOf": all }),
     }

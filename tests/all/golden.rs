@@ -59,6 +59,7 @@ examples! {
     pva_plate: "run" "examples/pva_plate.toml";
     dog_bone: "run" "examples/dog_bone.toml";
     strip_with_hole: "run" "examples/strip_with_hole.toml";
+    inclusion: "run" "examples/inclusion.toml";
     softening_strip: "run" "examples/softening_strip.toml";
     relaxing_plate: "run" "examples/relaxing_plate.toml";
     vibrating_strip: "run" "examples/vibrating_strip.toml";

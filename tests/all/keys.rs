@@ -108,6 +108,7 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
         ("plate", "examples/pva_plate.toml"),
         ("specimen", "examples/strip_with_hole.toml"),
         ("specimen", "examples/dog_bone.toml"),
+        ("specimen", "examples/inclusion.toml"),
         ("motion", "examples/released_plate.toml"),
         ("motion", "examples/relaxing_plate.toml"),
         ("moving-specimen", "examples/vibrating_strip.toml"),

@@ -33,6 +33,7 @@ fn strip(
     let mut problem = BoundaryProblem {
         thickness: 1.0,
         law: Arc::new(law),
+        regions: Vec::new(),
         supports: vec![("left".into(), Support::Displacement([Some(0.0); 2]))],
         loads: Vec::new(),
     };
@@ -142,6 +143,7 @@ fn held(supports: &[(&str, Support)]) -> (Vec<State>, [f64; 2], [f64; 2]) {
     let problem = BoundaryProblem {
         thickness: 1.0,
         law: Arc::new(NEO_HOOKE),
+        regions: Vec::new(),
         supports: supports.iter().map(support).collect(),
         loads: Vec::new(),
     };
@@ -209,6 +211,7 @@ fn grips_and_rollers_that_cannot_be_are_refused() {
         let problem = BoundaryProblem {
             thickness: 1.0,
             law: Arc::new(NEO_HOOKE),
+            regions: Vec::new(),
             supports: supports.into_iter().map(support).collect(),
             loads: Vec::new(),
         };
@@ -228,6 +231,7 @@ fn the_influence_of_a_pulled_grip_is_the_derivative_by_its_force() {
         let problem = BoundaryProblem {
             thickness: 1.0,
             law: Arc::new(NEO_HOOKE),
+            regions: Vec::new(),
             supports: vec![("left".into(), clamp), ("right".into(), grip)],
             loads: Vec::new(),
         };

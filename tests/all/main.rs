@@ -35,6 +35,7 @@ mod other_codes;
 mod own_errors;
 mod own_laws;
 mod plane_strain;
+mod regions;
 mod relaxation;
 mod report_schema;
 mod resume;

@@ -26,6 +26,7 @@ fn pulled(mesh: &Mesh) -> [Vec<f64>; 2] {
     let problem = BoundaryProblem {
         thickness: 2.0,
         law: Card::load("pva-10", root()).unwrap().law,
+        regions: Vec::new(),
         supports: vec![
             ("left".into(), Support::Displacement([Some(0.0); 2])),
             (
@@ -377,8 +378,9 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let coarse = Mesh::plate([150.0, 50.0], [15, 5], CellShape::Quad4);
     let [_, field] = &pulled(&coarse);
     let folder = TempDir::new().unwrap();
+    let law = Card::load("pva-10", root()).unwrap().law;
     let sheet = Sheet {
-        law: &*Card::load("pva-10", root()).unwrap().law,
+        laws: (&law).into(),
         thickness: 2.0,
         past: &[],
         viscous: None,

@@ -242,6 +242,7 @@ fn force(mesh: &Mesh, way: [f64; 2]) -> [f64; 2] {
     let problem = BoundaryProblem {
         thickness: 1.0,
         law: Arc::new(NeoHooke { c10: 0.05 }),
+        regions: Vec::new(),
         supports: vec![support("held", [0.0; 2]), support("moved", way)],
         loads: Vec::new(),
     };

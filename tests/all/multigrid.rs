@@ -43,6 +43,7 @@ fn cases() -> Vec<Case> {
         problem: BoundaryProblem {
             thickness: 2.0,
             law: Arc::clone(law),
+            regions: Vec::new(),
             supports,
             loads,
         },
@@ -193,6 +194,7 @@ fn what_has_no_equilibrium_is_told_in_the_same_words() {
         problem: BoundaryProblem {
             thickness: 2.0,
             law: neo_hooke(),
+            regions: Vec::new(),
             supports,
             loads: vec![],
         },
@@ -213,6 +215,7 @@ fn first_guesses_of_a_coarser_mesh_lead_to_the_same_equilibria_in_fewer_iteratio
     let problem = BoundaryProblem {
         thickness: 2.0,
         law: pva(),
+        regions: Vec::new(),
         supports: named([("left", held(0.0, 0.0)), ("right", held(50.0, 0.0))]),
         loads: vec![],
     };

@@ -43,6 +43,7 @@ fn cases() -> Vec<Case> {
             problem: BoundaryProblem {
                 thickness: 2.0,
                 law: Arc::clone(law),
+                regions: Vec::new(),
                 supports,
                 loads,
             },

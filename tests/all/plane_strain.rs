@@ -39,6 +39,7 @@ fn measure(folder: &Path, poisson_ratio: f64) -> f64 {
     let mesh = Mesh::plate(SIZE, [24, 12], CellShape::Quad9);
     let problem = BoundaryProblem {
         thickness: THICKNESS,
+        regions: Vec::new(),
         law: law(poisson_ratio),
         supports: vec![
             ("left".into(), Support::Displacement([Some(0.0); 2])),

@@ -6,7 +6,7 @@ use crate::document::name_of;
 use crate::error::{Error, SolveFault};
 use crate::mesh::{CellShape, Grid, Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{ClampedPlate, Model};
+use crate::problem::{CellLaws, ClampedPlate, Model};
 use crate::solve::{LinearSolver, NewtonSettings, State};
 
 use error_estimate::{ErrorEstimate, SheetSolution, side_by_side};
@@ -116,8 +116,9 @@ impl FiniteElements {
         let by_quarter = quarter.and_then(|quarter| quarter.influences(states));
         let of_whole = || self.model(plate).influences(states, Side::Right.name(), 0);
         let influences = by_quarter.unwrap_or_else(of_whole);
+        let laws = CellLaws::from(Arc::clone(&plate.law));
         let solved = states.iter().map(|state| SheetSolution {
-            law: &*plate.law,
+            laws: &laws,
             thickness: plate.thickness,
             mesh: &self.mesh,
             displacement: &state.displacement,

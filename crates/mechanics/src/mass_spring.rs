@@ -27,7 +27,7 @@ use crate::error::Error;
 use crate::material::law::HyperelasticLaw;
 use crate::material::stability::in_plane_poisson_ratio;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{ClampedPlate, Model};
+use crate::problem::{ClampedPlate, Model, SheetLaws};
 use crate::solve::{NewtonSettings, Potential, Remembering, State};
 
 pub mod calibration;
@@ -147,37 +147,39 @@ impl MassSpring {
                 .into_iter()
                 .chain([([a, c], across), ([d, b], across)])
             {
-                sections.add(ends, area);
+                sections.add(ends, 0, area);
             }
         }
         let springs = sections.springs(&mesh.nodes);
         let modulus = area_stiffness * problem.law.youngs_modulus();
-        Self::of(&problem.law, mesh, springs, modulus * problem.thickness)
+        let laws = vec![Arc::clone(&problem.law)];
+        Self::of(laws, mesh, springs, modulus * problem.thickness)
     }
 
     fn of(
-        law: &Arc<dyn HyperelasticLaw>,
+        laws: Vec<Arc<dyn HyperelasticLaw>>,
         mesh: Mesh,
         springs: Vec<Spring>,
         area_stiffness: f64,
     ) -> Self {
         Self {
-            lattice: Lattice::new(law, &mesh, springs.clone(), area_stiffness),
+            lattice: Lattice::new(laws, &mesh, springs.clone(), area_stiffness),
             mesh,
             springs,
         }
     }
 
     /// The lattice on the corners of any mesh: springs along the edges of its cells and both diagonals of its
-    /// quadrilaterals, with the cross-sections of [`calibration`].
-    pub fn on_mesh(law: &Arc<dyn HyperelasticLaw>, thickness: f64, mesh: Mesh) -> Self {
-        let springs = calibration::springs(&mesh, thickness);
-        Self::of(law, mesh, springs, 0.0)
+    /// quadrilaterals, with the cross-sections of [`calibration`]. Along the edge between two regions lies a spring of each law.
+    pub fn on_mesh<'a>(laws: impl Into<SheetLaws<'a>>, thickness: f64, mesh: Mesh) -> Self {
+        let laws = laws.into().in_cells(&mesh);
+        let springs = calibration::springs(&mesh, &laws, thickness);
+        Self::of(laws.all().to_vec(), mesh, springs, 0.0)
     }
 
     /// The lattice with other cross-sections in mm²; springs without a positive one are removed.
     #[must_use]
-    pub fn with_areas(self, problem: &ClampedPlate, mut area: impl FnMut(&Spring) -> f64) -> Self {
+    pub fn with_areas(self, mut area: impl FnMut(&Spring) -> f64) -> Self {
         let change = |spring: Spring| Spring {
             area: area(&spring),
             ..spring
@@ -185,7 +187,7 @@ impl MassSpring {
         let springs = self.springs.into_iter().map(change);
         let springs = springs.filter(|spring| spring.area > 0.0).collect();
         Self::of(
-            &problem.law,
+            self.lattice.laws,
             self.mesh,
             springs,
             self.lattice.area_stiffness,

@@ -6,6 +6,7 @@ mod blocks;
 mod buckets;
 mod cell_shape;
 mod cells;
+mod cut;
 mod faults;
 pub mod geometry;
 mod grid;
@@ -28,6 +29,7 @@ pub use angles::REENTRANT;
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_2, GAUSS_3, GAUSS_4, GAUSS_5, QuadraturePoint, lobatto};
 pub use cells::{Group, Mesh, decimals_for};
+pub use cut::CutMesh;
 pub use faults::{Exemptions, UnknownName};
 pub use grid::{Grid, Side};
 pub use import::{

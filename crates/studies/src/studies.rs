@@ -19,6 +19,7 @@ pub mod motion;
 pub mod other_files;
 pub mod pictures;
 pub mod plate;
+mod regions;
 pub mod sections;
 mod series;
 pub mod specimen;

@@ -28,6 +28,7 @@ fn sheet() -> BoundaryProblem {
     BoundaryProblem {
         thickness: 2.0,
         law: Arc::new(NeoHooke { c10: 0.05 }),
+        regions: Vec::new(),
         supports: Vec::new(),
         loads: Vec::new(),
     }

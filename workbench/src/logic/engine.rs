@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use web_time::Instant;
 
 use gelbench::error::Error;
+use gelbench::problem::CellLaws;
 use gelbench::solve::{LinearSolver, Loading, Stage};
 use gelbench_mechanics::solve::{Tangent, compliance};
 use gelbench_report::results::nodal_states;
@@ -175,7 +176,8 @@ impl Engine {
 
 /// What colours the nodes.
 fn values(body: &Body, sheet: &bodies::Sheet, colour: Colour) -> Vec<f64> {
-    let states = || nodal_states(&*sheet.law, &body.mesh, &[&body.displacement], &[]).into_iter();
+    let laws = CellLaws::from(sheet.law.clone());
+    let states = || nodal_states(&laws, &body.mesh, &[&body.displacement], &[]).into_iter();
     match colour {
         Colour::Displacement => {
             let vectors = body.displacement.chunks_exact(2);

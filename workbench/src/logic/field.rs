@@ -10,6 +10,7 @@ use gelbench::error::Error;
 use gelbench::estimation::FieldEstimate;
 use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
+use gelbench::problem::CellLaws;
 use gelbench::results::{Drawing, Results};
 use gelbench::studies::markers::MarkerStudy;
 use gelbench_report::output::{self, vtk};
@@ -302,8 +303,8 @@ fn preview(study: &MarkerStudy) -> Preview {
 
 fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> CorrectedFrame {
     let (mesh, u) = (&study.mesh, &estimate.displacement[..]);
-    let law = study.law(estimate);
-    let states = nodal_states(&*law, mesh, &[u], &[]);
+    let laws = CellLaws::from(study.law(estimate));
+    let states = nodal_states(&laws, mesh, &[u], &[]);
     let at_nodes = |name: &str, value: &dyn Fn(usize) -> f64| {
         (name.to_owned(), Panel::at_nodes(name, mesh, u, value))
     };

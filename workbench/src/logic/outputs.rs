@@ -173,7 +173,7 @@ fn grids(mut bodies: Bodies, fields: &[ShownField]) -> Result<Vec<NamedFile>, Er
     for (model, displacement, _) in fields {
         bodies.body(*model)?;
         let sheet = Sheet {
-            law: &*bodies.sheet.law,
+            laws: (&bodies.sheet.law).into(),
             thickness: bodies.sheet.thickness,
             past: &[],
             viscous: None,

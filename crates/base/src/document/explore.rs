@@ -90,12 +90,19 @@ fn only_with(path: &str, readings: &[Reading]) -> Option<(String, Vec<String>)> 
 
 /// The keys that are looked up in a file that has all of them, with some choices made.
 fn complete(read: &dyn Fn(&str) -> Vec<Key>, assignment: &Assignment) -> Vec<Key> {
-    const ROUNDS: usize = 16;
     let mut file = Table::new();
     for (path, name) in assignment {
         put(&mut file, path, Value::String(name.clone()));
     }
-    let mut all = Vec::new();
+    let mut all = fill(read, &mut file, assignment);
+    alone(read, &file, &mut all);
+    as_lists(read, &file, assignment, &mut all);
+    all
+}
+
+/// Gives every key that is looked up a value, until no new key is; returns these keys.
+fn fill(read: &dyn Fn(&str) -> Vec<Key>, file: &mut Table, assignment: &Assignment) -> Vec<Key> {
+    const ROUNDS: usize = 16;
     for _ in 0..ROUNDS {
         let before = file.clone();
         let keys = read(&file.to_string());
@@ -105,15 +112,35 @@ fn complete(read: &dyn Fn(&str) -> Vec<Key>, assignment: &Assignment) -> Vec<Key
                 Some((_, name)) => Value::String(name.clone()),
                 None => value(key),
             };
-            put(&mut file, &key.path, value);
+            put(file, &key.path, value);
         }
-        if file == before {
-            all = keys;
-            break;
+        if *file == before {
+            return keys;
         }
     }
-    alone(read, &file, &mut all);
-    all
+    Vec::new()
+}
+
+/// Keys of tables that may be lists: each is given as one.
+fn as_lists(
+    read: &dyn Fn(&str) -> Vec<Key>,
+    file: &Table,
+    assignment: &Assignment,
+    all: &mut Vec<Key>,
+) {
+    let may_be_list = |key: &&Key| key.takes == [Takes::Section, Takes::Sections];
+    let lists: Vec<String> = all
+        .iter()
+        .filter(may_be_list)
+        .map(|key| key.path.clone())
+        .collect();
+    for path in lists {
+        let mut file = file.clone();
+        file.insert(path, Value::Array(vec![Value::Table(Table::new())]));
+        for key in fill(read, &mut file, assignment) {
+            note(all, key);
+        }
+    }
 }
 
 /// Keys that exclude each other: each is given without the others that are still unknown.
@@ -216,7 +243,7 @@ mod tests {
         section.quantity(key, Dimension::Length, Bound::Positive);
     }
 
-    /// One of two keys, keys of choices within choices, lists of tables, keys that may be missing.
+    /// One of two keys, keys of choices within choices, lists of tables, tables that may be lists, keys that may be missing.
     fn read(text: &str) -> Vec<Key> {
         let faults = Faults::default();
         let document = Document::parse("", text, &faults);
@@ -224,6 +251,12 @@ mod tests {
         length(&root, "always");
         if root.has("more") {
             length(&root.section("more"), "inside");
+        }
+        for part in root.section_or_sections("part") {
+            length(&part, "each");
+            if root.is_list("part") {
+                length(&part, "several");
+            }
         }
         if root.has("item") {
             for item in root.tables("item") {
@@ -254,6 +287,8 @@ mod tests {
         assert_eq!(key("always").key.presence, Presence::Required);
         assert_eq!(takes("more.inside"), length);
         assert_eq!(key("more").key.presence, Presence::Optional);
+        assert_eq!(takes("part.each"), length);
+        assert_eq!(takes("part[].several"), length);
         assert_eq!(takes("item[].one"), length);
         assert_eq!(takes("item[].other"), [Takes::Flag]);
         let only = |path: &str| key(path).only_with.clone();
@@ -261,6 +296,6 @@ mod tests {
         assert_eq!(only("item[].of_a"), with("a"));
         assert_eq!(only("item[].other"), with("b"));
         assert_eq!(only("item[].kind"), None);
-        assert_eq!(found.len(), 8);
+        assert_eq!(found.len(), 12);
     }
 }

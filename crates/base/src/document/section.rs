@@ -133,6 +133,23 @@ impl<'a> Section<'a> {
             .collect()
     }
 
+    /// The table under `key`, or the tables of a list, written as `[[key]]`; where both are missing, the defaults alone are read.
+    pub fn section_or_sections(&self, key: &'static str) -> Vec<Section<'a>> {
+        self.asks(key, Some(Takes::Section));
+        self.asks(key, Some(Takes::Sections));
+        if self.is_list(key) {
+            self.tables(key)
+        } else {
+            vec![self.section(key)]
+        }
+    }
+
+    /// Whether the file itself contains a list under `key`.
+    pub fn is_list(&self, key: &'static str) -> bool {
+        let written = self.written(key);
+        written.is_some_and(|value| matches!(value.get_ref(), DeValue::Array(_)))
+    }
+
     /// Whether the file itself contains the table `key`, which selects a dialect and is no key that was looked up.
     pub fn is_of(&self, key: &'static str) -> bool {
         self.written(key).is_some()

@@ -22,6 +22,7 @@
 //! let problem = BoundaryProblem {
 //!     thickness: 2.0,
 //!     law: Arc::new(NeoHooke { c10: 0.05 }),
+//!     regions: Vec::new(),
 //!     supports: vec![
 //!         ("left".into(), Support::Displacement([Some(0.0), Some(0.0)])),
 //!         ("right".into(), Support::Displacement([Some(20.0), Some(0.0)])),
@@ -108,7 +109,9 @@ impl<'a> NestedMeshes<'a> {
     /// # Errors
     /// [`Error::Input`] where a mesh does not suit the problem or the law has a memory, [`Error::Solve`] where no field was found.
     pub fn correct(&self, factor: f64) -> Result<NestedCorrection, Error> {
-        check_memory(&*self.problem.law, "nested correction")?;
+        for law in self.problem.laws().all() {
+            check_memory(&**law, "nested correction")?;
+        }
         let mut state = self.correct_on_coarsest(factor)?;
         let (mut change, mut size) = (None::<Vec<f64>>, f64::NAN);
         let mut ratio = Ratios::MEASURED.first;
@@ -145,7 +148,7 @@ impl<'a> NestedMeshes<'a> {
             1 => mesh.clone(),
             _ => mesh.refined().linear(),
         };
-        let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
+        let springs = MassSpring::on_mesh(problem.laws(), problem.thickness, lattice);
         let by_springs = on(problem, &springs.mesh, springs.potential())?;
         let by_springs = by_springs.describing(|element| springs.describe_element(element));
         let model = self.model(0)?;

@@ -75,6 +75,7 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
         let problem = BoundaryProblem {
             thickness: THICKNESS,
             law: law(),
+            regions: Vec::new(),
             supports: vec![
                 ("left".into(), Support::Displacement([Some(0.0), Some(0.0)])),
                 (

@@ -3,6 +3,7 @@
 use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
 use nalgebra::Matrix4;
 
+use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
@@ -35,13 +36,14 @@ impl<'a> SheetViscosity<'a> {
     /// The viscous stress at a point, and its derivatives with respect to F and Ḟ.
     fn point_stress(
         &self,
+        law: &dyn HyperelasticLaw,
         kinematics: &Kinematics,
         rate: &PlaneTensor,
         memory: &[f64],
         elapsed: f64,
         with_tangents: bool,
     ) -> (PlaneTensor, Option<[Matrix4<f64>; 2]>) {
-        let (law, material) = (self.energy.law(), self.material);
+        let material = self.material;
         let mut stress = material.newtonian_stress(kinematics, rate);
         let mut by_displacement = Matrix4::zeros();
         if !material.relaxation.is_empty() {
@@ -100,9 +102,11 @@ impl Viscosity for SheetViscosity<'_> {
         motion: ElementMotion<'_>,
         mut local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible> {
+        let law = self.energy.laws().of(element);
         let points = self.points(element, motion.displacement)?;
         for (index, (point, kinematics)) in points.into_iter().enumerate() {
             let (stress, tangents) = self.point_stress(
+                law,
                 &kinematics,
                 &point.gradient(motion.velocity),
                 self.part(motion.memory, index),
@@ -125,9 +129,10 @@ impl Viscosity for SheetViscosity<'_> {
         motion: ElementMotion<'_>,
         next: &mut [f64],
     ) -> Result<(), Inadmissible> {
+        let law = self.energy.laws().of(element);
         let points = self.points(element, motion.displacement)?;
         for (index, (_, kinematics)) in points.into_iter().enumerate() {
-            let (_, long) = self.energy.law().stress(&kinematics);
+            let (_, long) = law.stress(&kinematics);
             let now = second_piola_kirchhoff(&kinematics, &long);
             let part = self.part(motion.memory, index);
             let branches = self.material.branches(part, now, motion.elapsed);

@@ -40,15 +40,15 @@ use rayon::prelude::*;
 
 use super::recovery::Recovery;
 use crate::error::SolveFault;
-use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{GAUSS_3, Mesh};
+use crate::problem::CellLaws;
 
 /// A finite-element solution of a sheet.
 #[derive(Clone, Copy)]
 pub struct SheetSolution<'a> {
-    /// The material.
-    pub law: &'a dyn HyperelasticLaw,
+    /// The materials.
+    pub laws: &'a CellLaws,
     /// Thickness in mm.
     pub thickness: f64,
     /// The mesh.
@@ -174,7 +174,7 @@ impl SheetSolution<'_> {
             let z_error = Vector4::from(other.at(mesh, point.cell, point.local)) - z;
             let linear = point.tangent * error;
             let beyond = self
-                .stress(&(point.gradient + error))
+                .stress(point.cell, &(point.gradient + error))
                 .map_or(0.0, |stress| (stress - point.stress - linear).dot(&z));
             force += point.volume * (linear.dot(&z_error) + beyond);
             energy.add(point, &error);
@@ -202,9 +202,9 @@ impl SheetSolution<'_> {
         found
     }
 
-    fn stress(&self, gradient: &PlaneTensor) -> Option<PlaneTensor> {
+    fn stress(&self, cell: usize, gradient: &PlaneTensor) -> Option<PlaneTensor> {
         let kinematics = Kinematics::new(gradient).ok()?;
-        Some(self.law.stress(&kinematics).1)
+        Some(self.laws.of(cell).stress(&kinematics).1)
     }
 
     /// Calls `call` at every point of a rule that resolves errors where the field has a tangent; returns whether it has one at all of them.
@@ -212,10 +212,11 @@ impl SheetSolution<'_> {
     fn each_point(&self, mut call: impl FnMut(&Point)) -> bool {
         let mut all = true;
         for cell in 0..self.mesh.cell_count() {
+            let law = self.laws.of(cell);
             for (local, weight) in self.mesh.shape(cell).product_quadrature(&GAUSS_3) {
                 let gradient = self.mesh.gradient_at(self.displacement, cell, local);
                 let gradient = Vector4::from(gradient);
-                let response = Kinematics::new(&gradient).map(|own| self.law.response(&own));
+                let response = Kinematics::new(&gradient).map(|own| law.response(&own));
                 let Some(response) = response.ok().filter(|own| own.tangent.sum().is_finite())
                 else {
                     all = false;
@@ -240,11 +241,15 @@ impl SheetSolution<'_> {
 mod tests {
     use super::*;
     use crate::finite_element::{Element, FiniteElements};
-    use crate::material::NeoHooke;
+    use crate::material::{HyperelasticLaw, NeoHooke};
     use crate::mesh::{CellShape, Shape};
     use crate::problem::{ClampedPlate, Measures};
     use crate::solve::NewtonSettings;
     use std::sync::Arc;
+
+    fn laws(law: NeoHooke) -> CellLaws {
+        Arc::new(law).into()
+    }
 
     #[test]
     fn the_fewest_cells_that_hold_the_share_are_marked() {
@@ -272,7 +277,7 @@ mod tests {
                 let mesh = Shape::Strip { size: [12.0, 6.0] }.mesh(4, kind);
                 let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
                 let solved = SheetSolution {
-                    law: &law,
+                    laws: &laws(law),
                     thickness: 2.0,
                     mesh: &mesh,
                     displacement: &u,
@@ -300,7 +305,7 @@ mod tests {
         let field = |[x, y]: &[f64; 2]| [h[0] * x + h[1] * y, h[2] * x + h[3] * y];
         let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
         let solved = SheetSolution {
-            law: &law,
+            laws: &laws(law),
             thickness: 2.0,
             mesh: &mesh,
             displacement: &u,
@@ -326,7 +331,7 @@ mod tests {
             .flat_map(|[x, y]| [-0.2 * x, -0.2 * y])
             .collect();
         let solved = SheetSolution {
-            law: &law,
+            laws: &laws(law),
             thickness: 2.0,
             mesh: &mesh,
             displacement: &u,

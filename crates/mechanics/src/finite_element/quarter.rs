@@ -69,6 +69,7 @@ impl Quarter {
         let supports = held.map(|(group, by)| (group.to_owned(), Support::Displacement(by)));
         Some(Self {
             problem: BoundaryProblem {
+                regions: Vec::new(),
                 supports: supports.into(),
                 ..plate.boundary_problem()
             },

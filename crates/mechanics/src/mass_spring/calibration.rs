@@ -23,9 +23,10 @@ use nalgebra::{DMatrix, DVector};
 use super::spring::{CrossSections, Spring};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::polygon_area;
+use crate::problem::CellLaws;
 
-/// The springs of a mesh: edges, and both diagonals of quadrilaterals.
-pub fn springs(mesh: &Mesh, thickness: f64) -> Vec<Spring> {
+/// The springs of a mesh whose cells have laws: edges, and both diagonals of quadrilaterals.
+pub fn springs(mesh: &Mesh, laws: &CellLaws, thickness: f64) -> Vec<Spring> {
     let mut all = CrossSections::default();
     for cell in 0..mesh.cell_count() {
         let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
@@ -33,7 +34,8 @@ pub fn springs(mesh: &Mesh, thickness: f64) -> Vec<Spring> {
         let pairs = pairs(corners.len());
         let sections = sections(&places, &pairs);
         for ([a, b], section) in pairs.iter().zip(sections) {
-            all.add([corners[*a], corners[*b]], thickness * section);
+            let ends = [corners[*a], corners[*b]];
+            all.add(ends, laws.number(cell), thickness * section);
         }
     }
     all.springs(&mesh.nodes)
@@ -117,13 +119,20 @@ fn van_gelder(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::material::NeoHooke;
     use crate::mesh::CellShape;
+
+    fn one_law() -> CellLaws {
+        Arc::new(NeoHooke { c10: 0.05 }).into()
+    }
 
     /// C of a mesh of E = 1 MPa and t = 1 mm: components 1111, 1122, 2222, 1112.
     fn tensor(mesh: &Mesh, area: f64) -> [f64; 4] {
         let mut sums = [0.0; 4];
-        for spring in springs(mesh, 1.0) {
+        for spring in springs(mesh, &one_law(), 1.0) {
             let [from, to] = spring.nodes.map(|node| mesh.nodes[node]);
             let n = [0, 1].map(|axis| (to[axis] - from[axis]) / spring.rest_length);
             let weight = spring.area * spring.rest_length / area;
@@ -160,7 +169,7 @@ mod tests {
         assert!((found[0] - 9.0 / 8.0).abs() < 1e-12 && (found[1] - 3.0 / 8.0).abs() < 1e-12);
         let slender = Mesh::new(nodes, [(CellShape::Triangle3, vec![0, 3, 2])]);
         assert!(
-            springs(&slender, 1.0)
+            springs(&slender, &one_law(), 1.0)
                 .iter()
                 .all(|spring| spring.area >= 0.0)
         );

@@ -12,7 +12,7 @@ use crate::solve::{Connectivity, Evaluated, Inadmissible, Local, Potential, Reme
 /// The energy of a lattice: springs, then cells.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
-    law: Arc<dyn HyperelasticLaw>,
+    pub laws: Vec<Arc<dyn HyperelasticLaw>>,
     pub spring_law: SpringLaw,
     /// Unknowns of the springs, then of the cells.
     connectivity: Connectivity,
@@ -38,7 +38,7 @@ fn strain(direction: [f64; 2], relative: [f64; 2]) -> f64 {
 
 impl Lattice {
     pub fn new(
-        law: &Arc<dyn HyperelasticLaw>,
+        laws: Vec<Arc<dyn HyperelasticLaw>>,
         mesh: &Mesh,
         springs: Vec<Spring>,
         area_stiffness: f64,
@@ -58,7 +58,7 @@ impl Lattice {
             [0, 1].map(|axis| (to[axis] - from[axis]) / spring.rest_length.powi(2))
         };
         Self {
-            law: Arc::clone(law),
+            laws,
             spring_law: SpringLaw::Material,
             connectivity,
             directions: springs.iter().map(direction).collect(),
@@ -68,17 +68,22 @@ impl Lattice {
         }
     }
 
+    /// The law of a spring.
+    fn law(&self, spring: usize) -> &dyn HyperelasticLaw {
+        &*self.laws[usize::from(self.springs[spring].law)]
+    }
+
     /// The sheet's tension curve along a spring.
     fn tension(&self, spring: usize, strain: f64) -> TensionResponse {
         let unit =
             self.directions[spring].map(|component| component * self.springs[spring].rest_length);
-        self.spring_law.tension(&*self.law, unit, strain)
+        self.spring_law.tension(self.law(spring), unit, strain)
     }
 
     /// Geometry of a spring with the displacements `u` of its ends, and with the largest energy so far from a history.
     pub fn pose_after(&self, index: usize, u: &[f64], history: &[f64]) -> SpringPose {
         let pose = self.pose(index, u);
-        let softened = self.law.softening().zip(history.get(index));
+        let softened = self.law(index).softening().zip(history.get(index));
         let response = softened.map(|(own, most)| own.tension(pose.response, *most));
         SpringPose {
             response: response.unwrap_or(pose.response),
@@ -208,7 +213,7 @@ impl Remembering for Lattice {
 
     /// The largest energy of each spring; areas do not soften.
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
-        if self.law.softening().is_none() {
+        if self.laws.iter().all(|law| law.softening().is_none()) {
             return;
         }
         history.resize(self.springs.len(), 0.0);
@@ -219,12 +224,11 @@ impl Remembering for Lattice {
     }
 
     fn dissipated(&self, history: &[f64]) -> f64 {
-        let Some(softening) = self.law.softening() else {
-            return 0.0;
-        };
-        let springs = self.springs.iter().zip(history);
-        let parts = springs
-            .map(|(spring, most)| spring.area * spring.rest_length * softening.dissipated(*most));
+        let springs = self.springs.iter().zip(history).enumerate();
+        let parts = springs.filter_map(|(index, (spring, most))| {
+            let softening = self.law(index).softening()?;
+            Some(spring.area * spring.rest_length * softening.dissipated(*most))
+        });
         parts.sum()
     }
 }

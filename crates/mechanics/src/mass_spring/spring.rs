@@ -13,26 +13,30 @@ pub struct Spring {
     pub rest_length: f64,
     /// Cross-section a in mm².
     pub area: f64,
+    /// The number of its law among those of the lattice.
+    pub law: u8,
 }
 
-/// Springs between nodes, with the sums of the cross-sections in mm² from the adjacent cells.
+/// Springs between nodes, with the sums of the cross-sections in mm² from the adjacent cells of one law: between cells of two laws there are
+/// two springs side by side.
 #[derive(Default)]
-pub(super) struct CrossSections(BTreeMap<[usize; 2], f64>);
+pub(super) struct CrossSections(BTreeMap<([usize; 2], u8), f64>);
 
 impl CrossSections {
-    /// Adds a cross-section between two nodes.
-    pub fn add(&mut self, [a, b]: [usize; 2], area: f64) {
-        *self.0.entry([a.min(b), a.max(b)]).or_insert(0.0) += area;
+    /// Adds a cross-section of a law between two nodes.
+    pub fn add(&mut self, [a, b]: [usize; 2], law: u8, area: f64) {
+        *self.0.entry(([a.min(b), a.max(b)], law)).or_insert(0.0) += area;
     }
 
     /// The springs between nodes at these places.
     pub fn springs(self, places: &[[f64; 2]]) -> Vec<Spring> {
-        let spring = |(nodes, area): ([usize; 2], f64)| {
+        let spring = |((nodes, law), area): (([usize; 2], u8), f64)| {
             let [from, to] = nodes.map(|node| places[node]);
             Spring {
                 nodes,
                 rest_length: (to[0] - from[0]).hypot(to[1] - from[1]),
                 area,
+                law,
             }
         };
         self.0.into_iter().map(spring).collect()

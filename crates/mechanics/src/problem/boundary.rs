@@ -7,6 +7,7 @@ use super::boundary_conditions::{Load, Support};
 use super::constraints::{Constraints, Tie};
 use super::contradictions::{agreeing, contradictions};
 use super::deformed::DeformedSheet;
+use super::laws::{Region, SheetLaws};
 use super::loads::{Loads, dead_forces};
 use super::model::Model;
 use super::rigid::free_motions;
@@ -21,8 +22,10 @@ use crate::solve::{Remembering, State};
 pub struct BoundaryProblem {
     /// Thickness in mm.
     pub thickness: f64,
-    /// The material.
+    /// The material of all cells that belong to no region.
     pub law: Arc<dyn HyperelasticLaw>,
+    /// Groups of cells of other materials, which share no cell.
+    pub regions: Vec<Region>,
     /// Supports by group; those that share nodes must agree there.
     pub supports: Vec<(String, Support)>,
     /// Loads by group.
@@ -38,7 +41,15 @@ fn is_of_points(mesh: &Mesh, name: &str) -> bool {
 impl BoundaryProblem {
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
-        SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
+        SheetEnergy::of_mesh(self.laws().in_cells(mesh), mesh, self.thickness)
+    }
+
+    /// The laws of its material.
+    pub fn laws(&self) -> SheetLaws<'_> {
+        SheetLaws {
+            law: &self.law,
+            regions: &self.regions,
+        }
     }
 
     /// A state on a mesh, to be evaluated at any point of the sheet.
@@ -46,7 +57,7 @@ impl BoundaryProblem {
         DeformedSheet::new(
             mesh.clone(),
             state.displacement.clone(),
-            Arc::clone(&self.law),
+            self.laws().in_cells(mesh),
         )
     }
 
@@ -163,7 +174,8 @@ impl BoundaryProblem {
     ) -> Result<Model<'a>, Diagnostic> {
         let constraints = agreeing(&self.supports, mesh)?;
         let loads = Loads::of(mesh, &self.loads, self.thickness)?;
-        let stiffness = self.law.youngs_modulus() * self.thickness;
+        let moduli = self.laws().all().map(|law| law.youngs_modulus());
+        let stiffness = moduli.fold(0.0, f64::max) * self.thickness;
         Ok(Model::new(mesh, energy, constraints, loads, stiffness))
     }
 }

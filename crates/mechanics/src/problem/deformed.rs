@@ -1,8 +1,6 @@
 //! A deformed sheet and its values at points: displacement, stretches, stress.
 
-use std::sync::Arc;
-
-use crate::material::HyperelasticLaw;
+use super::laws::CellLaws;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
@@ -12,7 +10,7 @@ use crate::mesh::Mesh;
 pub struct DeformedSheet {
     mesh: Mesh,
     displacement: Vec<f64>,
-    law: Arc<dyn HyperelasticLaw>,
+    laws: CellLaws,
     past: Vec<Vec<f64>>,
 }
 
@@ -59,11 +57,11 @@ pub enum PointFault {
 const ON_THE_EDGE: f64 = 1e-9;
 
 impl DeformedSheet {
-    /// A sheet of a law with displacements in mm: ux, uy of node after node of its mesh.
+    /// A sheet of a law, or of a law in each cell, with displacements in mm: ux, uy of node after node of its mesh.
     ///
     /// # Panics
     /// When there are not two displacements for every node.
-    pub fn new(mesh: Mesh, displacement: Vec<f64>, law: Arc<dyn HyperelasticLaw>) -> Self {
+    pub fn new(mesh: Mesh, displacement: Vec<f64>, laws: impl Into<CellLaws>) -> Self {
         assert_eq!(
             displacement.len(),
             2 * mesh.nodes.len(),
@@ -72,7 +70,7 @@ impl DeformedSheet {
         Self {
             mesh,
             displacement,
-            law,
+            laws: laws.into(),
             past: Vec::new(),
         }
     }
@@ -107,9 +105,11 @@ impl DeformedSheet {
     /// # Errors
     /// [`PointFault`].
     pub fn principal_stretches_at(&self, point: [f64; 2]) -> Result<[f64; 3], PointFault> {
-        let kinematics = self.kinematics_in(self.locate(point)?, point)?;
+        let place = self.locate(point)?;
+        let kinematics = self.kinematics_in(place, point)?;
         let [larger, smaller] = kinematics.principal_stretches();
-        Ok([larger, smaller, self.law.thickness_stretch(&kinematics)])
+        let thickness = self.laws.of(place.0).thickness_stretch(&kinematics);
+        Ok([larger, smaller, thickness])
     }
 
     /// The stress at a point; on a side between cells, that of one of them.
@@ -120,10 +120,11 @@ impl DeformedSheet {
         let place = self.locate(point)?;
         let kinematics = self.kinematics_in(place, point)?;
         let past = self.past.iter().map(|field| self.gradient_in(place, field));
-        let StressAfter { stress, .. } = StressAfter::new(&*self.law, &kinematics, past);
+        let law = self.laws.of(place.0);
+        let StressAfter { stress, .. } = StressAfter::new(law, &kinematics, past);
         Ok(Stress {
             first_piola_kirchhoff: stress.into(),
-            cauchy: self.law.cauchy_stress(&kinematics, &stress),
+            cauchy: law.cauchy_stress(&kinematics, &stress),
         })
     }
 
@@ -147,6 +148,8 @@ impl DeformedSheet {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::material::NeoHooke;
     use crate::mesh::CellShape;

@@ -37,6 +37,7 @@ impl ClampedPlate {
         BoundaryProblem {
             thickness: self.thickness,
             law: Arc::clone(&self.law),
+            regions: Vec::new(),
             supports: vec![grip(Side::Left, 0.0), grip(Side::Right, self.size[0])],
             loads: Vec::new(),
         }

@@ -4,6 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::laws::CellLaws;
 use super::sampling_point::{DerivativeTable, PointMap, SamplingPoint};
 use crate::material::HyperelasticLaw;
 use crate::material::stability::is_stable;
@@ -16,7 +17,7 @@ use crate::solve::{
 /// Π(u) = Σ V Ψ(H(u)) over the sampling points of all cells, in mJ.
 #[derive(Clone, Debug)]
 pub struct SheetEnergy {
-    law: Arc<dyn HyperelasticLaw>,
+    laws: CellLaws,
     /// The unknowns of each cell: ux, uy of node after node.
     connectivity: Connectivity,
     tables: Vec<DerivativeTable>,
@@ -32,9 +33,9 @@ pub struct SheetEnergy {
 
 impl SheetEnergy {
     /// An energy without cells for so many nodes.
-    pub fn new(law: Arc<dyn HyperelasticLaw>, nodes: usize) -> Self {
+    pub fn new(laws: impl Into<CellLaws>, nodes: usize) -> Self {
         Self {
-            law,
+            laws: laws.into(),
             connectivity: Connectivity::new(2 * nodes),
             tables: Vec::new(),
             table_of: Vec::new(),
@@ -72,8 +73,8 @@ impl SheetEnergy {
     }
 
     /// The energy of the cells of a mesh, integrated by their quadrature: the finite-element method.
-    pub fn of_mesh(law: Arc<dyn HyperelasticLaw>, mesh: &Mesh, thickness: f64) -> Self {
-        let mut energy = Self::new(law, mesh.nodes.len());
+    pub fn of_mesh(laws: impl Into<CellLaws>, mesh: &Mesh, thickness: f64) -> Self {
+        let mut energy = Self::new(laws, mesh.nodes.len());
         let mut kinds: Vec<(CellShape, u8, DerivativeTable, Vec<f64>)> = Vec::new();
         for cell in 0..mesh.cell_count() {
             let shape = mesh.shape(cell);
@@ -108,11 +109,11 @@ impl SheetEnergy {
         }
     }
 
-    /// The energy of the same cells with another law.
+    /// The energy of the same cells with another law of all of them.
     #[must_use]
     pub fn with_law(&self, law: Arc<dyn HyperelasticLaw>) -> Self {
         Self {
-            law,
+            laws: law.into(),
             ..self.clone()
         }
     }
@@ -141,9 +142,9 @@ impl SheetEnergy {
         self.point_starts[cell] as usize..self.point_starts[cell + 1] as usize
     }
 
-    /// The material.
-    pub fn law(&self) -> &dyn HyperelasticLaw {
-        &*self.law
+    /// The materials.
+    pub fn laws(&self) -> &CellLaws {
+        &self.laws
     }
 }
 
@@ -168,7 +169,7 @@ impl Potential for SheetEnergy {
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         self.cell_points(element).find_map(|point| {
             let kinematics = point.kinematics(u).ok()?;
-            let unstable = !is_stable(&*self.law, &kinematics);
+            let unstable = !is_stable(self.laws.of(element), &kinematics);
             unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))
         })
     }
@@ -182,18 +183,19 @@ impl Remembering for SheetEnergy {
         mut local: Local<'_>,
         history: &[f64],
     ) -> Evaluated {
-        let softening = self.law.softening().filter(|_| !history.is_empty());
+        let law = self.laws.of(element);
+        let softening = law.softening().filter(|_| !history.is_empty());
         let softening = softening.map(|own| (own, &history[self.points_of(element)]));
         let mut energy = 0.0;
         for (index, point) in self.cell_points(element).enumerate() {
             let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
             let (density, stress) = match &mut local.stiffness {
                 None => {
-                    let virgin = self.law.stress(&kinematics);
+                    let virgin = law.stress(&kinematics);
                     softening.map_or(virgin, |(own, most)| own.stress(virgin, most[index]))
                 }
                 Some(stiffness) => {
-                    let virgin = self.law.response(&kinematics);
+                    let virgin = law.response(&kinematics);
                     let response =
                         softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
                     point.add_stiffness(response.tangent.as_slice(), stiffness);
@@ -212,32 +214,36 @@ impl Remembering for SheetEnergy {
 
     /// The largest energy of each sampling point.
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
-        if self.law.softening().is_none() {
+        let mut laws = self.laws.all().iter();
+        if laws.all(|law| law.softening().is_none()) {
             return;
         }
         history.resize(self.points.len(), 0.0);
         for element in 0..self.elements() {
             let own = self.connectivity.values(element, u);
+            let law = self.laws.of(element);
             let points = &mut history[self.points_of(element)];
             for (most, point) in points.iter_mut().zip(self.cell_points(element)) {
                 if let Ok(kinematics) = point.kinematics(&own) {
-                    *most = most.max(self.law.stress(&kinematics).0);
+                    *most = most.max(law.stress(&kinematics).0);
                 }
             }
         }
     }
 
     fn dissipated(&self, history: &[f64]) -> f64 {
-        let Some(softening) = self.law.softening() else {
-            return 0.0;
-        };
-        let points = self.points.iter().zip(history);
-        let parts = points.map(|(own, most)| own.volume * softening.dissipated(*most));
+        let cells = 0..self.elements();
+        let softening = cells.filter_map(|cell| Some((cell, self.laws.of(cell).softening()?)));
+        let parts = softening.flat_map(|(cell, softening)| {
+            let history = history.get(self.points_of(cell)).unwrap_or_default();
+            let points = self.cell_points(cell).zip(history);
+            points.map(move |(own, most)| own.volume() * softening.dissipated(*most))
+        });
         parts.sum()
     }
 
     fn is_objective(&self) -> bool {
-        self.law.is_objective()
+        self.laws.all().iter().all(|law| law.is_objective())
     }
 }
 

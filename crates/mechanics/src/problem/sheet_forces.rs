@@ -45,7 +45,7 @@ impl SheetEnergy {
         Ok(energy)
     }
 
-    /// Evaluates a law at the points of all cells, some cells at a time.
+    /// Evaluates the laws at the points of all cells, some cells of one law at a time.
     fn in_blocks(
         &self,
         u: &[f64],
@@ -55,16 +55,21 @@ impl SheetEnergy {
         let mut first = 0;
         while first < self.elements() {
             let mut last = first;
+            let number = self.laws().number(first);
             points.gradients.iter_mut().for_each(Vec::clear);
-            while last < self.elements() && points.gradients[0].len() < BLOCK {
+            while last < self.elements()
+                && points.gradients[0].len() < BLOCK
+                && self.laws().number(last) == number
+            {
                 points.push(self, last, u);
                 last += 1;
             }
-            if !points.evaluate(self.law()) {
+            let law = self.laws().of(first);
+            if !points.evaluate(law) {
                 let faulty = (first..last).find(|cell| {
                     let mut alone = Points::new();
                     alone.push(self, *cell, u);
-                    !alone.evaluate(self.law())
+                    !alone.evaluate(law)
                 });
                 return Err(Inadmissible {
                     element: faulty.unwrap_or(first),
@@ -172,6 +177,7 @@ mod tests {
                 let problem = BoundaryProblem {
                     thickness: 2.0,
                     law: Arc::clone(&law),
+                    regions: Vec::new(),
                     supports: vec![
                         ("start".into(), Support::Roller),
                         (

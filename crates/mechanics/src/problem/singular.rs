@@ -63,6 +63,7 @@ mod tests {
         let problem = BoundaryProblem {
             thickness: 1.0,
             law: Arc::new(NeoHooke { c10: 0.05 }),
+            regions: Vec::new(),
             supports: supports
                 .map(|(group, support)| ((*group).to_owned(), *support))
                 .collect(),

@@ -8,6 +8,7 @@ use samples::{CLAMP, NEWTON, moved, problem, solved, strip, turned};
 mod branches;
 mod corners;
 mod parts_of_the_sheet;
+mod regions;
 pub mod samples;
 mod softening;
 

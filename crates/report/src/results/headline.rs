@@ -1,10 +1,10 @@
 //! What a study of a sheet is computed for, in short: the force and displacement of its groups along the path, and where stress and stretch are
 //! largest.
 
-use super::{Block, Deformed, LocalState, nodal_states, or_dash};
-use crate::material::HyperelasticLaw;
+use super::state::NodalSheet;
+use super::{Block, Deformed, LocalState, or_dash};
 use crate::mesh::Mesh;
-use crate::problem::GroupState;
+use crate::problem::{GroupState, SheetLaws};
 use crate::units::number;
 
 /// Most rows of the table of forces; of more, steps are left out.
@@ -31,8 +31,8 @@ pub struct Headline<'a> {
 pub struct LoadedSheet<'a> {
     /// Where on the path, such as `50 % stretch`.
     pub at: String,
-    /// The material.
-    pub law: &'a dyn HyperelasticLaw,
+    /// The materials.
+    pub laws: SheetLaws<'a>,
     /// Its mesh and fields.
     pub deformed: Deformed<'a>,
     /// Points at rest in mm at which stress has no bound.
@@ -296,7 +296,12 @@ impl LoadedSheet<'_> {
             viscous,
             ..
         } = &self.deformed;
-        let states = nodal_states(self.law, mesh, fields, viscous);
+        let NodalSheet {
+            mesh,
+            displacement,
+            states,
+        } = NodalSheet::new(self.laws, mesh, fields, viscous);
+        let mesh = &*mesh;
         let distance = self.distance();
         let is_regular = |node: &usize| {
             let [x, y] = mesh.nodes[*node];
@@ -324,7 +329,7 @@ impl LoadedSheet<'_> {
             ];
             row.extend(self.gauge.map(|gauge| {
                 let mean = if STRETCHES.contains(&name) {
-                    gauge.stretch(mesh, fields.last().copied().unwrap_or_default())
+                    gauge.stretch(mesh, &displacement)
                 } else {
                     gauge.mean(mesh, &value)
                 };

@@ -20,6 +20,37 @@ pub struct Material {
     pub json: Value,
 }
 
+impl Material {
+    /// The description of a sheet of several regions, each with its number, its name and its card; that of the cells of no region has the number 0.
+    ///
+    /// # Panics
+    /// Without a region.
+    pub fn of_regions(regions: &[(usize, &str, &Card)]) -> Self {
+        let rows = regions.iter().map(|(number, name, card)| {
+            let title = format!("{}: {}", card.law_name, card.formula);
+            vec![
+                number.to_string(),
+                (*name).to_owned(),
+                card.name.clone(),
+                title,
+            ]
+        });
+        let mut blocks = vec![
+            Block::heading("Regions"),
+            Block::table(&["number", "region", "card", "law"], rows),
+        ];
+        for (_, name, card) in regions {
+            let heading = Block::heading(format!("Material of {name}"));
+            blocks.push(heading);
+            blocks.extend(statement(card).into_iter().skip(1));
+        }
+        let of_region = |(number, name, card): &(usize, &str, &Card)| json!({ "number": number, "name": name, "material": json(card) });
+        let mut all = json(regions[0].2);
+        all["regions"] = regions.iter().map(of_region).collect();
+        Self { blocks, json: all }
+    }
+}
+
 impl From<&Card> for Material {
     fn from(card: &Card) -> Self {
         Self {

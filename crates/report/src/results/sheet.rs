@@ -1,13 +1,13 @@
 //! What the stresses of a sheet follow from.
 
 use super::viscous_stress::ViscousStress;
-use crate::material::HyperelasticLaw;
+use crate::problem::SheetLaws;
 
 /// The data that determine the stresses of a sheet.
 #[derive(Clone, Copy)]
 pub struct Sheet<'a> {
-    /// The material.
-    pub law: &'a dyn HyperelasticLaw,
+    /// The materials.
+    pub laws: SheetLaws<'a>,
     /// Thickness in mm.
     pub thickness: f64,
     /// The earlier displacement fields, which a law with a memory remembers.
@@ -18,9 +18,9 @@ pub struct Sheet<'a> {
 
 impl<'a> Sheet<'a> {
     /// Of an elastic material that remembers nothing yet.
-    pub fn elastic(law: &'a dyn HyperelasticLaw, thickness: f64) -> Self {
+    pub fn elastic(laws: SheetLaws<'a>, thickness: f64) -> Self {
         Self {
-            law,
+            laws,
             thickness,
             past: &[],
             viscous: None,

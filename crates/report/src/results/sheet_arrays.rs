@@ -9,7 +9,8 @@ use crate::mesh::Mesh;
 /// Arrays at the nodes, from the mean of the displacement gradients that the cells around each node have there.
 pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.at_nodes);
-    let states = nodal_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
+    let laws = sheet.laws.in_cells(mesh);
+    let states = nodal_states(&laws, mesh, &sheet.fields(displacement), viscous);
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states.iter().map(value));
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states.iter().map(value))
@@ -31,10 +32,12 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 }
 
 /// Arrays in the cells, from the displacement gradients in their centres. The nominal stress is Pᵀ: its first index is the
-/// reference direction. For a softening material there are two more: the dissipated energy and the remaining share of the stress.
+/// reference direction. For a softening material there are two more: the dissipated energy and the remaining share of the stress; for a sheet of
+/// several regions, the number of each cell's.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
-    let states = cell_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
+    let laws = sheet.laws.in_cells(mesh);
+    let states = cell_states(&laws, mesh, &sheet.fields(displacement), viscous);
     let wrinkling = Wrinkling::of_cells(sheet, mesh, displacement, &states);
     let states = || states.iter();
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));
@@ -67,11 +70,15 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
         Array::scalars("thickness_mm", thickness),
         of("energy_density_mJ_per_mm3", |state| state.energy),
     ];
-    if sheet.law.softening().is_some() {
+    if sheet.laws.soften() {
         arrays.push(of("dissipated_energy_density_mJ_per_mm3", |state| {
             state.dissipated
         }));
         arrays.push(of("softening_factor", |state| state.softening_factor));
+    }
+    if !sheet.laws.regions.is_empty() {
+        let numbers = (0..mesh.cell_count()).map(|cell| f64::from(laws.number(cell)));
+        arrays.push(Array::scalars("region", numbers));
     }
     arrays
 }

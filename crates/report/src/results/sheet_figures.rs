@@ -1,9 +1,10 @@
 //! Pictures of stress and strain, of several models side by side.
 
-use super::{FieldFigure, Figure, LocalState, Panel, nodal_states};
+use super::state::NodalSheet;
+use super::{FieldFigure, Figure, LocalState, Panel};
 use crate::document::name_of;
-use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
+use crate::problem::SheetLaws;
 
 /// A quantity of a sheet that follows from its displacement field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,22 +81,22 @@ impl<'a> Deformed<'a> {
 /// `at` describes the position on the path.
 pub fn sheet_figures(
     fields: &[SheetField],
-    law: &dyn HyperelasticLaw,
+    laws: SheetLaws,
     models: &[Deformed],
     at: &str,
     file: &dyn Fn(&str) -> String,
 ) -> Vec<Figure> {
-    let states: Vec<Vec<LocalState>> = models
+    let sheets: Vec<NodalSheet> = models
         .iter()
-        .map(|own| nodal_states(law, own.mesh, &own.fields, own.viscous))
+        .map(|own| NodalSheet::new(laws, own.mesh, &own.fields, own.viscous))
         .collect();
     let figure = |field: &SheetField| {
-        let panel = |(own, states): (&Deformed, &Vec<LocalState>)| {
-            let u = own.fields.last().copied().unwrap_or_default();
-            Panel::at_nodes(&own.label, own.mesh, u, &|node| field.value(&states[node]))
+        let panel = |(own, sheet): (&Deformed, &NodalSheet)| {
+            let value = |node: usize| field.value(&sheet.states[node]);
+            Panel::at_nodes(&own.label, &sheet.mesh, &sheet.displacement, &value)
         };
         let (title, quantity) = field.title();
-        let panels = models.iter().zip(&states).map(panel);
+        let panels = models.iter().zip(&sheets).map(panel);
         let drawing = FieldFigure::new(format!("{title} at {at}"), quantity, panels);
         let caption = format!(
             "{title} at {at}; values at the nodes are means over the adjacent cells. An arrow at the end of the colours: single places, as at \

@@ -10,10 +10,10 @@ use crate::mesh::Mesh;
 /// strain, and by the square of the rotation.
 const SMALL: [f64; 2] = [0.05, 0.1];
 
-/// The strain |λ − 1| and the rotation in rad that a small share of the sheet exceeds, by the centres of the cells.
-fn extremes(mesh: &Mesh, displacement: &[f64]) -> [f64; 2] {
+/// The strain |λ − 1| and the rotation in rad that a small share of some cells exceeds, by their centres.
+fn extremes((mesh, cells): (&Mesh, &[usize]), displacement: &[f64]) -> [f64; 2] {
     let (mut strains, mut rotations) = (Vec::new(), Vec::new());
-    for cell in 0..mesh.cell_count() {
+    for cell in cells.iter().copied() {
         let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
         let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
         let area = mesh.cell_area(cell);
@@ -36,10 +36,20 @@ fn exceeded_by_some(mut values: Vec<(f64, f64)>) -> f64 {
 
 /// The reason why a field is outside of the range of a law for small strains and rotations; `None` for other laws.
 pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Option<String> {
+    let cells: Vec<usize> = (0..mesh.cell_count()).collect();
+    reason_in_cells(law, (mesh, &cells), displacement)
+}
+
+/// The same in some cells of a mesh.
+pub fn reason_in_cells(
+    law: &dyn HyperelasticLaw,
+    cells: (&Mesh, &[usize]),
+    displacement: &[f64],
+) -> Option<String> {
     if !law.is_for_small_strains() {
         return None;
     }
-    let [strain, rotation] = extremes(mesh, displacement);
+    let [strain, rotation] = extremes(cells, displacement);
     (strain > SMALL[0] || rotation > SMALL[1]).then(|| {
         format!(
             "linear elasticity assumes strains and rotations that are small compared with 1, and here they reach {:.0} % and {:.0}°",

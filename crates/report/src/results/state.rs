@@ -1,11 +1,14 @@
 //! Stress and strain of a sheet at its nodes and in its cells.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector4;
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
+use crate::problem::{CellLaws, SheetLaws};
 
 /// The state of the material at a displacement gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +79,27 @@ impl LocalState {
         }
     }
 
+    /// The mean of some states, component by component.
+    fn mean(states: &[Self]) -> Self {
+        let share = 1.0 / states.len() as f64;
+        let mean = |value: &dyn Fn(&Self) -> f64| share * states.iter().map(value).sum::<f64>();
+        let four = |value: fn(&Self) -> [f64; 4]| [0, 1, 2, 3].map(|i| mean(&|own| value(own)[i]));
+        if let [one] = states {
+            return *one;
+        }
+        Self {
+            first_piola_kirchhoff: four(|own| own.first_piola_kirchhoff),
+            nominal_across: mean(&|own| own.nominal_across),
+            cauchy: four(|own| own.cauchy),
+            green_lagrange: four(|own| own.green_lagrange),
+            stretches: [0, 1, 2].map(|i| mean(&|own| own.stretches[i])),
+            first_invariant: mean(&|own| own.first_invariant),
+            energy: mean(&|own| own.energy),
+            dissipated: mean(&|own| own.dissipated),
+            softening_factor: mean(&|own| own.softening_factor),
+        }
+    }
+
     /// Von Mises' equivalent stress √(3/2 s : s) of the Cauchy stress with its deviator s, in MPa.
     pub fn von_mises(&self) -> f64 {
         let [s11, s22, s33, s12] = self.cauchy;
@@ -114,26 +138,87 @@ fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
 /// The states in the centres of the cells, of displacement fields and viscous stresses as [`LocalState::of`] takes them; without viscous
 /// stresses there are none.
 pub fn cell_states(
-    law: &dyn HyperelasticLaw,
+    laws: &CellLaws,
     mesh: &Mesh,
     fields: &[&[f64]],
     viscous: &[[f64; 4]],
 ) -> Vec<LocalState> {
+    let law = |cell| laws.of(cell);
     states(law, fields, viscous, |field| cell_gradients(mesh, field))
 }
 
-/// The states at the nodes: those of the mean of the displacement gradients that the cells around a node have there.
+/// The states at the nodes: those of the mean of the displacement gradients that the cells around a node have there; between cells of
+/// different laws, the mean of the states on either side.
 pub fn nodal_states(
-    law: &dyn HyperelasticLaw,
+    laws: &CellLaws,
     mesh: &Mesh,
     fields: &[&[f64]],
     viscous: &[[f64; 4]],
 ) -> Vec<LocalState> {
-    states(law, fields, viscous, |field| nodal_gradients(mesh, field))
+    let Some(cut) = laws.cut(mesh) else {
+        let law = |_| laws.of(0);
+        return states(law, fields, viscous, |field| nodal_gradients(mesh, field));
+    };
+    let fields: Vec<Vec<f64>> = fields.iter().map(|field| cut.field(field)).collect();
+    let fields: Vec<&[f64]> = fields.iter().map(Vec::as_slice).collect();
+    let on_sides = states_within_parts(laws, &cut.mesh, &fields);
+    let mut at_nodes = vec![Vec::new(); mesh.nodes.len()];
+    for (node, state) in cut.originals.iter().zip(on_sides) {
+        at_nodes[*node].push(state);
+    }
+    at_nodes.iter().map(|own| LocalState::mean(own)).collect()
 }
 
-fn states(
-    law: &dyn HyperelasticLaw,
+/// The states at the nodes of a mesh each of whose nodes belongs to cells of one law.
+fn states_within_parts(laws: &CellLaws, mesh: &Mesh, fields: &[&[f64]]) -> Vec<LocalState> {
+    let mut cell_of = vec![0; mesh.nodes.len()];
+    for cell in 0..mesh.cell_count() {
+        mesh.cell(cell)
+            .iter()
+            .for_each(|node| cell_of[*node] = cell);
+    }
+    let law = |node: usize| laws.of(cell_of[node]);
+    states(law, fields, &[], |field| nodal_gradients(mesh, field))
+}
+
+/// A sheet on a mesh with the states at its nodes; between cells of different laws, where stresses jump, the mesh is cut.
+pub struct NodalSheet<'a> {
+    /// The mesh.
+    pub mesh: Cow<'a, Mesh>,
+    /// ux, uy of node after node in mm.
+    pub displacement: Cow<'a, [f64]>,
+    /// The states of node after node.
+    pub states: Vec<LocalState>,
+}
+
+impl<'a> NodalSheet<'a> {
+    /// The sheet of some displacement fields and viscous stresses as [`LocalState::of`] takes them.
+    pub fn new(
+        laws: SheetLaws,
+        mesh: &'a Mesh,
+        fields: &[&'a [f64]],
+        viscous: &[[f64; 4]],
+    ) -> Self {
+        let laws = laws.in_cells(mesh);
+        let Some(cut) = laws.cut(mesh) else {
+            return Self {
+                states: nodal_states(&laws, mesh, fields, viscous),
+                mesh: Cow::Borrowed(mesh),
+                displacement: Cow::Borrowed(fields.last().copied().unwrap_or_default()),
+            };
+        };
+        let mut own: Vec<Vec<f64>> = fields.iter().map(|field| cut.field(field)).collect();
+        let fields: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
+        Self {
+            states: states_within_parts(&laws, &cut.mesh, &fields),
+            mesh: Cow::Owned(cut.mesh),
+            displacement: Cow::Owned(own.pop().unwrap_or_default()),
+        }
+    }
+}
+
+fn states<'a>(
+    law: impl Fn(usize) -> &'a dyn HyperelasticLaw,
     fields: &[&[f64]],
     viscous: &[[f64; 4]],
     gradients: impl Fn(&[f64]) -> Vec<[f64; 4]>,
@@ -142,7 +227,7 @@ fn states(
     let state = |place: usize| {
         let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[place]).collect();
         let viscous = viscous.get(place).copied().unwrap_or_default();
-        LocalState::of(law, &own, viscous)
+        LocalState::of(law(place), &own, viscous)
     };
     let places = gradients.last().map_or(0, Vec::len);
     (0..places).map(state).collect()
@@ -188,6 +273,10 @@ mod tests {
     const LAW: NeoHooke = NeoHooke { c10: 0.5 };
     const NONE: [f64; 4] = [0.0; 4];
 
+    fn laws() -> CellLaws {
+        Arc::new(LAW).into()
+    }
+
     #[test]
     fn softening_takes_its_factor_from_all_stresses() {
         let softening = Softening {
@@ -217,7 +306,8 @@ mod tests {
             let u: Vec<f64> = moved
                 .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
                 .collect();
-            let [nodal, cells] = [nodal_states, cell_states].map(|of| of(&LAW, &mesh, &[&u], &[]));
+            let [nodal, cells] =
+                [nodal_states, cell_states].map(|of| of(&laws(), &mesh, &[&u], &[]));
             assert_eq!(
                 (nodal.len(), cells.len()),
                 (mesh.nodes.len(), mesh.cell_count())
@@ -296,7 +386,7 @@ mod tests {
             .iter()
             .flat_map(|[x, _]| [0.02 * x * x, 0.0])
             .collect();
-        let states = nodal_states(&LAW, &mesh, &[&u], &[]);
+        let states = nodal_states(&laws(), &mesh, &[&u], &[]);
         let inside = mesh.nodes.iter().zip(&states);
         for ([x, _], state) in inside.filter(|([x, _], _)| *x > 0.5 && *x < 3.5) {
             let stretch = 1.0 + 0.04 * x;

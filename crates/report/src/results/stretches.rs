@@ -34,6 +34,12 @@ impl Stretches {
     /// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smallest and the largest of both and of those
     /// across the samples, λ₁^−½ and λ₂^−½ where the volume stays as it is.
     pub fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
+        let cells: Vec<usize> = (0..mesh.cell_count()).collect();
+        Self::of_cells(card, (mesh, &cells), displacement)
+    }
+
+    /// The same of some cells of a mesh.
+    pub fn of_cells(card: &Card, (mesh, cells): (&Mesh, &[usize]), displacement: &[f64]) -> Self {
         let [low, high] = card.stretch_range;
         let [above, below] = [low, high].map(|along| across(&*card.law, along));
         let (least, most) = (low.min(below), high.max(above));
@@ -43,7 +49,7 @@ impl Stretches {
             share: 0.0,
         };
         let (mut outside, mut whole) = (0.0, 0.0);
-        for cell in 0..mesh.cell_count() {
+        for cell in cells.iter().copied() {
             let centre = mesh.shape(cell).centre();
             let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, centre);
             let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();

@@ -39,7 +39,7 @@ impl Wrinkling {
     /// The compression of a displacement field.
     pub fn new(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Self {
         let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
-        let states = cell_states(sheet.law, mesh, &[displacement], viscous);
+        let states = cell_states(&sheet.laws.in_cells(mesh), mesh, &[displacement], viscous);
         Self::of_cells(sheet, mesh, displacement, &states)
     }
 
@@ -51,13 +51,17 @@ impl Wrinkling {
         states: &[LocalState],
     ) -> Self {
         let stresses: Vec<[f64; 2]> = states.iter().map(LocalState::principal_cauchy).collect();
-        let rounding = ROUNDING * sheet.law.youngs_modulus();
-        let is_thin = sheet.law.plane_state() == PlaneState::Stress;
-        let compressed = stresses
-            .iter()
-            .map(|[_, smaller]| is_thin && *smaller < -rounding);
+        let laws = sheet.laws.in_cells(mesh);
+        let limits = laws.all().iter().map(|law| match law.plane_state() {
+            PlaneState::Stress => -ROUNDING * law.youngs_modulus(),
+            PlaneState::Strain => f64::NEG_INFINITY,
+        });
+        let limits: Vec<f64> = limits.collect();
+        let number = |cell: usize| usize::from(laws.number(cell));
+        let compressed = stresses.iter().enumerate();
+        let compressed = compressed.map(|(cell, [_, smaller])| *smaller < limits[number(cell)]);
         let compressed: Vec<bool> = compressed.collect();
-        let bending = Bending::new(sheet.law);
+        let bending: Vec<Bending> = laws.all().iter().map(|law| Bending::new(&**law)).collect();
         let parts = Deformed::new(mesh, displacement, states).parts(&compressed);
         let mut worst = [0.0, f64::INFINITY];
         let mut exceeded = vec![false; states.len()];
@@ -65,7 +69,8 @@ impl Wrinkling {
             let Some(part) = part else { continue };
             let [_, smaller] = stresses[cell];
             let thickness = sheet.thickness * states[cell].stretches[2];
-            let critical = bending.critical_stress(part, thickness).max(0.0);
+            let critical = bending[number(cell)].critical_stress(part, thickness);
+            let critical = critical.max(0.0);
             exceeded[cell] = -smaller > CERTAIN * critical;
             if -smaller * worst[1] > worst[0] * critical {
                 worst = [-smaller, critical];

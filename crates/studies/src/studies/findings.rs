@@ -8,6 +8,7 @@ use super::specimen::forces;
 use super::specimen::problem::Specimen;
 use super::specimen::results::models::Models;
 use crate::mass_spring;
+use crate::material::Card;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
@@ -70,6 +71,26 @@ impl<'a> Examined<'a> {
         all.find(|model| !model.states.is_empty())
     }
 
+    /// What a rule finds in the cells of each card in the best model's mesh; of several cards, with the names of their regions.
+    fn of_cards(&self, rule: impl Fn(&Card, &[usize]) -> Option<Found>) -> Option<Found> {
+        let (mesh, specimen) = (self.best()?.mesh, self.specimen);
+        let regions = specimen.numbered_regions();
+        if regions.is_empty() {
+            let cells: Vec<usize> = (0..mesh.cell_count()).collect();
+            return rule(&specimen.card, &cells);
+        }
+        let laws = specimen.problem.laws().in_cells(mesh);
+        let found = regions.into_iter().filter_map(|(number, name, card)| {
+            let cells =
+                (0..mesh.cell_count()).filter(|cell| usize::from(laws.number(*cell)) == number);
+            let (message, remedy) = rule(card, &cells.collect::<Vec<_>>())?;
+            Some((format!("{name}: {message}"), remedy))
+        });
+        let (messages, remedies): (Vec<String>, Vec<String>) = found.unzip();
+        let remedy = remedies.into_iter().next()?;
+        Some((messages.join("; "), remedy))
+    }
+
     /// Its mesh and the study's problem, of equilibria.
     fn problem(&self) -> Option<(&'a BoundaryProblem, &'a Mesh)> {
         self.models?;
@@ -98,14 +119,15 @@ impl<'a> Examined<'a> {
 
 /// A lattice of another ν than the sheet's.
 fn lattice(examined: Examined) -> Option<Found> {
-    let law = &*examined.specimen.problem.law;
-    let told = match examined.specimen.grids() {
-        _ if !examined.has_springs => None,
-        Some(grids) if grids.lattice.area_term => None,
-        Some(_) => mass_spring::warning_of_plate(law),
-        None => mass_spring::warning(law),
-    };
-    told.map(alone)
+    examined.of_cards(|card, _| {
+        let told = match examined.specimen.grids() {
+            _ if !examined.has_springs => None,
+            Some(grids) if grids.lattice.area_term => None,
+            Some(_) => mass_spring::warning_of_plate(&*card.law),
+            None => mass_spring::warning(&*card.law),
+        };
+        told.map(alone)
+    })
 }
 
 /// Corrected field and finite elements whose cells lock.
@@ -132,15 +154,19 @@ fn locking_cells(examined: Examined) -> Option<Found> {
         [one] => format!("{one} is"),
         several => format!("{} are", several.join(" and ")),
     };
-    let reason = locking::reason(&*examined.specimen.problem.law)?;
-    Some((format!("{reason}: {models} too stiff"), remedies.join("; ")))
+    examined.of_cards(|card, _| {
+        let reason = locking::reason(&*card.law)?;
+        Some((format!("{reason}: {models} too stiff"), remedies.join("; ")))
+    })
 }
 
 /// A card that relaxes, of which equilibria have the long times alone.
 fn relaxation(examined: Examined) -> Option<Found> {
     examined.models?;
-    let told = examined.specimen.card.viscosity.left_out()?;
-    Some(alone(format!("{told}.")))
+    examined.of_cards(|card, _| {
+        let told = card.viscosity.left_out()?;
+        Some(alone(format!("{told}.")))
+    })
 }
 
 /// Loads that supports take up at once.
@@ -241,47 +267,51 @@ fn compression(examined: Examined) -> Option<Found> {
 
 /// The first state with strains or rotations that are too large for the law.
 fn large_strains(examined: Examined) -> Option<Found> {
-    let law = &*examined.specimen.problem.law;
-    let reason = |model: &ModelSeries, state: &ModelState| {
-        small_strain::reason(law, model.mesh, state.displacement)
-    };
-    let (reason, load) = examined.first(reason)?;
-    let remedy = small_strain::LARGE_STRAINS.to_owned();
-    Some((format!("{reason} at {load}"), remedy))
+    examined.of_cards(|card, cells| {
+        let reason = |model: &ModelSeries, state: &ModelState| {
+            small_strain::reason_in_cells(&*card.law, (model.mesh, cells), state.displacement)
+        };
+        let (reason, load) = examined.first(reason)?;
+        let remedy = small_strain::LARGE_STRAINS.to_owned();
+        Some((format!("{reason} at {load}"), remedy))
+    })
 }
 
 /// The worst stretches beyond the range of the card.
 fn beyond_card(examined: Examined) -> Option<Found> {
-    let (model, card) = (examined.best()?, &examined.specimen.card);
-    let states = model.states.iter();
-    let stretches = states.map(|state| {
-        let stretches = Stretches::new(card, model.mesh, state.displacement);
-        (state.at, stretches)
-    });
-    let (at, worst) = stretches.max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share))?;
-    let reason = worst.reason(card, &format!(" at {}", examined.load(at)))?;
-    Some(alone(format!("{reason}.")))
+    let model = examined.best()?;
+    examined.of_cards(|card, cells| {
+        let states = model.states.iter();
+        let stretches = states.map(|state| {
+            let stretches = Stretches::of_cells(card, (model.mesh, cells), state.displacement);
+            (state.at, stretches)
+        });
+        let (at, worst) = stretches.max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share))?;
+        let reason = worst.reason(card, &format!(" at {}", examined.load(at)))?;
+        Some(alone(format!("{reason}.")))
+    })
 }
 
 /// The first state whose material is not stable in the middle of some cell.
 fn unstable(examined: Examined) -> Option<Found> {
-    let card = &examined.specimen.card;
-    let unstable_cell = |model: &ModelSeries, state: &ModelState| {
-        let mesh = model.mesh;
-        let is_unstable = |cell: &usize| {
-            let centre = mesh.shape(*cell).centre();
-            let gradient = mesh.gradient_at(state.displacement, *cell, centre);
-            let kinematics = Kinematics::new(&Vector4::from(gradient));
-            !kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics))
+    examined.of_cards(|card, cells| {
+        let unstable_cell = |model: &ModelSeries, state: &ModelState| {
+            let mesh = model.mesh;
+            let is_unstable = |cell: &&usize| {
+                let centre = mesh.shape(**cell).centre();
+                let gradient = mesh.gradient_at(state.displacement, **cell, centre);
+                let kinematics = Kinematics::new(&Vector4::from(gradient));
+                !kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics))
+            };
+            let cell = cells.iter().find(is_unstable)?;
+            Some((mesh.describe_cell(*cell), model.style.name))
         };
-        let cell = (0..mesh.cell_count()).find(is_unstable)?;
-        Some((mesh.describe_cell(cell), model.style.name))
-    };
-    let ((cell, model), load) = examined.first(unstable_cell)?;
-    Some(alone(format!(
-        "the material of the card `{}` is not stable (Drucker) in {cell} of the {model} at {load}.",
-        card.name
-    )))
+        let ((cell, model), load) = examined.first(unstable_cell)?;
+        Some(alone(format!(
+            "the material of the card `{}` is not stable (Drucker) in {cell} of the {model} at {load}.",
+            card.name
+        )))
+    })
 }
 
 /// Forces or moments that do not balance.

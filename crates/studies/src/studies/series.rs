@@ -115,7 +115,7 @@ impl<'a> ModelSeries<'a> {
                 .collect(),
             state: LoadedSheet {
                 at,
-                law: &*specimen.problem.law,
+                laws: specimen.problem.laws(),
                 deformed,
                 // Supports were checked when the study was read.
                 singular: specimen
@@ -151,7 +151,7 @@ pub fn stress_figures(
     let deformed = series.iter().filter_map(|model| model.deformed(step));
     let deformed: Vec<_> = deformed.collect();
     let fields = &specimen.pictures.fields;
-    sheet_figures(fields, &*specimen.problem.law, &deformed, at, file)
+    sheet_figures(fields, specimen.problem.laws(), &deformed, at, file)
 }
 
 /// The gauge section of a strip or a dog-bone.

@@ -128,10 +128,9 @@ pub fn fields(
     factor: f64,
     progress: Progress,
 ) -> Result<ModelFields, Error> {
-    check_memory(
-        &*specimen.problem.law,
-        "a comparison with another program's field",
-    )?;
+    for law in specimen.problem.laws().all() {
+        check_memory(&**law, "a comparison with another program's field")?;
+    }
     let factors = &mut specimen.factors;
     factors.retain(|before| *before * factor > 0.0 && before.abs() < factor.abs());
     factors.push(factor);

@@ -218,6 +218,7 @@ impl Pull {
         let field = Field::new(amplitude);
         let sides = ["left", "right", "bottom", "top"];
         let problem = BoundaryProblem {
+            regions: Vec::new(),
             supports: sides.map(|side| (side.into(), Support::Roller)).into(),
             ..sheet()
         };

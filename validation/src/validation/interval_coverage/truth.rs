@@ -42,6 +42,7 @@ impl Truth {
         let problem = BoundaryProblem {
             thickness: plate.thickness,
             law: Arc::clone(&plate.law),
+            regions: Vec::new(),
             supports: vec![
                 ("left".into(), clamp(0.0)),
                 ("right".into(), clamp(stretch * (high[0] - low[0]))),

@@ -55,7 +55,7 @@ impl Variant {
             }
         };
         let lattice = fields.plate.lattice();
-        lattice.with_areas(&fields.plate.problem, |spring| spring.area * factor(spring))
+        lattice.with_areas(|spring| spring.area * factor(spring))
     }
 }
 

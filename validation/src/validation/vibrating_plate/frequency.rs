@@ -59,6 +59,7 @@ fn equivalent_length(model: &Model, held: &[bool]) -> Result<f64, Error> {
     let problem = BoundaryProblem {
         thickness: THICKNESS,
         law: law(),
+        regions: Vec::new(),
         supports: Vec::new(),
         loads: vec![("right".into(), Load::Traction([traction, 0.0]))],
     };

@@ -201,6 +201,7 @@ impl Sheet {
         BoundaryProblem {
             thickness: self.thickness,
             law: Arc::clone(&self.law),
+            regions: Vec::new(),
             supports: vec![
                 (Side::Left.name().to_owned(), clamp),
                 (Side::Right.name().to_owned(), moved),

@@ -138,6 +138,7 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
     let boundary = BoundaryProblem {
         thickness: 2.0,
         law,
+        regions: Vec::new(),
         supports: vec![
             ("left".into(), Support::Displacement([Some(0.0); 2])),
             (

@@ -45,6 +45,7 @@ impl Series {
         let problem = BoundaryProblem {
             thickness: THICKNESS,
             law: law.at(&law.start()),
+            regions: Vec::new(),
             supports: vec![
                 ("left".into(), Support::Displacement([Some(0.0); 2])),
                 ("right".into(), right),

@@ -39,6 +39,7 @@ pub(in super::super) fn solved(
     let problem = BoundaryProblem {
         thickness: THICKNESS,
         law: law(),
+        regions: Vec::new(),
         supports: vec![
             ("left".into(), Support::Displacement([Some(0.0); 2])),
             (group.into(), Support::Displacement(motion.map(Some))),

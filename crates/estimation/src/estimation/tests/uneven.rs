@@ -76,6 +76,7 @@ fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals(
     let problem = BoundaryProblem {
         thickness: THICKNESS,
         law: law(),
+        regions: Vec::new(),
         supports: ["left", "bottom", "top"].map(clamp).to_vec(),
         loads: vec![("right".into(), Load::Traction(traction))],
     };

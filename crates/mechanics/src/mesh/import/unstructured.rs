@@ -29,7 +29,7 @@ pub struct UnstructuredGrid {
 pub type Arrays = Vec<(String, Vec<f64>)>;
 
 impl UnstructuredGrid {
-    /// The faces and the named lines.
+    /// The faces, and the named lines and parts.
     pub fn raw(&self) -> Result<Raw, Unreadable> {
         let mut raw = Raw::default();
         for (name, place) in (0..).zip(self.points.chunks_exact(3)) {
@@ -41,13 +41,17 @@ impl UnstructuredGrid {
             if VERTICES.contains(kind) {
                 continue;
             }
+            let tag = groups.and_then(|(_, tags)| tags.get(index));
+            let group = tag.map(|tag| format!("physical-{tag}"));
             if LINES.contains(kind) {
-                let tag = groups.and_then(|(_, tags)| tags.get(index));
-                if let (Some(tag), [a, b, ..]) = (tag, &nodes[..]) {
-                    let group = format!("physical-{tag}");
+                if let (Some(group), [a, b, ..]) = (group, &nodes[..]) {
                     raw.lines.entry(group).or_default().push([*a, *b]);
                 }
                 continue;
+            }
+            // Gmsh's number of cells in no group.
+            if let Some(group) = group.filter(|_| tag != Some(&0.0)) {
+                raw.areas.entry(group).or_default().push(raw.cells.len());
             }
             raw.cells.push((shape(*kind, nodes.len())?, nodes.clone()));
         }

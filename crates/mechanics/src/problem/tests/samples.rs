@@ -29,6 +29,7 @@ pub fn problem(supports: &[(&str, Support)], loads: &[(&str, Load)]) -> Boundary
     BoundaryProblem {
         thickness: 2.0,
         law: Arc::new(NeoHooke { c10: 0.05 }),
+        regions: Vec::new(),
         supports: supports
             .iter()
             .map(|(group, support)| (owned(group), *support))

@@ -9,8 +9,8 @@
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
 
-use super::model::{Constraint, Model};
-use super::text::{ALL_NODES, FACTORS, FIBRES, MATERIAL, SPECIMEN, ascii, number};
+use super::model::{Constraint, Model, PartMaterial};
+use super::text::{ALL_NODES, FACTORS, SPECIMEN, ascii, number};
 use crate::material::{Card, Code, CodeLaw, Softening};
 use crate::mesh::CellShape;
 use crate::problem::Support;
@@ -25,9 +25,10 @@ impl Deck {
         self.0.push('\n');
     }
 
-    /// Entries, ten a line.
-    fn entries(&mut self, entries: &[String]) {
-        for line in entries.chunks(10) {
+    /// The numbers of nodes or cells, ten a line, counted from one.
+    fn numbers(&mut self, numbers: &[usize]) {
+        let numbers: Vec<String> = numbers.iter().map(|own| (own + 1).to_string()).collect();
+        for line in numbers.chunks(10) {
             self.line(&line.join(", "));
         }
     }
@@ -44,12 +45,15 @@ pub fn write(model: &Model) -> String {
     }
     mesh(model, &mut deck);
     ties(model, &mut deck);
-    material(model, &mut deck);
-    let orientation = orientation(&model.law, &mut deck);
-    deck.line(&format!(
-        "*SOLID SECTION, ELSET={SPECIMEN}, MATERIAL={MATERIAL}{orientation}"
-    ));
-    deck.line(&number(given.problem.thickness));
+    for own in &model.materials {
+        material(own, &mut deck);
+        let orientation = orientation(own, &mut deck);
+        deck.line(&format!(
+            "*SOLID SECTION, ELSET={}, MATERIAL={}{orientation}",
+            own.set, own.name
+        ));
+        deck.line(&number(given.problem.thickness));
+    }
     if is_one_step(model) {
         one_step(model, &mut deck);
         return deck.0;
@@ -112,14 +116,13 @@ fn mesh(model: &Model, deck: &mut Deck) {
             deck.line(&format!("{}, {}", cell + 1, nodes.join(", ")));
         }
     }
+    for own in model.materials.iter().filter(|own| own.set != SPECIMEN) {
+        deck.line(&format!("*ELSET, ELSET={}", own.set));
+        deck.numbers(&own.cells);
+    }
     for (name, nodes) in model.sets.iter().filter(|(_, nodes)| !nodes.is_empty()) {
         deck.line(&format!("*NSET, NSET={name}"));
-        deck.entries(
-            &nodes
-                .iter()
-                .map(|node| (node + 1).to_string())
-                .collect::<Vec<_>>(),
-        );
+        deck.numbers(nodes);
     }
     for (name, sides) in &model.surfaces {
         deck.line(&format!("*SURFACE, NAME={name}, TYPE=ELEMENT"));
@@ -248,16 +251,17 @@ fn output(model: &Model, deck: &mut Deck) {
     }
 }
 
-/// Names the directions of fibres and returns what the section says about them.
-fn orientation(law: &CodeLaw, deck: &mut Deck) -> String {
-    let CodeLaw::Named { directions, .. } = law else {
+/// Names the directions of a material's fibres and returns what the section says about them.
+fn orientation(material: &PartMaterial, deck: &mut Deck) -> String {
+    let CodeLaw::Named { directions, .. } = &material.law else {
         return String::new();
     };
     if directions.is_empty() {
         return String::new();
     }
     deck.line(&format!(
-        "*ORIENTATION, NAME={FIBRES}, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={}",
+        "*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={}",
+        material.axes,
         directions.len()
     ));
     deck.line("1., 0., 0., 0., 1., 0.");
@@ -265,13 +269,13 @@ fn orientation(law: &CodeLaw, deck: &mut Deck) -> String {
     for [x, y] in directions {
         deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
     }
-    format!(", ORIENTATION={FIBRES}")
+    format!(", ORIENTATION={}", material.axes)
 }
 
-/// The material's keyword and data.
-fn material(model: &Model, deck: &mut Deck) {
-    deck.line(&format!("*MATERIAL, NAME={MATERIAL}"));
-    match &model.law {
+/// The keyword and data of a material.
+fn material(material: &PartMaterial, deck: &mut Deck) {
+    deck.line(&format!("*MATERIAL, NAME={}", material.name));
+    match &material.law {
         CodeLaw::Named {
             keyword,
             parameters,
@@ -291,12 +295,12 @@ fn material(model: &Model, deck: &mut Deck) {
         CodeLaw::TensionCurve => {
             deck.line("*HYPERELASTIC, MARLOW");
             deck.line("*UNIAXIAL TEST DATA");
-            for [strain, stress] in tension_curve(model.given.card) {
+            for [strain, stress] in tension_curve(material.card) {
                 deck.line(&format!("{}, {}", number(stress), number(strain)));
             }
         }
     }
-    if let Some(Softening { r, m, beta }) = model.given.card.law.softening() {
+    if let Some(Softening { r, m, beta }) = material.card.law.softening() {
         deck.line("*MULLINS EFFECT");
         deck.line(&[r, m, beta].map(number).join(", "));
     }

@@ -9,7 +9,7 @@
 
 use std::collections::BTreeSet;
 
-use super::model::{Constraint, Model};
+use super::model::{Constraint, Model, PartMaterial};
 use super::text::{FORCE, MID_PLANE, TURNED, ascii, number};
 use crate::material::CodeLaw;
 use crate::mesh::CellShape;
@@ -32,7 +32,7 @@ pub fn write(model: &Model) -> String {
     }
     file.open("febio_spec", &[("version", "4.0")]);
     file.empty("Module", &[("type", "solid")]);
-    material(model, &mut file);
+    materials(model, &mut file);
     mesh(model, &columns, &mut file);
     let mut curves = Curves::default();
     boundary(model, &columns, &mut curves, &mut file);
@@ -53,20 +53,29 @@ pub fn write(model: &Model) -> String {
     file.finish()
 }
 
+/// All materials.
+fn materials(model: &Model, file: &mut Xml) {
+    file.open("Material", &[]);
+    for (own, id) in model.materials.iter().zip(1..) {
+        material(own, id, file);
+    }
+    file.close("Material");
+}
+
 /// The law with its parameters, and axes of which the first lies along its direction where it has one.
-fn material(model: &Model, file: &mut Xml) {
+fn material(material: &PartMaterial, id: usize, file: &mut Xml) {
     let CodeLaw::Named {
         keyword,
         parameters,
         directions,
-    } = &model.law
+    } = &material.law
     else {
         unreachable!("FEBio has no law of a tension curve");
     };
-    file.open("Material", &[]);
+    let (id, name) = (id.to_string(), material.name.to_lowercase());
     file.open(
         "material",
-        &[("id", "1"), ("name", "material_1"), ("type", keyword)],
+        &[("id", &id), ("name", &name), ("type", keyword)],
     );
     for (name, value) in parameters {
         file.text(name, &[], &number(*value));
@@ -78,7 +87,6 @@ fn material(model: &Model, file: &mut Xml) {
         file.close("mat_axis");
     }
     file.close("material");
-    file.close("Material");
 }
 
 fn solid_name(shape: CellShape) -> &'static str {
@@ -99,6 +107,34 @@ fn list(numbers: impl IntoIterator<Item = usize>) -> String {
     numbers.join(",")
 }
 
+/// Cells of one kind and one material.
+struct Domain {
+    name: String,
+    shape: CellShape,
+    material: String,
+    cells: Vec<usize>,
+}
+
+fn domains(model: &Model) -> Vec<Domain> {
+    let domain = |own: &PartMaterial, shape: CellShape| {
+        let cells = own.cells.iter().copied();
+        let cells: Vec<usize> = cells.filter(|cell| model.cells[*cell].0 == shape).collect();
+        let kind = solid_name(shape);
+        (!cells.is_empty()).then(|| Domain {
+            name: match model.materials.len() {
+                1 => kind.to_owned(),
+                _ => format!("{kind}_{}", own.set),
+            },
+            shape,
+            material: own.name.to_lowercase(),
+            cells,
+        })
+    };
+    let of_material = |own| CellShape::NAMES.map(|(_, shape)| domain(own, shape));
+    let all = model.materials.iter().flat_map(of_material);
+    all.flatten().collect()
+}
+
 fn mesh(model: &Model, columns: &Columns, file: &mut Xml) {
     let half = model.given.problem.thickness / 2.0;
     file.open("Mesh", &[]);
@@ -111,30 +147,21 @@ fn mesh(model: &Model, columns: &Columns, file: &mut Xml) {
         }
     }
     file.close("Nodes");
-    let shapes = CellShape::NAMES.map(|(_, shape)| shape);
-    let shapes: Vec<_> = shapes
-        .into_iter()
-        .filter(|shape| model.cells.iter().any(|(own, _)| own == shape))
-        .collect();
-    for shape in &shapes {
-        let kind = solid_name(*shape);
-        file.open("Elements", &[("type", kind), ("name", kind)]);
-        for (cell, (own, nodes)) in model.cells.iter().enumerate() {
-            if own == shape {
-                let id = (cell + 1).to_string();
-                file.text("elem", &[("id", &id)], &list(columns.solid(*shape, nodes)));
-            }
+    let domains = domains(model);
+    for domain in &domains {
+        let kind = solid_name(domain.shape);
+        file.open("Elements", &[("type", kind), ("name", &domain.name)]);
+        for cell in &domain.cells {
+            let (id, (shape, nodes)) = ((cell + 1).to_string(), model.cells[*cell]);
+            file.text("elem", &[("id", &id)], &list(columns.solid(shape, nodes)));
         }
         file.close("Elements");
     }
     sets(model, columns, file);
     file.close("Mesh");
     file.open("MeshDomains", &[]);
-    for shape in shapes {
-        file.empty(
-            "SolidDomain",
-            &[("name", solid_name(shape)), ("mat", "material_1")],
-        );
+    for Domain { name, material, .. } in &domains {
+        file.empty("SolidDomain", &[("name", name), ("mat", material)]);
     }
     file.close("MeshDomains");
 }

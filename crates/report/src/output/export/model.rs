@@ -8,7 +8,10 @@ use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Drive, LONGEST_TURN, Load, Support};
 
+mod materials;
 mod remarks;
+
+pub use materials::PartMaterial;
 
 /// What is exported.
 #[derive(Clone, Copy)]
@@ -17,8 +20,10 @@ pub struct Export<'a> {
     pub title: &'a str,
     /// Thickness, supports and loads.
     pub problem: &'a BoundaryProblem,
-    /// The material.
+    /// The card of all cells that belong to no region.
     pub card: &'a Card,
+    /// The cards of the problem's regions, with their names.
+    pub regions: &'a [(String, Card)],
     /// The finite elements.
     pub mesh: &'a Mesh,
     /// Load factors, ascending.
@@ -29,38 +34,38 @@ pub struct Export<'a> {
 
 impl Export<'_> {
     /// The bulk modulus in MPa that stands for incompressibility; infinite where the code has incompressible sheets.
-    fn bulk_modulus(&self, code: Code) -> f64 {
+    fn bulk_modulus(&self, code: Code, card: &Card) -> f64 {
         match code {
             Code::Abaqus => f64::INFINITY,
-            _ => self.bulk_ratio * self.card.law.shear_modulus(),
+            _ => self.bulk_ratio * card.law.shear_modulus(),
         }
     }
 
-    fn law(&self, code: Code) -> Result<CodeLaw, Diagnostic> {
-        if self.card.bulk_modulus().is_some() {
+    fn law(&self, code: Code, card: &Card) -> Result<CodeLaw, Diagnostic> {
+        if card.bulk_modulus().is_some() {
             let message = format!(
                 "the card `{}` is compressible; only incompressible sheets can be exported",
-                self.card.name
+                card.name
             );
-            let hint = match self.card.volume {
+            let hint = match card.volume {
                 Some(_) => "leave out the card's `[volume]`",
                 None => "take a card whose law is incompressible",
             };
             return Err(Diagnostic::error("", message).hint(hint));
         }
-        if self.card.law.softening().is_some() && code != Code::Abaqus {
+        if card.law.softening().is_some() && code != Code::Abaqus {
             let message = format!(
                 "{} has no softening equivalent to that of the card `{}`",
                 code.name(),
-                self.card.name
+                card.name
             );
             let hint = "export to Abaqus, which has it (*MULLINS EFFECT), or leave out the card's `[softening]`";
             return Err(Diagnostic::error("", message).hint(hint));
         }
-        let law = self.card.law.in_code(code, self.bulk_modulus(code));
+        let law = card.law.in_code(code, self.bulk_modulus(code, card));
         let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);
         known.ok_or_else(|| {
-            let (name, card) = (code.name(), self.card);
+            let name = code.name();
             let message = format!("{name} has no law equivalent to `{}` of the card `{}`", card.law_name, card.name);
             Diagnostic::error("", message).hint(format!(
                 "it has {}; fit such a card to the same data, as with `gelbench materials fit DATA.csv --law ogden-2`",
@@ -74,7 +79,8 @@ impl Export<'_> {
 pub struct Model<'a> {
     pub given: &'a Export<'a>,
     pub code: Code,
-    pub law: CodeLaw,
+    /// The materials of the cells.
+    pub materials: Vec<PartMaterial<'a>>,
     /// Kind and nodes of the cells; those in the middle of quadrilaterals only where the code knows them.
     pub cells: Vec<(CellShape, &'a [usize])>,
     /// The nodes of the cells, ascending.
@@ -188,7 +194,7 @@ impl<'a> Model<'a> {
         let mut model = Self {
             given,
             code,
-            law: given.law(code)?,
+            materials: PartMaterial::all(given, code, &mut names)?,
             cells,
             nodes: nodes.into_iter().collect(),
             sets,

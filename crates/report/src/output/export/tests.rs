@@ -15,6 +15,7 @@ fn problem(card: &Card) -> BoundaryProblem {
     BoundaryProblem {
         thickness: 2.0,
         law: card.law.clone(),
+        regions: Vec::new(),
         supports: vec![
             ("left".into(), displacement(Some(0.0), Some(0.0))),
             (
@@ -38,6 +39,7 @@ fn written(card: &Card, code: Code, shape: CellShape) -> Result<InputFile, Error
         title: "strip",
         problem: &problem(card),
         card,
+        regions: &[],
         mesh: &mesh,
         factors: &[0.5, 1.0],
         bulk_ratio: 1000.0,
@@ -80,6 +82,7 @@ fn supports_loads_and_steps_are_those_of_the_study() {
         title: "Zwei Zellen, μ",
         problem: &problem(&card),
         card: &card,
+        regions: &[],
         mesh: &mesh,
         factors: &[0.5, 1.0],
         bulk_ratio: 100.0,
@@ -130,6 +133,7 @@ fn linear_displacements_go_out_with_the_value_of_every_node() {
         title: "strip",
         problem: &problem,
         card: &card,
+        regions: &[],
         mesh: &mesh,
         factors: &[1.0],
         bulk_ratio: 100.0,
@@ -162,6 +166,7 @@ fn what_grows_with_the_load_factor_goes_out_in_one_step_to_calculix() {
         title: "strip",
         problem: &problem,
         card: &card,
+        regions: &[],
         mesh: &mesh,
         factors,
         bulk_ratio: 100.0,
@@ -202,6 +207,7 @@ fn turns_go_out_in_steps() {
         title: "strip",
         problem: &turned,
         card: &card,
+        regions: &[],
         mesh: &mesh,
         factors: &[0.5, 1.0],
         bulk_ratio: 1000.0,

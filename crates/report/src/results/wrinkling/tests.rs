@@ -1,17 +1,17 @@
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use super::*;
 use crate::finite_element::{Element, FiniteElements};
-use crate::material::NeoHooke;
+use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::CellShape;
 use crate::problem::ClampedPlate;
 use gelbench_mechanics::solve::NewtonSettings;
 
-const LAW: NeoHooke = NeoHooke { c10: 0.05 };
+static LAW: LazyLock<Arc<dyn HyperelasticLaw>> = LazyLock::new(|| Arc::new(NeoHooke { c10: 0.05 }));
 
 fn sheet(thickness: f64) -> Sheet<'static> {
     Sheet {
-        law: &LAW,
+        laws: (&*LAW).into(),
         thickness,
         past: &[],
         viscous: None,
@@ -83,7 +83,7 @@ fn clamped(aspect: f64, strains: &[f64]) -> (Mesh, Vec<Vec<f64>>) {
     let plate = ClampedPlate {
         size: [aspect, 1.0],
         thickness: 1.0,
-        law: Arc::new(LAW),
+        law: Arc::clone(&LAW),
         stretches: strains.to_vec(),
     };
     let elements = FiniteElements::new(&plate, [(12.0 * aspect) as usize, 12], Element::Q2);

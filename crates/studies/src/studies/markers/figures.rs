@@ -31,7 +31,7 @@ pub fn figures(
     let mut all = vec![pictures.along(0), pictures.along(1)];
     all.extend(sheet_figures(
         sheet,
-        &*law,
+        (&law).into(),
         &deformed,
         &pictures.label,
         &file,

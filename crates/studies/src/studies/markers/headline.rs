@@ -32,7 +32,7 @@ pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> 
     let law = study.law(last);
     let sheet = LoadedSheet {
         at: format!("frame {}", frame.number),
-        law: &*law,
+        laws: (&law).into(),
         deformed: Deformed::elastic("corrected", &study.mesh, vec![&last.displacement]),
         singular: singular_points(&study.mesh, &fixed_nodes(last)),
         gauge: None,

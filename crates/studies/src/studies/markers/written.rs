@@ -158,7 +158,7 @@ fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
 
 fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     let law = field.law(estimate);
-    let sheet = Sheet::elastic(&*law, field.thickness);
+    let sheet = Sheet::elastic((&law).into(), field.thickness);
     let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
     let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([
         nodal("reaction_N", &estimate.reactions),

@@ -79,6 +79,7 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
         name: "plate".into(),
         problem: problem.boundary_problem(),
         card,
+        regions: Vec::new(),
         along: Along::Stretch,
         factors: problem.stretches,
         models,

@@ -74,10 +74,25 @@ pub fn figures(
         );
         Some(figure("estimated_error", caption, drawing.into()))
     }));
-    let caption = "The material: nominal stress over stretch.".to_owned();
-    let material = material_chart(&specimen.card);
-    figures.push(figure("material", caption, material.into()));
+    figures.push(materials(specimen, &figure));
     figures
+}
+
+/// The curves of the card, or of the card of each region.
+fn materials(specimen: &Specimen, figure: &dyn Fn(&str, String, Drawing) -> Figure) -> Figure {
+    let regions = specimen.numbered_regions().into_iter();
+    let charts = regions.map(|(_, name, card)| {
+        let mut chart = material_chart(card);
+        chart.title = format!("{name}: {}", chart.title);
+        (chart, 400)
+    });
+    let charts: Vec<_> = charts.collect();
+    if charts.is_empty() {
+        let caption = "The material: nominal stress over stretch.".to_owned();
+        return figure("material", caption, material_chart(&specimen.card).into());
+    }
+    let caption = "The materials of the regions: nominal stress over stretch.".to_owned();
+    figure("material", caption, Drawing::Charts(charts))
 }
 
 /// The fields of all models at one load factor: displacement, stresses and strains, distance to the finite elements.

@@ -11,7 +11,7 @@ use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance, checks, deviations};
 use super::{forces, history, statement, work};
 use crate::problem::Solution;
-use crate::results::{Block, Material, Outcome, Step, Table, object, or_dash, pictures};
+use crate::results::{Block, Outcome, Step, Table, object, or_dash, pictures};
 use crate::studies::ModelKind;
 use crate::studies::findings::{Examined, findings};
 use crate::units::{decimals, number};
@@ -31,7 +31,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         style: specimen.pictures.style.clone(),
         checks: checks(specimen, models, &judged),
         problem: statement::json(specimen),
-        material: Some(Material::from(&specimen.card)),
+        material: Some(statement::material(specimen)),
         along: specimen.along.name(),
         steps: deviations.iter().enumerate().map(quantities).collect(),
         figures: figures(specimen, models, &deviations),

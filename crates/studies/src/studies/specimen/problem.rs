@@ -75,8 +75,10 @@ pub struct Specimen {
     pub name: String,
     /// Thickness, material, supports and loads.
     pub problem: BoundaryProblem,
-    /// The card of its material.
+    /// The card of its material; of several that of the cells that belong to no region.
     pub card: Card,
+    /// The cards of the problem's regions, with their names.
+    pub regions: Vec<(String, Card)>,
     /// What its path is numbered by.
     pub along: Along,
     /// Load factors, ascending unless the material has a memory.
@@ -124,6 +126,7 @@ impl Specimen {
             name: name.into(),
             problem,
             card,
+            regions: Vec::new(),
             along: Along::LoadFactor,
             factors: vec![1.0],
             models: ModelKind::ALL.to_vec(),
@@ -163,7 +166,7 @@ impl Specimen {
 
     /// Whether a corrected field with so many unknowns comes from nested meshes.
     pub fn is_nested(&self, unknowns: usize) -> bool {
-        let able = self.outline.is_shape() && self.problem.law.softening().is_none();
+        let able = self.outline.is_shape() && !self.problem.laws().soften();
         able && match self.correction {
             Method::Automatic => unknowns >= LARGE,
             Method::Nested => true,
@@ -175,13 +178,43 @@ impl Specimen {
     pub fn describe(&self) -> String {
         let models: Vec<&str> = self.models.iter().map(|kind| kind.style().name).collect();
         format!(
-            "{}, {} mm thick, of the card {}; {}; {}",
+            "{}, {} mm thick, of the {}; {}; {}",
             self.outline.describe(),
             self.problem.thickness,
-            self.card.name,
+            self.describe_cards(),
             self.along.list(self.factors.iter().copied()),
             models.join(", ")
         )
+    }
+
+    /// The cards of all laws, in the order of the problem's laws.
+    pub fn cards(&self) -> Vec<&Card> {
+        let regions = self.regions.iter().map(|(_, card)| card);
+        std::iter::once(&self.card).chain(regions).collect()
+    }
+
+    /// The regions that have cells, each with its number, its name and its card; empty where all cells have one card.
+    pub fn numbered_regions(&self) -> Vec<(usize, &str, &Card)> {
+        if self.regions.is_empty() {
+            return Vec::new();
+        }
+        let mesh = self.outline.coarse();
+        let laws = self.problem.laws().in_cells(&mesh);
+        let has_rest = (0..mesh.cell_count()).any(|cell| laws.number(cell) == 0);
+        let rest = has_rest.then_some((0, "the remaining cells", &self.card));
+        let regions = self.regions.iter().zip(1..);
+        let regions = regions.map(|((name, card), number)| (number, &**name, card));
+        rest.into_iter().chain(regions).collect()
+    }
+
+    /// The card, or the cards with their regions, in words.
+    fn describe_cards(&self) -> String {
+        let regions = self.numbered_regions().into_iter();
+        let regions = regions.map(|(_, name, card)| format!("{} on {name}", card.name));
+        match &regions.collect::<Vec<_>>()[..] {
+            [] => format!("card {}", self.card.name),
+            several => format!("cards {}", several.join(", ")),
+        }
     }
 
     /// How often a computation reports progress: three meshes, springs and corrected field at every load factor.
@@ -203,7 +236,7 @@ impl Specimen {
 
     /// What stresses follow from.
     pub fn sheet(&self) -> Sheet<'_> {
-        Sheet::elastic(&*self.problem.law, self.problem.thickness)
+        Sheet::elastic(self.problem.laws(), self.problem.thickness)
     }
 
     /// The plate's grids, where the specimen is one.
@@ -236,8 +269,8 @@ impl Specimen {
         match self.plate() {
             Some((plate, grids)) => MassSpring::new(&plate, grids.cells, grids.lattice),
             None => {
-                let BoundaryProblem { law, thickness, .. } = &self.problem;
-                MassSpring::on_mesh(law, *thickness, self.outline.lattice())
+                let BoundaryProblem { thickness, .. } = self.problem;
+                MassSpring::on_mesh(self.problem.laws(), thickness, self.outline.lattice())
             }
         }
     }

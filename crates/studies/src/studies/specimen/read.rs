@@ -11,14 +11,16 @@ use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
-use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
+use crate::studies::regions::divided;
 use crate::studies::sections::{Tolerances, check_thickness, read_models, refuse_memory};
 use crate::units::Dimension;
 
+mod materials;
 mod outline;
 mod supports;
 
+use materials::{Cards, Materials};
 use outline::{Import, SHAPES, read_outline};
 use supports::SupportsAndLoads;
 
@@ -41,10 +43,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
 
 /// The same where `import` reads the mesh.
 pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Specimen> {
-    let material = root.section("material").requiring(&["card"]);
-    let card = read_card(&material, folder);
-    material.unknown_keys();
-
+    let materials = Materials::read(root, folder);
     let section = root.section("finite_element");
     let element = section.choice("element", &CellShape::NAMES);
     let linear_solver = section.choice("method", &LinearSolver::NAMES);
@@ -53,9 +52,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let correction = read_correction(&root.section("corrector"));
     let sheet = StatedSheet::read(root, import, element);
 
-    let remembers = card
-        .as_ref()
-        .is_some_and(|card| card.law.softening().is_some());
+    let remembers = materials.soften();
     let path = root
         .section("path")
         .requiring(&["factors", "measured_group"]);
@@ -69,7 +66,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         &factors,
     );
     let states = (factors.len(), refinement);
-    let specimen = sheet.specimen(root, card?, (&path, &group), states)?;
+    let specimen = sheet.specimen(root, materials, (&path, &group), states)?;
     let specimen = Specimen {
         factors,
         models,
@@ -101,7 +98,8 @@ pub fn read_moving(
     let sheet = StatedSheet::read(root, &of_file, element);
     let group = path.text("measured_group");
     sheet.given.check_in_time();
-    let specimen = sheet.specimen(root, card?.clone(), (path, &group), (1, None))?;
+    let materials = Materials::of(card?.clone(), root);
+    let specimen = sheet.specimen(root, materials, (path, &group), (1, None))?;
     let ties = specimen.problem.ties(&specimen.outline.coarse());
     if ties.is_ok_and(|ties| !ties.is_empty()) {
         let message = "a line that is parallel to no axis holds the sheet, and in a motion rollers slide along x or y";
@@ -137,11 +135,11 @@ impl<'a> StatedSheet<'a> {
         }
     }
 
-    /// The specimen of a card with a measured group of a section, for so many states, or local refinement.
+    /// The specimen of some cards with a measured group of a section, for so many states, or local refinement.
     fn specimen(
         self,
         root: &Section,
-        card: Card,
+        materials: Materials,
         (path, group): (&Section, &str),
         (states, refinement): (usize, Option<Refinement>),
     ) -> Option<Specimen> {
@@ -159,14 +157,21 @@ impl<'a> StatedSheet<'a> {
         check_elements(root, &outline, &mesh);
         given.check_groups(&mesh);
         check_measured(path, group, &mesh);
+        let Cards { card, regions } = materials.on(root, &outline, &mesh)?;
+        let laws = regions.iter();
+        let laws = laws.map(|(region, card)| (region.clone(), Arc::clone(&card.law)));
         let problem = BoundaryProblem {
             thickness,
             law: Arc::clone(&card.law),
+            regions: laws.collect(),
             supports: given.supports(),
             loads: given.loads(),
         };
         let name = name.replace('-', "_");
-        let specimen = Specimen::of(&name, card, problem, outline, group);
+        let specimen = Specimen {
+            regions,
+            ..Specimen::of(&name, card, problem, outline, group)
+        };
         let [low, high] = mesh.bounding_box();
         let size = [0, 1].map(|axis| high[axis] - low[axis]);
         check_thickness(&section, thickness, size, Some(&specimen.card));
@@ -224,28 +229,23 @@ fn check_nested(root: &Section, specimen: &Specimen) {
         let message = "the mesh of a file has no coarser meshes of the same shape";
         section.fault("method", message, "leave `method` out, or write \"direct\"");
     }
-    if specimen.problem.law.softening().is_some() {
+    if specimen.problem.laws().soften() {
         refuse_memory(&section, "nested correction");
     }
 }
 
-/// Warns of a file whose cells are divided into parts, as for several materials: all have the study's one.
+/// Warns of a file whose cells are divided into parts, as for several materials: all have the study's one where it states no other.
 fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
-    let parts = mesh.groups().iter().filter(|(_, group)| {
-        let cells = group.cells.len();
-        cells > 0 && cells < mesh.cell_count()
-    });
-    let (names, cells): (Vec<String>, Vec<usize>) = parts
-        .map(|(name, group)| (format!("`{name}`"), group.cells.len()))
-        .unzip();
-    let divided = cells.iter().sum::<usize>() == mesh.cell_count();
-    if matches!(specimen.outline, Outline::File { .. }) && divided {
+    let is_file = matches!(specimen.outline, Outline::File { .. });
+    let parts = divided(mesh).filter(|_| is_file && specimen.regions.is_empty());
+    if let Some(parts) = parts {
         let message = format!(
-            "the cells of the file are divided into {}: all of them get the card `{}`",
-            names.join(", "),
+            "the cells of the file are divided into {parts}: all of them get the card `{}`",
             specimen.card.name
         );
-        section.warning("file", &message, "a specimen has one material");
+        let hint =
+            "write a [[material]] for each, with `on` and its name, if their materials differ";
+        section.warning("file", &message, hint);
     }
 }
 
@@ -370,7 +370,7 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
 /// A force on nodes without edges is another one on a mesh that is refined locally, and a material that softens has no error estimate to
 /// refine by.
 fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
-    if specimen.refinement.is_some() && specimen.problem.law.softening().is_some() {
+    if specimen.refinement.is_some() && specimen.problem.laws().soften() {
         let message = "this card softens, and the error estimate that refines the mesh has no memory of the largest load";
         let hint = "leave out `adaptive`, or the card's `[softening]`";
         root.section("finite_element")

@@ -3,8 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::problem::{PlateGrids, Specimen};
+use crate::material::Card;
 use crate::problem::{Drive, Load, Support};
-use crate::results::{Block, object};
+use crate::results::{Block, Material, object};
 use crate::units::Linear;
 
 /// The specimen, its supports and loads.
@@ -18,12 +19,11 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
         .map(|(group, own)| row(group, load_words(own)))
         .collect();
     let text = format!(
-        "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. Displacements, rotations, forces, tractions and pressures below are those at \
+        "The specimen is {}, {} mm thick at rest, of {}. Displacements, rotations, forces, tractions and pressures below are those at \
          {} and are proportional to it; the path is {}.",
         specimen.outline.describe(),
         problem.thickness,
-        specimen.card.describe_sheet(),
-        specimen.card.name,
+        material_words(specimen),
         specimen.along.describe(1.0),
         specimen.along.list(specimen.factors.iter().copied()),
     );
@@ -40,6 +40,25 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
         Block::table(&["loaded group", "load"], loads)
     });
     blocks
+}
+
+/// The material, or those of all regions.
+pub fn material(specimen: &Specimen) -> Material {
+    match &specimen.numbered_regions()[..] {
+        [] => Material::from(&specimen.card),
+        regions => Material::of_regions(regions),
+    }
+}
+
+/// The same in a sentence.
+fn material_words(specimen: &Specimen) -> String {
+    let words = |card: &Card| format!("{}: the card `{}`", card.describe_sheet(), card.name);
+    let regions = specimen.numbered_regions().into_iter();
+    let regions = regions.map(|(_, name, card)| format!("{}, on {name}", words(card)));
+    match &regions.collect::<Vec<_>>()[..] {
+        [] => words(&specimen.card),
+        several => format!("several materials ({})", several.join("; ")),
+    }
 }
 
 /// The same for machines.

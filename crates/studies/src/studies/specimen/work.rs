@@ -6,7 +6,7 @@ use crate::results::{Block, work_blocks};
 
 /// A table of all models at all load factors; nothing where the material has no memory.
 pub fn blocks(specimen: &Specimen, models: &Models) -> Vec<Block> {
-    if specimen.problem.law.softening().is_none() {
+    if !specimen.problem.laws().soften() {
         return Vec::new();
     }
     let all = models.all();

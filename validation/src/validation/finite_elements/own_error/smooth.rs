@@ -42,7 +42,7 @@ pub fn checks(name: &str, shape: CellShape, cells: usize) -> Result<[Check; 2], 
 pub fn on<T>(mesh: &Mesh, displacement: &[f64], call: impl FnOnce(&SheetSolution) -> T) -> T {
     let problem = sheet();
     call(&SheetSolution {
-        law: &*problem.law,
+        laws: &problem.laws().in_cells(mesh),
         thickness: problem.thickness,
         mesh,
         displacement,

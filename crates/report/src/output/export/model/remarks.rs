@@ -1,6 +1,6 @@
 //! Where a file differs from the study, and what stands at its head.
 
-use super::Model;
+use super::{Model, PartMaterial};
 use crate::material::{Code, CodeLaw};
 use crate::mesh::CellShape;
 use crate::output::export::text::{ascii, number};
@@ -14,7 +14,7 @@ impl Model<'_> {
     /// Where the file differs from the study, in ASCII.
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
-        let (card, code) = (self.given.card, self.code.name());
+        let code = self.code.name();
         let shapes = |shape| self.cells.iter().any(|(own, _)| *own == shape);
         let nine = (0..self.given.mesh.cell_count())
             .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
@@ -27,10 +27,14 @@ impl Model<'_> {
         if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
             remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
         }
-        if self.code != Code::Abaqus {
+        for own in self.materials.iter().filter(|_| self.code != Code::Abaqus) {
+            let of = match self.materials.len() {
+                1 => String::new(),
+                _ => format!(" of the card `{}`", own.card.name),
+            };
             remarks.push(format!(
-                "{code} has no incompressible sheet: the bulk modulus is {} MPa, {} times the initial shear modulus",
-                number(self.given.bulk_modulus(self.code)),
+                "{code} has no incompressible sheet: the bulk modulus{of} is {} MPa, {} times the initial shear modulus",
+                number(self.given.bulk_modulus(self.code, own.card)),
                 self.given.bulk_ratio
             ));
         }
@@ -52,13 +56,15 @@ impl Model<'_> {
                     .into(),
             );
         }
-        if !card.viscosity.is_none() {
+        let mut materials = self.materials.iter();
+        if materials.any(|own| !own.card.viscosity.is_none()) {
             remarks.push(
                 "the card's [viscosity] is left out: the file contains the long-term law only"
                     .into(),
             );
         }
-        if self.law == CodeLaw::TensionCurve {
+        let mut materials = self.materials.iter();
+        if materials.any(|own| own.law == CodeLaw::TensionCurve) {
             remarks.push("the law depends on the first invariant alone and is exported as Marlow's law with points of its tension curve".into());
         }
         remarks
@@ -66,12 +72,18 @@ impl Model<'_> {
 
     /// The lines at the head of every file.
     pub fn head(&self) -> Vec<String> {
-        let card = self.given.card;
         let mut lines = vec![
             format!("written by gelbench {}", env!("CARGO_PKG_VERSION")),
             format!("units: mm, N, MPa = N/mm^2, mJ; {}", self.time()),
-            format!("material: card {}, law {}", card.name, card.law_name),
         ];
+        for PartMaterial { card, set, .. } in &self.materials {
+            let of = match self.materials.len() {
+                1 => String::new(),
+                _ => format!(" of {set}"),
+            };
+            let (name, law) = (&card.name, &card.law_name);
+            lines.push(format!("material{of}: card {name}, law {law}"));
+        }
         let sets = self.sets.iter().map(|(set, _)| set);
         let groups = self.groups.iter().zip(sets);
         let renamed = groups.filter(|(group, set)| group.to_ascii_uppercase() != **set);

@@ -57,6 +57,7 @@ fn pulled(card: &Card, supports: Vec<(String, Support)>) -> BoundaryProblem {
     BoundaryProblem {
         thickness: 2.0,
         law: Arc::clone(&card.law),
+        regions: Vec::new(),
         supports,
         loads: Vec::new(),
     }

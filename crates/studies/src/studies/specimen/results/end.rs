@@ -44,13 +44,11 @@ impl End {
                 groups: model.reactions(state).at_groups(&specimen.groups()),
                 state: state.clone(),
                 between: end.last.is_some(),
-                past: match specimen.problem.law.softening() {
-                    Some(_) => end
-                        .states
-                        .iter()
-                        .map(|state| state.displacement.clone())
-                        .collect(),
-                    None => Vec::new(),
+                past: if specimen.problem.laws().soften() {
+                    let states = end.states.iter();
+                    states.map(|state| state.displacement.clone()).collect()
+                } else {
+                    Vec::new()
                 },
             }),
         }

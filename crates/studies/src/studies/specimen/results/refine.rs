@@ -330,7 +330,7 @@ fn estimates(
     solution: &Solution,
     measured: &Measured,
 ) -> Result<Vec<Option<ErrorEstimate>>, Error> {
-    if specimen.problem.law.softening().is_some() {
+    if specimen.problem.laws().soften() {
         // Recovery knows no history.
         return Ok(vec![None; solution.reached()]);
     }
@@ -339,19 +339,29 @@ fn estimates(
     let model = specimen
         .on(mesh, &energy)?
         .solved_by(specimen.linear_solver);
-    let recovery = Recovery::new(mesh);
+    let laws = specimen.problem.laws().in_cells(mesh);
+    // Between regions gradients jump: they are recovered on either side alone.
+    let cut = laws.cut(mesh);
+    let recovery = Recovery::new(cut.as_ref().map_or(mesh, |cut| &cut.mesh));
+    let on_sides = |field: &[f64]| match &cut {
+        Some(cut) => cut.field(field),
+        None => field.to_vec(),
+    };
     let states = &solution.states;
     let is_of_grip = measured.group == specimen.group && measured.axis == 0;
     let by_quarter = quarter(specimen, mesh).filter(|_| is_of_grip);
     let by_quarter = by_quarter.and_then(|quarter| quarter.influences(states));
     let of_whole = || model.influences(states, &measured.group, measured.axis);
-    let influences = by_quarter.unwrap_or_else(of_whole);
-    let solved = states.iter().map(|state| SheetSolution {
-        law: &*specimen.problem.law,
+    let influences = by_quarter.unwrap_or_else(of_whole).into_iter();
+    let influences = influences.map(|own| own.map(|field| on_sides(&field)));
+    let fields = states.iter().map(|state| on_sides(&state.displacement));
+    let fields: Vec<Vec<f64>> = fields.collect();
+    let solved = fields.iter().map(|displacement| SheetSolution {
+        laws: &laws,
         thickness: specimen.problem.thickness,
-        mesh,
-        displacement: &state.displacement,
+        mesh: cut.as_ref().map_or(mesh, |cut| &cut.mesh),
+        displacement,
     });
-    let estimates = side_by_side(solved.collect(), &recovery, influences);
+    let estimates = side_by_side(solved.collect(), &recovery, influences.collect());
     Ok(estimates.into_iter().map(Result::ok).collect())
 }

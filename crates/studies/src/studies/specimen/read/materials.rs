@@ -1,0 +1,215 @@
+//! The cards of a specimen: one, or one of each region of its mesh.
+
+use std::path::Path;
+
+use super::super::problem::Outline;
+use crate::document::Section;
+use crate::error::suggestion;
+use crate::material::Card;
+use crate::mesh::Mesh;
+use crate::studies::card::read_card;
+use crate::studies::regions::regions_of;
+
+/// The key of the region that a card is for.
+const ON: &str = "on";
+
+/// The cards of a study, with their places in it.
+pub struct Materials<'a> {
+    entries: Vec<Entry<'a>>,
+}
+
+/// A card, and the region that it is for; `None` for all remaining cells.
+struct Entry<'a> {
+    section: Section<'a>,
+    on: Option<String>,
+    card: Option<Card>,
+}
+
+/// The cards of a specimen.
+pub struct Cards {
+    /// Of all cells that belong to no region.
+    pub card: Card,
+    /// Of the regions by their names.
+    pub regions: Vec<(String, Card)>,
+}
+
+impl<'a> Materials<'a> {
+    /// Reads `[material]`, or each `[[material]]`.
+    pub fn read(root: &Section<'a>, folder: &Path) -> Self {
+        let sections = root.section_or_sections("material");
+        let several = root.is_list("material");
+        if several && sections.is_empty() {
+            root.fault("material", "needs a card at least", "write [material]");
+        }
+        let entries = sections.into_iter().map(|section| {
+            let section = section.requiring(&["card"]);
+            let card = read_card(&section, folder);
+            let on = (several && section.has(ON)).then(|| section.text(ON));
+            section.unknown_keys_with(|key| {
+                let hint =
+                    "a single [material] is that of all cells; write [[material]] for each region";
+                (key == ON).then(|| hint.to_owned())
+            });
+            Entry { section, on, card }
+        });
+        Self {
+            entries: entries.collect(),
+        }
+    }
+
+    /// One card of all cells.
+    pub fn of(card: Card, root: &Section<'a>) -> Self {
+        let section = root.section("material");
+        let entry = Entry {
+            section,
+            on: None,
+            card: Some(card),
+        };
+        Self {
+            entries: vec![entry],
+        }
+    }
+
+    /// Whether a card softens.
+    pub fn soften(&self) -> bool {
+        let mut cards = self.entries.iter().filter_map(|entry| entry.card.as_ref());
+        cards.any(|card| card.law.softening().is_some())
+    }
+
+    /// The cards on a mesh of the outline; `None` where they have faults, which are recorded.
+    pub fn on(self, root: &Section, outline: &Outline, mesh: &Mesh) -> Option<Cards> {
+        let known = regions_of(mesh);
+        let mut is_sound = self.entries.iter().all(|entry| entry.card.is_some());
+        for (number, entry) in self.entries.iter().enumerate() {
+            if let Some((message, hint)) = entry.fault(&self.entries[..number], outline, mesh) {
+                entry.section.fault(ON, &message, &hint);
+                is_sound = false;
+            }
+        }
+        if is_sound && let Some((message, hint)) = self.uncovered(mesh, &known) {
+            root.fault("material", &message, &hint);
+            is_sound = false;
+        }
+        is_sound.then(|| self.cards())?
+    }
+
+    /// The cells without a card.
+    fn uncovered(&self, mesh: &Mesh, known: &[&str]) -> Option<(String, String)> {
+        let mut is_covered = vec![false; mesh.cell_count()];
+        for entry in &self.entries {
+            let region = entry.on.as_ref()?;
+            for cell in &mesh.groups()[region].cells {
+                is_covered[*cell] = true;
+            }
+        }
+        let count = is_covered.iter().filter(|is| !**is).count();
+        let has_some = |name: &&&str| {
+            let mut cells = mesh.groups()[**name].cells.iter();
+            cells.any(|cell| !is_covered[*cell])
+        };
+        let names: Vec<String> = known
+            .iter()
+            .filter(has_some)
+            .map(|name| format!("`{name}`"))
+            .collect();
+        let of = if names.is_empty() {
+            "which have no name".to_owned()
+        } else {
+            format!("those of {}", names.join(", "))
+        };
+        let message = format!("{count} of {} cells have no card: {of}", mesh.cell_count());
+        let hint =
+            "add a [[material]] for them, or one without `on`, which is for all remaining cells";
+        (count > 0).then(|| (message, hint.to_owned()))
+    }
+
+    fn cards(self) -> Option<Cards> {
+        let (mut rest, mut regions) = (None, Vec::new());
+        for Entry { on, card, .. } in self.entries {
+            match on {
+                Some(region) => regions.push((region, card?)),
+                None => rest = card,
+            }
+        }
+        let first = regions.first().map(|(_, card)| card.clone());
+        let card = rest.or(first)?;
+        Some(Cards { card, regions })
+    }
+}
+
+impl Entry<'_> {
+    /// What is wrong with the region of an entry that follows others, and the remedy.
+    fn fault(&self, before: &[Self], outline: &Outline, mesh: &Mesh) -> Option<(String, String)> {
+        let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
+        if let Some((one, other)) = before.first().and_then(|own| own.other_state(self)) {
+            let message = format!("this card is in {one}, and the first one in {other}");
+            return fault(
+                message,
+                "a sheet has one state: write the same `sheet` for all cards",
+            );
+        }
+        let Some(region) = &self.on else {
+            let is_second = before.iter().any(|own| own.on.is_none());
+            let message = "is missing: another card is for all remaining cells already";
+            let message = is_second.then(|| message.to_owned())?;
+            return fault(
+                message,
+                "name the region that this card is for, such as on = \"inclusion\"",
+            );
+        };
+        if !matches!(outline, Outline::File { .. }) {
+            let message = "the cells of a built-in shape have no names".to_owned();
+            let hint =
+                "take shape = \"mesh\" with a file whose cells have names, or write one [material]";
+            return fault(message, hint);
+        }
+        let known = regions_of(mesh);
+        if known.is_empty() {
+            let message = format!(
+                "the mesh has no region `{region}`: none of its cells have a name of their own"
+            );
+            return fault(
+                message,
+                "name its surfaces (Gmsh: Physical Surface), or write one [material]",
+            );
+        }
+        if !known.contains(&&**region) {
+            let message = format!("the mesh has no region `{region}`");
+            let near = suggestion(region, &known, "");
+            let all = format!("its regions are {}", known.join(", "));
+            let hint = if near.starts_with("did") {
+                format!("{near} {all}")
+            } else {
+                all
+            };
+            return Some((message, hint));
+        }
+        if before.iter().any(|own| own.on.as_ref() == Some(region)) {
+            let message = format!("the region `{region}` has a card already");
+            return fault(message, "leave out one of the two");
+        }
+        let cells = &mesh.groups()[region].cells;
+        let named = before
+            .iter()
+            .filter_map(|own| mesh.groups().get_key_value(own.on.as_ref()?));
+        let shared = named.map(|(name, group)| {
+            let common = cells
+                .iter()
+                .filter(|cell| group.cells.binary_search(cell).is_ok());
+            (name, common.count())
+        });
+        let (other, count) = shared.into_iter().find(|(_, count)| *count > 0)?;
+        let message = format!("the region `{region}` shares {count} cells with `{other}`");
+        fault(
+            message,
+            "a cell has one card: name regions without common cells",
+        )
+    }
+
+    /// The plane states of another card and of this one, where they differ.
+    fn other_state(&self, other: &Self) -> Option<(&'static str, &'static str)> {
+        let state = |own: &Self| Some(own.card.as_ref()?.law.plane_state());
+        let (own, other) = (state(self)?, state(other)?);
+        (own != other).then(|| (other.name(), own.name()))
+    }
+}
