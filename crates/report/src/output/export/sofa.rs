@@ -49,7 +49,7 @@ pub struct Scene<'a> {
 }
 
 /// The components of SOFA's plugins that a scene uses.
-const PLUGINS: [&str; 8] = [
+const PLUGINS: [&str; 9] = [
     "Sofa.Component.Constraint.Projective",
     "Sofa.Component.LinearSolver.Iterative",
     "Sofa.Component.Mass",
@@ -58,6 +58,7 @@ const PLUGINS: [&str; 8] = [
     "Sofa.Component.SolidMechanics.Spring",
     "Sofa.Component.StateContainer",
     "Sofa.Component.Topology.Container.Dynamic",
+    "Sofa.Component.Visual",
 ];
 
 impl Scene<'_> {
