@@ -18,6 +18,7 @@ mod arrays;
 mod chosen;
 mod columns;
 mod comments;
+mod converted;
 mod decimals;
 mod edited;
 mod encoding;

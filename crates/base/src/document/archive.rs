@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Read};
 
-use super::formats::{Unconvertible, afford};
+use super::converted::{Unconvertible, afford};
 
 /// An archive in memory.
 pub(super) struct Archive<'a>(zip::ZipArchive<Cursor<&'a [u8]>>);

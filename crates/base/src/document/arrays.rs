@@ -3,7 +3,7 @@
 //! A matrix is a table without names, a structure has names, and several arrays of one shape are columns with their names.
 
 use super::archive::Archive;
-use super::formats::{TableText, Unconvertible};
+use super::converted::{TableText, Unconvertible};
 use crate::error::suggestion;
 
 mod matlab;

@@ -7,7 +7,7 @@
 //! ECMA-376, part 1, § 18.3 (worksheets), § 18.4 (shared strings), § 18.8 (styles).
 
 use super::archive::Archive;
-use super::formats::{TableText, Unconvertible};
+use super::converted::{TableText, Unconvertible};
 use crate::error::suggestion;
 
 mod cells;

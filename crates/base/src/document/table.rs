@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use super::Faults;
 use super::columns::{Above, Column, unquoted};
+use super::converted::TableText;
 use super::decimals::{Decimals, NotANumber, is_hole};
 use super::encoding::TextEncoding;
 use super::file::MOST_OF_DATA;
-use super::formats::{self, TableText};
+use super::formats;
 use super::lines::{SURVEYED, blanks_to_tabs, delimiter, line_at, plain_text};
 use super::text::{bytes, text_of_data};
 use crate::error::{Diagnostic, Error, Source};

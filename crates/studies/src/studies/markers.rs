@@ -43,18 +43,20 @@ mod report;
 mod request;
 mod specimen_file;
 mod specimen_mesh;
+mod stated_conditions;
 mod tables;
 mod verdict;
 pub mod written;
 
 pub use alike::ComparedFrames;
 pub use area::Area;
-pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
+pub use conditions::{Conditions, EdgesByName, TEMPLATE, measured_force};
 use finding::once;
 pub use machine::{ForceColumn, FrameForces};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
 use specimen_mesh::{SpecimenMesh, mesh};
+pub use stated_conditions::keys;
 pub use verdict::worst as worst_answer;
 
 /// A field that was read, with all data for its correction.

@@ -7,7 +7,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::super::formats::{Unconvertible, afford};
+use super::super::converted::{Unconvertible, afford};
 use super::Array;
 use super::numpy::by_rows;
 

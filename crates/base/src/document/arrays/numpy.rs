@@ -3,7 +3,7 @@
 //! # References
 //! NumPy Enhancement Proposal 1; `numpy.lib.format`, versions 1 to 3.
 
-use super::super::formats::{Unconvertible, afford};
+use super::super::converted::{Unconvertible, afford};
 use super::Array;
 
 /// The type of a number and its name in a structure.

@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::document::Table;
+use crate::document::converted::afford;
 
 /// A file that NumPy, SciPy or openpyxl has written.
 fn corpus(name: &str) -> PathBuf {

@@ -1,6 +1,6 @@
 //! The cells of a sheet as lines of fields.
 
-use super::super::formats::{Unconvertible, afford};
+use super::super::converted::{Unconvertible, afford};
 use super::workbook::Workbook;
 use super::xml::{Met, attribute, damaged, walk};
 use quick_xml::events::BytesStart;

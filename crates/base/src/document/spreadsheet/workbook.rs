@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::archive::Archive;
-use super::super::formats::Unconvertible;
+use super::super::converted::Unconvertible;
 use super::xml::{Met, attribute, damaged, text, walk};
 
 /// A sheet and its part of the archive.

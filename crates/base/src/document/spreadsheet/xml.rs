@@ -4,7 +4,7 @@ use quick_xml::escape::resolve_predefined_entity;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
-use super::super::formats::Unconvertible;
+use super::super::converted::Unconvertible;
 
 /// What is met in a text, in its order.
 pub enum Met<'a> {

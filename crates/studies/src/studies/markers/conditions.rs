@@ -6,7 +6,6 @@ use super::area::Area;
 use super::finding::none_of;
 use super::machine::{self, ForceColumn, FrameForces};
 use super::specimen_file::SpecimenFile;
-use crate::document::{Document, Faults};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::estimation::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
@@ -14,11 +13,6 @@ use crate::estimation::{
 use crate::markers::MarkerSeries;
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
-use crate::studies::sections;
-
-mod stated;
-
-pub use stated::keys;
 
 /// An edge by its name, with what is known of it.
 pub type EdgesByName = Vec<(String, EdgeCondition)>;
@@ -79,25 +73,6 @@ pub fn measured_force(
 }
 
 impl Conditions {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with all of its faults.
-    pub fn of_file(path: &Path) -> Result<Self, Error> {
-        Self::parse(&path.display().to_string(), &sections::read_text(path)?)
-    }
-
-    /// Reads the text of a file.
-    ///
-    /// # Errors
-    /// As [`Self::of_file`].
-    pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
-        let faults = Faults::default();
-        let conditions = stated::read(&Document::parse(file, text, &faults).root(None, &faults));
-        faults.finish()?;
-        Ok(conditions)
-    }
-
     /// The edges of which something is known.
     pub(super) fn edge_names(&self) -> impl Iterator<Item = &str> {
         self.edges.iter().map(|(name, _)| name.as_str())

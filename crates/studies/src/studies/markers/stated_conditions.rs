@@ -1,12 +1,16 @@
 //! The statements of a file of conditions.
 
-use super::super::area::Area;
-use super::super::machine::ForceColumn;
-use super::super::specimen_file::SpecimenFile;
-use super::{Conditions, measured_force};
+use std::path::Path;
+
+use super::area::Area;
+use super::conditions::{Conditions, measured_force};
+use super::machine::ForceColumn;
+use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
+use crate::error::Error;
 use crate::estimation::{EdgeCondition, MeasuredForce, Physics, Robust, Unnamed};
 use crate::material::PlaneState;
+use crate::studies::sections;
 use crate::units::Dimension;
 
 /// The conditions of edges by their names; the displacements of a known one follow.
@@ -16,6 +20,27 @@ const CONDITIONS: [(&str, EdgeCondition); 4] = [
     ("rigid", EdgeCondition::Rigid),
     ("unknown", EdgeCondition::Unknown),
 ];
+
+impl Conditions {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with all of its faults.
+    pub fn of_file(path: &Path) -> Result<Self, Error> {
+        Self::parse(&path.display().to_string(), &sections::read_text(path)?)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// As [`Self::of_file`].
+    pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
+        let faults = Faults::default();
+        let conditions = read(&Document::parse(file, text, &faults).root(None, &faults));
+        faults.finish()?;
+        Ok(conditions)
+    }
+}
 
 /// The keys that are asked for when a text is read.
 pub fn keys(text: &str) -> Vec<Key> {
@@ -27,7 +52,7 @@ pub fn keys(text: &str) -> Vec<Key> {
 }
 
 /// Reads all keys; faults are recorded.
-pub(super) fn read(root: &Section) -> Conditions {
+fn read(root: &Section) -> Conditions {
     let length = |key, bound| {
         let has = root.has(key);
         has.then(|| root.quantity(key, Dimension::Length, bound))
