@@ -70,7 +70,8 @@ fn the_models_of_two_strips_in_parallel_carry_the_sum_of_their_forces() {
     let force = |model: &str| number(&report["steps"][1], &[model, "measured_N"]);
     assert!((force("finite_element") / exact - 1.0).abs() < 1e-8);
     assert!((force("corrected") / exact - 1.0).abs() < 1e-8);
-    assert!((force("mass_spring") / exact - 1.0).abs() < 0.05);
+    // Springs alone are stiffer in a sheet that is free to contract.
+    assert!((1.0..1.3).contains(&(force("mass_spring") / exact)));
     let regions = report["material"]["regions"].as_array().unwrap();
     let told: Vec<_> = regions
         .iter()

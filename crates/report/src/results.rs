@@ -27,6 +27,7 @@ mod json;
 pub mod locking;
 mod material;
 pub mod models;
+mod nodal_sheet;
 mod picture_style;
 mod report;
 mod series;

@@ -1,7 +1,7 @@
 //! What a study of a sheet is computed for, in short: the force and displacement of its groups along the path, and where stress and stretch are
 //! largest.
 
-use super::state::NodalSheet;
+use super::nodal_sheet::NodalSheet;
 use super::{Block, Deformed, LocalState, or_dash};
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, SheetLaws};

@@ -1,6 +1,6 @@
 //! Pictures of stress and strain, of several models side by side.
 
-use super::state::NodalSheet;
+use super::nodal_sheet::NodalSheet;
 use super::{FieldFigure, Figure, LocalState, Panel};
 use crate::document::name_of;
 use crate::mesh::Mesh;

@@ -1,14 +1,12 @@
 //! Stress and strain of a sheet at its nodes and in its cells.
 
-use std::borrow::Cow;
-
 use nalgebra::Vector4;
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
-use crate::problem::{CellLaws, SheetLaws};
+use crate::problem::CellLaws;
 
 /// The state of the material at a displacement gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,7 +168,11 @@ pub fn nodal_states(
 }
 
 /// The states at the nodes of a mesh each of whose nodes belongs to cells of one law.
-fn states_within_parts(laws: &CellLaws, mesh: &Mesh, fields: &[&[f64]]) -> Vec<LocalState> {
+pub(super) fn states_within_parts(
+    laws: &CellLaws,
+    mesh: &Mesh,
+    fields: &[&[f64]],
+) -> Vec<LocalState> {
     let mut cell_of = vec![0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         mesh.cell(cell)
@@ -179,42 +181,6 @@ fn states_within_parts(laws: &CellLaws, mesh: &Mesh, fields: &[&[f64]]) -> Vec<L
     }
     let law = |node: usize| laws.of(cell_of[node]);
     states(law, fields, &[], |field| nodal_gradients(mesh, field))
-}
-
-/// A sheet on a mesh with the states at its nodes; between cells of different laws, where stresses jump, the mesh is cut.
-pub struct NodalSheet<'a> {
-    /// The mesh.
-    pub mesh: Cow<'a, Mesh>,
-    /// ux, uy of node after node in mm.
-    pub displacement: Cow<'a, [f64]>,
-    /// The states of node after node.
-    pub states: Vec<LocalState>,
-}
-
-impl<'a> NodalSheet<'a> {
-    /// The sheet of some displacement fields and viscous stresses as [`LocalState::of`] takes them.
-    pub fn new(
-        laws: SheetLaws,
-        mesh: &'a Mesh,
-        fields: &[&'a [f64]],
-        viscous: &[[f64; 4]],
-    ) -> Self {
-        let laws = laws.in_cells(mesh);
-        let Some(cut) = laws.cut(mesh) else {
-            return Self {
-                states: nodal_states(&laws, mesh, fields, viscous),
-                mesh: Cow::Borrowed(mesh),
-                displacement: Cow::Borrowed(fields.last().copied().unwrap_or_default()),
-            };
-        };
-        let mut own: Vec<Vec<f64>> = fields.iter().map(|field| cut.field(field)).collect();
-        let fields: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
-        Self {
-            states: states_within_parts(&laws, &cut.mesh, &fields),
-            mesh: Cow::Owned(cut.mesh),
-            displacement: Cow::Owned(own.pop().unwrap_or_default()),
-        }
-    }
 }
 
 fn states<'a>(

@@ -144,15 +144,15 @@ fn forces_of_lattices_in_parallel_add() {
             0.02
         };
         assert!(difference < rounding, "{shape:?}: {difference}");
-        // The usual error of springs.
-        let exact = 12.0
-            * [&soft, &stiff]
-                .map(|law| Mode::Uniaxial.nominal_stress(&**law, 0.4))
-                .iter()
-                .sum::<f64>();
+        // The error is that of springs of one law.
+        let exact = |law: &Arc<dyn HyperelasticLaw>| {
+            2.0 * SIZE[1] * Mode::Uniaxial.nominal_stress(&**law, 0.4)
+        };
+        let usual = soft_force / exact(&soft);
+        let found = mixed / (0.5 * (exact(&soft) + exact(&stiff)));
         assert!(
-            (mixed / exact - 1.0).abs() < 0.03,
-            "{shape:?}: {mixed} {exact}"
+            (found / usual - 1.0).abs() < rounding,
+            "{shape:?}: {found} {usual}"
         );
     }
 }

@@ -93,14 +93,26 @@ impl<'a> Materials<'a> {
         is_sound.then(|| self.cards())?
     }
 
+    /// Whether each cell belongs to a region with a card.
+    fn covered(&self, mesh: &Mesh) -> Vec<bool> {
+        let mut is_covered = vec![false; mesh.cell_count()];
+        let regions = self.entries.iter().filter_map(|entry| entry.on.as_ref());
+        for cell in regions.flat_map(|region| &mesh.groups()[region].cells) {
+            is_covered[*cell] = true;
+        }
+        is_covered
+    }
+
     /// The cells without a card.
     fn uncovered(&self, mesh: &Mesh, known: &[&str]) -> Option<(String, String)> {
-        let mut is_covered = vec![false; mesh.cell_count()];
-        for entry in &self.entries {
-            let region = entry.on.as_ref()?;
-            for cell in &mesh.groups()[region].cells {
-                is_covered[*cell] = true;
+        let is_covered = self.covered(mesh);
+        if let Some(rest) = self.entries.iter().find(|entry| entry.on.is_none()) {
+            if is_covered.iter().all(|is| *is) {
+                let message =
+                    "no cell remains for this card: every cell belongs to a region with a card";
+                rest.section.warning("card", message, "leave it out");
             }
+            return None;
         }
         let count = is_covered.iter().filter(|is| !**is).count();
         let has_some = |name: &&&str| {
@@ -163,6 +175,12 @@ impl Entry<'_> {
                 "take shape = \"mesh\" with a file whose cells have names, or write one [material]";
             return fault(message, hint);
         }
+        self.fault_on(region, before, mesh)
+    }
+
+    /// The same of a region that the mesh should have.
+    fn fault_on(&self, region: &String, before: &[Self], mesh: &Mesh) -> Option<(String, String)> {
+        let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
         let known = regions_of(mesh);
         if known.is_empty() {
             let message = format!(
@@ -173,7 +191,7 @@ impl Entry<'_> {
                 "name its surfaces (Gmsh: Physical Surface), or write one [material]",
             );
         }
-        if !known.contains(&&**region) {
+        if !known.contains(&region.as_str()) {
             let message = format!("the mesh has no region `{region}`");
             let near = suggestion(region, &known, "");
             let all = format!("its regions are {}", known.join(", "));
