@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use web_time::Instant;
 
 use gelbench::error::Error;
-use gelbench::problem::CellLaws;
 use gelbench::solve::{LinearSolver, Loading, Stage};
+use gelbench_mechanics::problem::CellLaws;
 use gelbench_mechanics::solve::{Tangent, compliance};
 use gelbench_report::results::nodal_states;
 
