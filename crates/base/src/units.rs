@@ -10,12 +10,14 @@ mod linear;
 mod ranges;
 mod remedy;
 mod sheet_size;
+mod symbols;
 
 pub use figures::{brief, decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
 pub use remedy::{bare_ratio, could_be_stretch_ratios, symbol};
 pub use sheet_size::implausible_sheet;
+use symbols::UNITS;
 
 /// The kind of a physical quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,90 +53,6 @@ pub enum Dimension {
     /// A ratio, written as a bare number or in percent.
     Ratio,
 }
-
-/// `(symbol, dimension, factor to the internal unit)`; the first symbol of a dimension is the
-/// one that error messages suggest.
-const UNITS: &[(&str, Dimension, f64)] = &[
-    ("mm", Dimension::Length, 1.0),
-    ("cm", Dimension::Length, 10.0),
-    ("m", Dimension::Length, 1e3),
-    ("km", Dimension::Length, 1e6),
-    ("nm", Dimension::Length, 1e-6),
-    ("um", Dimension::Length, 1e-3),
-    ("µm", Dimension::Length, 1e-3),
-    ("in", Dimension::Length, 25.4),
-    ("ft", Dimension::Length, 304.8),
-    ("mm^2", Dimension::Area, 1.0),
-    ("cm^2", Dimension::Area, 100.0),
-    ("m^2", Dimension::Area, 1e6),
-    ("in^2", Dimension::Area, 645.16),
-    ("N", Dimension::Force, 1.0),
-    ("mN", Dimension::Force, 1e-3),
-    ("kN", Dimension::Force, 1e3),
-    ("µN", Dimension::Force, 1e-6),
-    ("gf", Dimension::Force, 9.80665e-3),
-    ("kgf", Dimension::Force, 9.80665),
-    ("lbf", Dimension::Force, 4.448_221_615_260_5),
-    ("ozf", Dimension::Force, 0.278_013_850_953_781_25),
-    ("cN", Dimension::Force, 1e-2),
-    ("dyn", Dimension::Force, 1e-5),
-    ("MPa", Dimension::Stress, 1.0),
-    ("kPa", Dimension::Stress, 1e-3),
-    ("Pa", Dimension::Stress, 1e-6),
-    ("GPa", Dimension::Stress, 1e3),
-    ("N/mm^2", Dimension::Stress, 1.0),
-    ("N/m^2", Dimension::Stress, 1e-6),
-    ("kN/m^2", Dimension::Stress, 1e-3),
-    ("MN/m^2", Dimension::Stress, 1.0),
-    ("N/cm^2", Dimension::Stress, 1e-2),
-    ("gf/mm^2", Dimension::Stress, 9.80665e-3),
-    ("kgf/cm^2", Dimension::Stress, 0.098_066_5),
-    ("kgf/mm^2", Dimension::Stress, 9.80665),
-    ("dyn/cm^2", Dimension::Stress, 1e-7),
-    ("hPa", Dimension::Stress, 1e-4),
-    ("mbar", Dimension::Stress, 1e-4),
-    ("bar", Dimension::Stress, 0.1),
-    ("atm", Dimension::Stress, 0.101_325),
-    ("mmHg", Dimension::Stress, 133.322_387_415e-6),
-    ("psi", Dimension::Stress, 6.894_757_293_168e-3),
-    ("ksi", Dimension::Stress, 6.894_757_293_168),
-    ("kg/m^3", Dimension::Density, 1e-12),
-    ("g/cm^3", Dimension::Density, 1e-9),
-    ("tonne/mm^3", Dimension::Density, 1.0),
-    ("g", Dimension::Mass, 1e-6),
-    ("kg", Dimension::Mass, 1e-3),
-    ("mg", Dimension::Mass, 1e-9),
-    ("tonne", Dimension::Mass, 1.0),
-    ("s", Dimension::Time, 1.0),
-    ("ms", Dimension::Time, 1e-3),
-    ("us", Dimension::Time, 1e-6),
-    ("µs", Dimension::Time, 1e-6),
-    ("min", Dimension::Time, 60.0),
-    ("h", Dimension::Time, 3600.0),
-    ("Hz", Dimension::Frequency, 1.0),
-    ("kHz", Dimension::Frequency, 1e3),
-    ("1/s", Dimension::Frequency, 1.0),
-    ("m/s^2", Dimension::Acceleration, 1e3),
-    ("mm/s^2", Dimension::Acceleration, 1.0),
-    ("Pa·s", Dimension::Viscosity, 1e-6),
-    ("mPa·s", Dimension::Viscosity, 1e-9),
-    ("kPa·s", Dimension::Viscosity, 1e-3),
-    ("MPa·s", Dimension::Viscosity, 1.0),
-    ("K", Dimension::Temperature, 1.0),
-    ("cm^3/mol", Dimension::MolarVolume, 1e3),
-    ("mL/mol", Dimension::MolarVolume, 1e3),
-    ("mm^3/mol", Dimension::MolarVolume, 1.0),
-    ("m^3/mol", Dimension::MolarVolume, 1e9),
-    ("mol/m^3", Dimension::Concentration, 1e-9),
-    ("mol/L", Dimension::Concentration, 1e-6),
-    ("mmol/L", Dimension::Concentration, 1e-9),
-    ("mol/cm^3", Dimension::Concentration, 1e-3),
-    ("mol/mm^3", Dimension::Concentration, 1.0),
-    ("rad", Dimension::Angle, 1.0),
-    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
-    ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
-    ("%", Dimension::Ratio, 1e-2),
-];
 
 /// The unit of temperature with another zero than K: a factor alone does not convert it.
 const CELSIUS: [&str; 2] = ["°C", "degC"];

@@ -6,57 +6,11 @@ use super::archive::Archive;
 use super::converted::{TableText, Unconvertible};
 use crate::error::suggestion;
 
+mod array;
 mod matlab;
 mod numpy;
 
-/// An array of numbers with its name.
-#[derive(Clone, Debug, PartialEq)]
-struct Array {
-    name: String,
-    /// The names of the numbers of an entry; none of plain numbers.
-    fields: Vec<String>,
-    shape: Vec<usize>,
-    /// The numbers, those of the last index and of one entry beside each other.
-    numbers: Vec<f64>,
-}
-
-impl Array {
-    /// Rows and columns, where this is a table: a vector is none.
-    fn size(&self) -> Option<[usize; 2]> {
-        match (self.shape[..].as_ref(), self.fields.len()) {
-            ([rows, columns], 0) if *rows > 1 && *columns > 1 => Some([*rows, *columns]),
-            ([rows], 2..) => Some([*rows, self.fields.len()]),
-            _ => None,
-        }
-    }
-
-    /// Whether it may be a column beside others: more than one plain number.
-    fn is_column(&self) -> bool {
-        self.fields.is_empty() && self.numbers.len() > 1
-    }
-
-    fn table(&self, [_, columns]: [usize; 2]) -> String {
-        let mut text = self.fields.join("\t");
-        text.push('\n');
-        for row in self.numbers.chunks(columns) {
-            push_row(&mut text, row.iter().copied());
-        }
-        text
-    }
-
-    fn describe(&self) -> String {
-        let sizes: Vec<String> = self.shape.iter().map(usize::to_string).collect();
-        format!("{} ({})", self.name, sizes.join(" × "))
-    }
-}
-
-fn push_row(text: &mut String, row: impl Iterator<Item = f64>) {
-    for (column, number) in row.enumerate() {
-        text.push_str(if column > 0 { "\t" } else { "" });
-        text.push_str(&number.to_string());
-    }
-    text.push('\n');
-}
+use self::array::{Array, push_row};
 
 /// The table of a file of NumPy.
 ///

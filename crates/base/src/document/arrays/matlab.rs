@@ -8,7 +8,7 @@ use std::io::Read;
 use flate2::read::ZlibDecoder;
 
 use super::super::converted::{Unconvertible, afford};
-use super::Array;
+use super::array::Array;
 use super::numpy::by_rows;
 
 /// Types of elements.

@@ -4,7 +4,7 @@
 //! NumPy Enhancement Proposal 1; `numpy.lib.format`, versions 1 to 3.
 
 use super::super::converted::{Unconvertible, afford};
-use super::Array;
+use super::array::Array;
 
 /// The type of a number and its name in a structure.
 struct Field {

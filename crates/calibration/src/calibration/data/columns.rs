@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::record::Machine;
 use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, SECOND_PIOLA_KIRCHHOFF, of_kind};
+use super::strain_column::StrainColumn;
 use super::table_reading::{ColumnReading, TableReading};
-use super::test_data::{StrainColumn, Test};
+use super::test_data::Test;
 use crate::document::{Column, ColumnRole, Faulty, Head};
 use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};

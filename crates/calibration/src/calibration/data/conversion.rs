@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
-use super::test_data::{StrainColumn, Test, TestData};
+use super::strain_column::StrainColumn;
+use super::test_data::{Test, TestData};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::units::{self, Dimension};

@@ -1,6 +1,7 @@
 //! Test data that are impossible, or hardly plausible.
 
-use super::test_data::{Observation, StrainColumn, Test};
+use super::strain_column::StrainColumn;
+use super::test_data::{Observation, Test};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::statistics::median;

@@ -2,7 +2,7 @@
 
 use super::columns::{Scaled, strain_factor, stress_factor};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Naming, Role, of_kind};
-use super::test_data::StrainColumn;
+use super::strain_column::StrainColumn;
 use crate::document::Head;
 use crate::material::parameters::StrainMeasure;
 use crate::units::Dimension;
