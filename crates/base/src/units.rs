@@ -5,165 +5,20 @@
 
 use std::fmt;
 
+mod dimension;
 mod figures;
 mod linear;
 mod ranges;
 mod remedy;
 mod sheet_size;
-mod symbols;
 
+pub use dimension::Dimension;
+use dimension::{CELSIUS, UNITS};
 pub use figures::{brief, decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
 pub use remedy::{bare_ratio, could_be_stretch_ratios, symbol};
 pub use sheet_size::implausible_sheet;
-use symbols::UNITS;
-
-/// The kind of a physical quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// Internal unit mm.
-    Length,
-    /// Internal unit mm².
-    Area,
-    /// Internal unit N.
-    Force,
-    /// Internal unit MPa = N/mm².
-    Stress,
-    /// Internal unit tonne/mm³.
-    Density,
-    /// Internal unit tonne.
-    Mass,
-    /// Internal unit s.
-    Time,
-    /// Internal unit Hz = 1/s.
-    Frequency,
-    /// Internal unit mm/s².
-    Acceleration,
-    /// Internal unit MPa·s.
-    Viscosity,
-    /// Internal unit K.
-    Temperature,
-    /// Internal unit mm³/mol.
-    MolarVolume,
-    /// Internal unit mol/mm³.
-    Concentration,
-    /// Internal unit rad.
-    Angle,
-    /// A ratio, written as a bare number or in percent.
-    Ratio,
-}
-
-/// The unit of temperature with another zero than K: a factor alone does not convert it.
-const CELSIUS: [&str; 2] = ["°C", "degC"];
-/// 0 °C in K.
-const ICE_POINT: f64 = 273.15;
-
-impl Dimension {
-    /// All dimensions.
-    pub const ALL: [Self; 15] = [
-        Self::Length,
-        Self::Area,
-        Self::Force,
-        Self::Stress,
-        Self::Density,
-        Self::Mass,
-        Self::Time,
-        Self::Frequency,
-        Self::Acceleration,
-        Self::Viscosity,
-        Self::Temperature,
-        Self::MolarVolume,
-        Self::Concentration,
-        Self::Angle,
-        Self::Ratio,
-    ];
-
-    /// The quantity's name as used in messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Area => "area",
-            Self::Force => "force",
-            Self::Stress => "stress",
-            Self::Density => "density",
-            Self::Mass => "mass",
-            Self::Time => "time",
-            Self::Frequency => "frequency",
-            Self::Acceleration => "acceleration",
-            Self::Viscosity => "viscosity",
-            Self::Temperature => "temperature",
-            Self::MolarVolume => "molar volume",
-            Self::Concentration => "concentration",
-            Self::Angle => "angle",
-            Self::Ratio => "ratio",
-        }
-    }
-
-    /// The units that are understood for this dimension.
-    pub fn units(self) -> impl Iterator<Item = &'static str> {
-        UNITS
-            .iter()
-            .filter(move |(_, dimension, _)| *dimension == self)
-            .map(|(symbol, ..)| *symbol)
-            .chain(
-                CELSIUS
-                    .into_iter()
-                    .filter(move |_| self == Self::Temperature),
-            )
-    }
-
-    /// The unit of this dimension inside the program; empty for a ratio.
-    pub fn internal_unit(self) -> &'static str {
-        match self {
-            Self::Length => "mm",
-            Self::Area => "mm^2",
-            Self::Force => "N",
-            Self::Stress => "MPa",
-            Self::Density => "tonne/mm^3",
-            Self::Mass => "tonne",
-            Self::Time => "s",
-            Self::Frequency => "Hz",
-            Self::Acceleration => "mm/s^2",
-            Self::Viscosity => "MPa·s",
-            Self::Temperature => "K",
-            Self::MolarVolume => "mm^3/mol",
-            Self::Concentration => "mol/mm^3",
-            Self::Angle => "rad",
-            Self::Ratio => "",
-        }
-    }
-
-    /// A quantity of this dimension as written in a file, its number left out: a number in a hint would be another material's.
-    pub fn blank(self) -> String {
-        let example = self.example().trim_matches('"');
-        match example.split_once(' ') {
-            Some((_, unit)) if self != Self::Ratio => format!("\"… {unit}\""),
-            _ => "…".to_owned(),
-        }
-    }
-
-    /// An example of a well-formed quantity, for hints.
-    pub fn example(self) -> &'static str {
-        match self {
-            Self::Length => "\"2 mm\"",
-            Self::Area => "\"20 mm^2\"",
-            Self::Force => "\"1.5 N\"",
-            Self::Stress => "\"1 MPa\"",
-            Self::Density => "\"1020 kg/m^3\"",
-            Self::Mass => "\"5 g\"",
-            Self::Time => "\"10 s\"",
-            Self::Frequency => "\"2 Hz\"",
-            Self::Acceleration => "\"9.81 m/s^2\"",
-            Self::Viscosity => "\"50 Pa·s\"",
-            Self::Temperature => "\"298.15 K\"",
-            Self::MolarVolume => "\"18.07 cm^3/mol\"",
-            Self::Concentration => "\"20 mol/m^3\"",
-            Self::Angle => "\"30 deg\"",
-            Self::Ratio => "0.5 or \"50 %\"",
-        }
-    }
-}
 
 /// Why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq)]
@@ -210,6 +65,9 @@ impl fmt::Display for QuantityFault {
         }
     }
 }
+
+/// 0 °C in K.
+const ICE_POINT: f64 = 273.15;
 
 /// The minus sign that is not the hyphen of the keyboard.
 const MINUS: char = '\u{2212}';

@@ -163,20 +163,7 @@ impl Layout {
                 along.push((index, first));
             }
             let observations = if is_kept { &mut kept } else { &mut left_out };
-            for own in &self.stresses {
-                let strains = self.along(own.axis, [first, second]);
-                let stress = part.stress(row[own.column] * own.factor);
-                let stretch = if own.is_second {
-                    1.0 + strains[own.axis]
-                } else {
-                    1.0
-                };
-                observations.push(Observation {
-                    strains,
-                    axis: own.axis,
-                    stress: stretch * stress,
-                });
-            }
+            observations.extend(self.observations(row, [first, second], &part));
         }
         let observations = kept;
         let stresses = observations.iter().map(|one| one.stress.abs());
@@ -209,6 +196,29 @@ impl Layout {
             remarks: part.remarks,
             head: head.written(),
             warnings: warnings.into_iter().flatten().collect(),
+        })
+    }
+
+    /// The observations of a row with these strains.
+    fn observations<'a>(
+        &'a self,
+        row: &'a [f64],
+        strains: [f64; 2],
+        part: &'a Part,
+    ) -> impl Iterator<Item = Observation> + 'a {
+        self.stresses.iter().map(move |own| {
+            let strains = self.along(own.axis, strains);
+            let stress = part.stress(row[own.column] * own.factor);
+            let stretch = if own.is_second {
+                1.0 + strains[own.axis]
+            } else {
+                1.0
+            };
+            Observation {
+                strains,
+                axis: own.axis,
+                stress: stretch * stress,
+            }
         })
     }
 

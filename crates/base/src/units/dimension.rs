@@ -1,0 +1,229 @@
+//! Dimensions of physical quantities, and the units that are understood of each.
+
+/// The kind of a physical quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Internal unit mm.
+    Length,
+    /// Internal unit mm².
+    Area,
+    /// Internal unit N.
+    Force,
+    /// Internal unit MPa = N/mm².
+    Stress,
+    /// Internal unit tonne/mm³.
+    Density,
+    /// Internal unit tonne.
+    Mass,
+    /// Internal unit s.
+    Time,
+    /// Internal unit Hz = 1/s.
+    Frequency,
+    /// Internal unit mm/s².
+    Acceleration,
+    /// Internal unit MPa·s.
+    Viscosity,
+    /// Internal unit K.
+    Temperature,
+    /// Internal unit mm³/mol.
+    MolarVolume,
+    /// Internal unit mol/mm³.
+    Concentration,
+    /// Internal unit rad.
+    Angle,
+    /// A ratio, written as a bare number or in percent.
+    Ratio,
+}
+
+/// The unit of temperature with another zero than K: a factor alone does not convert it.
+pub const CELSIUS: [&str; 2] = ["°C", "degC"];
+
+impl Dimension {
+    /// All dimensions.
+    pub const ALL: [Self; 15] = [
+        Self::Length,
+        Self::Area,
+        Self::Force,
+        Self::Stress,
+        Self::Density,
+        Self::Mass,
+        Self::Time,
+        Self::Frequency,
+        Self::Acceleration,
+        Self::Viscosity,
+        Self::Temperature,
+        Self::MolarVolume,
+        Self::Concentration,
+        Self::Angle,
+        Self::Ratio,
+    ];
+
+    /// The quantity's name as used in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Area => "area",
+            Self::Force => "force",
+            Self::Stress => "stress",
+            Self::Density => "density",
+            Self::Mass => "mass",
+            Self::Time => "time",
+            Self::Frequency => "frequency",
+            Self::Acceleration => "acceleration",
+            Self::Viscosity => "viscosity",
+            Self::Temperature => "temperature",
+            Self::MolarVolume => "molar volume",
+            Self::Concentration => "concentration",
+            Self::Angle => "angle",
+            Self::Ratio => "ratio",
+        }
+    }
+
+    /// The units that are understood for this dimension.
+    pub fn units(self) -> impl Iterator<Item = &'static str> {
+        UNITS
+            .iter()
+            .filter(move |(_, dimension, _)| *dimension == self)
+            .map(|(symbol, ..)| *symbol)
+            .chain(
+                CELSIUS
+                    .into_iter()
+                    .filter(move |_| self == Self::Temperature),
+            )
+    }
+
+    /// The unit of this dimension inside the program; empty for a ratio.
+    pub fn internal_unit(self) -> &'static str {
+        match self {
+            Self::Length => "mm",
+            Self::Area => "mm^2",
+            Self::Force => "N",
+            Self::Stress => "MPa",
+            Self::Density => "tonne/mm^3",
+            Self::Mass => "tonne",
+            Self::Time => "s",
+            Self::Frequency => "Hz",
+            Self::Acceleration => "mm/s^2",
+            Self::Viscosity => "MPa·s",
+            Self::Temperature => "K",
+            Self::MolarVolume => "mm^3/mol",
+            Self::Concentration => "mol/mm^3",
+            Self::Angle => "rad",
+            Self::Ratio => "",
+        }
+    }
+
+    /// A quantity of this dimension as written in a file, its number left out: a number in a hint would be another material's.
+    pub fn blank(self) -> String {
+        let example = self.example().trim_matches('"');
+        match example.split_once(' ') {
+            Some((_, unit)) if self != Self::Ratio => format!("\"… {unit}\""),
+            _ => "…".to_owned(),
+        }
+    }
+
+    /// An example of a well-formed quantity, for hints.
+    pub fn example(self) -> &'static str {
+        match self {
+            Self::Length => "\"2 mm\"",
+            Self::Area => "\"20 mm^2\"",
+            Self::Force => "\"1.5 N\"",
+            Self::Stress => "\"1 MPa\"",
+            Self::Density => "\"1020 kg/m^3\"",
+            Self::Mass => "\"5 g\"",
+            Self::Time => "\"10 s\"",
+            Self::Frequency => "\"2 Hz\"",
+            Self::Acceleration => "\"9.81 m/s^2\"",
+            Self::Viscosity => "\"50 Pa·s\"",
+            Self::Temperature => "\"298.15 K\"",
+            Self::MolarVolume => "\"18.07 cm^3/mol\"",
+            Self::Concentration => "\"20 mol/m^3\"",
+            Self::Angle => "\"30 deg\"",
+            Self::Ratio => "0.5 or \"50 %\"",
+        }
+    }
+}
+
+/// `(symbol, dimension, factor to the internal unit)`; the first symbol of a dimension is the
+/// one that error messages suggest.
+pub const UNITS: &[(&str, Dimension, f64)] = &[
+    ("mm", Dimension::Length, 1.0),
+    ("cm", Dimension::Length, 10.0),
+    ("m", Dimension::Length, 1e3),
+    ("km", Dimension::Length, 1e6),
+    ("nm", Dimension::Length, 1e-6),
+    ("um", Dimension::Length, 1e-3),
+    ("µm", Dimension::Length, 1e-3),
+    ("in", Dimension::Length, 25.4),
+    ("ft", Dimension::Length, 304.8),
+    ("mm^2", Dimension::Area, 1.0),
+    ("cm^2", Dimension::Area, 100.0),
+    ("m^2", Dimension::Area, 1e6),
+    ("in^2", Dimension::Area, 645.16),
+    ("N", Dimension::Force, 1.0),
+    ("mN", Dimension::Force, 1e-3),
+    ("kN", Dimension::Force, 1e3),
+    ("µN", Dimension::Force, 1e-6),
+    ("gf", Dimension::Force, 9.80665e-3),
+    ("kgf", Dimension::Force, 9.80665),
+    ("lbf", Dimension::Force, 4.448_221_615_260_5),
+    ("ozf", Dimension::Force, 0.278_013_850_953_781_25),
+    ("cN", Dimension::Force, 1e-2),
+    ("dyn", Dimension::Force, 1e-5),
+    ("MPa", Dimension::Stress, 1.0),
+    ("kPa", Dimension::Stress, 1e-3),
+    ("Pa", Dimension::Stress, 1e-6),
+    ("GPa", Dimension::Stress, 1e3),
+    ("N/mm^2", Dimension::Stress, 1.0),
+    ("N/m^2", Dimension::Stress, 1e-6),
+    ("kN/m^2", Dimension::Stress, 1e-3),
+    ("MN/m^2", Dimension::Stress, 1.0),
+    ("N/cm^2", Dimension::Stress, 1e-2),
+    ("gf/mm^2", Dimension::Stress, 9.80665e-3),
+    ("kgf/cm^2", Dimension::Stress, 0.098_066_5),
+    ("kgf/mm^2", Dimension::Stress, 9.80665),
+    ("dyn/cm^2", Dimension::Stress, 1e-7),
+    ("hPa", Dimension::Stress, 1e-4),
+    ("mbar", Dimension::Stress, 1e-4),
+    ("bar", Dimension::Stress, 0.1),
+    ("atm", Dimension::Stress, 0.101_325),
+    ("mmHg", Dimension::Stress, 133.322_387_415e-6),
+    ("psi", Dimension::Stress, 6.894_757_293_168e-3),
+    ("ksi", Dimension::Stress, 6.894_757_293_168),
+    ("kg/m^3", Dimension::Density, 1e-12),
+    ("g/cm^3", Dimension::Density, 1e-9),
+    ("tonne/mm^3", Dimension::Density, 1.0),
+    ("g", Dimension::Mass, 1e-6),
+    ("kg", Dimension::Mass, 1e-3),
+    ("mg", Dimension::Mass, 1e-9),
+    ("tonne", Dimension::Mass, 1.0),
+    ("s", Dimension::Time, 1.0),
+    ("ms", Dimension::Time, 1e-3),
+    ("us", Dimension::Time, 1e-6),
+    ("µs", Dimension::Time, 1e-6),
+    ("min", Dimension::Time, 60.0),
+    ("h", Dimension::Time, 3600.0),
+    ("Hz", Dimension::Frequency, 1.0),
+    ("kHz", Dimension::Frequency, 1e3),
+    ("1/s", Dimension::Frequency, 1.0),
+    ("m/s^2", Dimension::Acceleration, 1e3),
+    ("mm/s^2", Dimension::Acceleration, 1.0),
+    ("Pa·s", Dimension::Viscosity, 1e-6),
+    ("mPa·s", Dimension::Viscosity, 1e-9),
+    ("kPa·s", Dimension::Viscosity, 1e-3),
+    ("MPa·s", Dimension::Viscosity, 1.0),
+    ("K", Dimension::Temperature, 1.0),
+    ("cm^3/mol", Dimension::MolarVolume, 1e3),
+    ("mL/mol", Dimension::MolarVolume, 1e3),
+    ("mm^3/mol", Dimension::MolarVolume, 1.0),
+    ("m^3/mol", Dimension::MolarVolume, 1e9),
+    ("mol/m^3", Dimension::Concentration, 1e-9),
+    ("mol/L", Dimension::Concentration, 1e-6),
+    ("mmol/L", Dimension::Concentration, 1e-9),
+    ("mol/cm^3", Dimension::Concentration, 1e-3),
+    ("mol/mm^3", Dimension::Concentration, 1.0),
+    ("rad", Dimension::Angle, 1.0),
+    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
+    ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
+    ("%", Dimension::Ratio, 1e-2),
+];
