@@ -7,7 +7,7 @@ use super::decimals::is_number;
 /// The number of lines by which separators, names, units and rows are distinguished.
 pub(super) const SURVEYED: usize = 1000;
 
-/// A text without byte-order mark and old line ends; lines that begin with stars or per cent signs, as some programs write
+/// A text without byte-order mark and old line ends; lines that begin with stars, per cent signs or tags, as some programs write
 /// them first, become remarks.
 pub(super) fn plain_text(text: &str) -> String {
     let text = text.trim_start_matches('\u{feff}');
@@ -18,6 +18,10 @@ pub(super) fn plain_text(text: &str) -> String {
     };
     if text.starts_with("***") {
         let remark = |line: &str| remark_of(line, '*').unwrap_or_else(|| line.to_owned());
+        text.split_inclusive('\n').map(remark).collect()
+    } else if text.starts_with('<') {
+        // The sections of Mach-1: <INFO> … <DATA> … <END DATA>.
+        let remark = |line: &str| remark_of(line, '<').unwrap_or_else(|| line.to_owned());
         text.split_inclusive('\n').map(remark).collect()
     } else if text.trim_start().starts_with('%') {
         matlab_remarks(&text)

@@ -167,7 +167,7 @@ pub const UNITS: &[(&str, Dimension, f64)] = &[
     ("gf", Dimension::Force, 9.80665e-3),
     ("kgf", Dimension::Force, 9.80665),
     ("lbf", Dimension::Force, 4.448_221_615_260_5),
-    ("ozf", Dimension::Force, 0.278_013_850_953_781_25),
+    ("ozf", Dimension::Force, 0.278_013_850_953_781_2),
     ("cN", Dimension::Force, 1e-2),
     ("dyn", Dimension::Force, 1e-5),
     ("MPa", Dimension::Stress, 1.0),

@@ -33,8 +33,11 @@ pub struct Examined<'a> {
     pub is_motion: bool,
 }
 
+/// A rule by its name.
+type Rule = (&'static str, fn(Examined) -> Option<Found>);
+
 /// The rules by their names, in the order in which their findings are told.
-const RULES: [(&str, fn(Examined) -> Option<Found>); 14] = [
+const RULES: [Rule; 14] = [
     ("lattice-poisson-ratio", lattice),
     ("locking", locking_cells),
     ("relaxation-left-out", relaxation),

@@ -15,8 +15,14 @@ use crate::units::{decimals, number};
 /// What a rule has found in a frame, with its figures, and what to do, which is the same for all frames.
 type Doubt = (String, &'static str);
 
+/// A rule by its name.
+type Rule = (
+    &'static str,
+    fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>,
+);
+
 /// The rules by their names that each frame is checked by, the likeliest cause of others first.
-const RULES: [(&str, fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>); 9] = [
+const RULES: [Rule; 9] = [
     ("unknown-edge", unknown_edge),
     ("contradicted-edges", |_, estimate| {
         contradicted_edges(estimate)

@@ -7,6 +7,9 @@ use super::tests::read;
 /// A quantity with its unit, and its values by the strain.
 type Quantity = (&'static str, &'static str, fn(f64) -> f64);
 
+/// The columns of a table, and what is stated of it.
+type Case<'a> = (&'a [Quantity], &'a [(&'a str, &'a str)]);
+
 /// How a dialect writes a name with its unit.
 type Dialect = fn(&str, &str) -> String;
 
@@ -66,7 +69,7 @@ const MEASURES: [(&str, &str); 3] = [
 #[test]
 fn every_dialect_gives_the_same_curve() {
     let both = [&SPECIMEN[..], &MEASURES[1..]].concat();
-    let cases: [(&[Quantity], &[(&str, &str)]); 5] = [
+    let cases: [Case; 5] = [
         (&[TIME, EXTENSION, LOAD], &SPECIMEN),
         (&[STRAIN, STRESS, TIME], &MEASURES),
         (&[EXTENSION, LOAD, STRAIN, STRESS], &both),
