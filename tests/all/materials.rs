@@ -156,7 +156,7 @@ fn what_was_read_stands_with_the_fit_and_a_changed_card_is_told() {
     arguments.extend(["--length", "20 mm", "--area", "10 mm^2"]);
     let asked = gelbench(folder.path(), &arguments).code(2);
     let asked = words(&asked.get_output().stderr);
-    assert!(asked.contains("--columns \"stress=Load [N]\""), "{asked}");
+    assert!(asked.contains("--columns \"stress=Load (N)\""), "{asked}");
     arguments.extend(["--columns", "stress=Load [N]"]);
     let printed = words(
         &gelbench(folder.path(), &arguments)

@@ -169,7 +169,7 @@ fn numbers_and_units_are_told_alike_in_studies_cards_tables_and_options() {
     .unwrap();
     let message = told(folder.path(), &["materials", "show", "a.toml"], 2);
     contains(&message, &["parameters.amplitude", "write \"0.0611 mpa\""]);
-    let table = "# test: uniaxial\nstretch [-],nominal_stress [kpa]\n1,0\n2,1\n";
+    let table = "# test: uniaxial\nstretch [-],nominal_stress [kPaa]\n1,0\n2,1\n";
     fs::write(folder.path().join("a.csv"), table).unwrap();
     let message = told(
         folder.path(),

@@ -136,17 +136,21 @@ impl Above {
         let width = most_frequent(lines.iter().map(Vec::len));
         let is_head = |line: &Vec<String>| line.iter().all(|field| is_name(unquoted(field)));
         let of_width = |line: &Vec<String>| Some(line.len()) == width;
-        let Some(first_row) = lines.iter().position(|line| of_width(line) && is_row(line)) else {
-            let heads = lines.iter().take_while(|line| is_head(line)).count();
-            return Self {
-                names: (heads > 0).then_some(0),
-                units: (heads > 1).then_some(1),
-                first_row: heads,
-            };
-        };
+        let leading = lines.iter().take_while(|line| is_head(line)).count();
+        let first_row = lines.iter().position(|line| of_width(line) && is_row(line));
+        let first_row = first_row.unwrap_or(leading);
         let above = lines[..first_row].iter().rev();
         let heads = above.take_while(|line| of_width(line) && (is_head(line) || is_units(line)));
-        let first = first_row - heads.count();
+        let count = heads.count();
+        if count == 0 {
+            // Names of another width, such as those above rows that end with a separator.
+            return Self {
+                names: (leading > 0).then_some(0),
+                units: (leading > 1).then_some(1),
+                first_row: leading,
+            };
+        }
+        let first = first_row - count;
         let heads = &lines[first..first_row];
         let last_is_units = heads.len() > 1 && heads.last().is_some_and(|line| is_units(line));
         let named = heads.len() - usize::from(last_is_units);

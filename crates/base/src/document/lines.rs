@@ -139,10 +139,11 @@ pub(super) fn names_in_remark(remark: &str, width: usize) -> Option<Vec<&str>> {
     });
     let mut all = by_signs.into_iter().chain(by_blanks);
     all.find(|names: &Vec<&str>| {
-        names.len() == width
-            && names
-                .iter()
-                .all(|name| is_name(name.trim()) && !name.contains(':'))
+        // A colon stands in statements, `key: value`, and in names that have a unit.
+        let is_one = |name: &&str| {
+            is_name(name.trim()) && (!name.contains(':') || name.trim_end().ends_with(']'))
+        };
+        names.len() == width && names.iter().all(is_one)
     })
 }
 

@@ -309,6 +309,7 @@ impl ColumnReading {
             (SECOND_PIOLA_KIRCHHOFF, _) => "second Piola-Kirchhoff stress".to_owned(),
             (DISPLACEMENT | FORCE | "stretch", _) => measure,
             ("cauchy", kind) => format!("Cauchy {}", kind.name()),
+            ("", kind) => kind.name().to_owned(),
             (measure, kind) => format!("{measure} {}", kind.name()),
         };
         let axis = match role.numbered {
