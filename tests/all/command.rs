@@ -84,8 +84,8 @@ fn the_same_study_gives_the_same_bytes() {
     }
     assert_eq!(
         compared,
-        10 + 8 + 1 + 1 + 1,
-        "pictures, VTK files, a view of them, forces and the manifest"
+        10 + 8 + 1 + 1 + 1 + 1,
+        "pictures, VTK files, a view of them, forces, springs and the manifest"
     );
     let without_times = |output: &str| {
         let report = fs::read_to_string(folder.path().join(output).join("report.md")).unwrap();

@@ -168,10 +168,13 @@ impl Above {
     }
 }
 
-/// Whether a line is a row of numbers, beside which texts may stand: two of its fields are numbers, and it is no line of units.
+/// Whether a line is a row of numbers, beside which texts may stand: two of its fields are numbers, or one and all others are empty; and it is no
+/// line of units.
 fn is_row(line: &[String]) -> bool {
-    let numbers = line.iter().filter(|field| is_number(unquoted(field)));
-    numbers.count() >= 2 && !is_units(line)
+    let fields = || line.iter().map(|field| unquoted(field));
+    let numbers = fields().filter(|field| is_number(field)).count();
+    let others_are_empty = fields().filter(|field| field.is_empty()).count() + 1 == line.len();
+    (numbers >= 2 || numbers == 1 && others_are_empty) && !is_units(line)
 }
 
 /// The most frequent value, the first of those that are equally frequent.
