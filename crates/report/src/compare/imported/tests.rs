@@ -197,7 +197,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         (
             ".csv",
             "X_mm,Y_mm,ux_MPa,uy_mm\n3,2,1,1\n".into(),
-            "no column `ux`: the file has x_mm, y_mm, ux_mpa",
+            "`MPa` is not a unit of length",
         ),
         (
             ".csv",

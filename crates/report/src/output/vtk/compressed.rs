@@ -12,8 +12,8 @@ const LEVEL: u32 = 5;
 /// Bytes of a block before compression.
 const BLOCK: usize = 1 << 15;
 
-/// An array in base64, its length in front as 64 bits, in blocks: the head has the number of blocks, the size of a block, that of the last one if
-/// it is smaller (otherwise zero), and the compressed size of each. `None` where the text is no such array.
+/// An array in base64, its length in front as 64 bits, in blocks: the head has the number of blocks, the size of a block, that of the last one,
+/// and the compressed size of each. `None` where the text is no such array.
 pub fn compressed(array: &str) -> Option<String> {
     let bytes = STANDARD.decode(array.trim()).ok()?;
     let values = bytes.get(8..)?;
@@ -28,7 +28,7 @@ pub fn compressed(array: &str) -> Option<String> {
             .ok()?;
         sizes.push(blocks.len() - start);
     }
-    let last = values.len() % BLOCK;
+    let last = values.chunks(BLOCK).next_back().map_or(0, <[u8]>::len);
     let head = [sizes.len(), BLOCK, last].into_iter().chain(sizes);
     let head: Vec<u8> = head.flat_map(|size| (size as u64).to_le_bytes()).collect();
     Some(STANDARD.encode(head) + &STANDARD.encode(blocks))
