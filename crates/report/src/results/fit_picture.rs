@@ -34,16 +34,16 @@ struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    fn all(fit: &Fit, tests: &'a [TestData]) -> Vec<Self> {
+    fn all(tests: &'a [(TestData, &'a [f64], String)]) -> Vec<Self> {
         let mut courses: Vec<Self> = Vec::new();
-        for (data, predicted) in tests.iter().zip(&fit.predicted) {
+        for (data, predicted, name) in tests {
             for axis in [0, 1] {
                 let rows = rows(data, predicted, axis);
                 if rows.is_empty() {
                     continue;
                 }
                 let direction = if axis == 1 { ", direction 2" } else { "" };
-                let mut label = format!("{}{direction}", data.test.name());
+                let mut label = format!("{name}{direction}");
                 if courses.iter().any(|other| other.label == label) {
                     let stem = Path::new(&data.name).file_stem();
                     label = stem.map_or(label, |stem| stem.to_string_lossy().into_owned());
@@ -166,7 +166,8 @@ fn residual_chart(x: Axis, lines: Vec<Line>) -> LineChart {
 
 /// Data with the fitted stresses, and the residuals below.
 pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
-    let courses = Course::all(fit, tests);
+    let drawn = drawn(fit, tests);
+    let courses = Course::all(&drawn);
     let largest = tests.iter().map(|test| test.largest_stress);
     let largest = largest.fold(0.0, f64::max);
     let stress = format!("{} stress", fit.stress_measure().title());
@@ -217,6 +218,26 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
             (residual_chart(deformation(tests), residuals.collect()), 250),
         ]
     })
+}
+
+/// The tests with the fitted stresses and their names in the legend: the law alone has a curve for each protocol of a biaxial test.
+fn drawn<'a>(fit: &'a Fit, tests: &[TestData]) -> Vec<(TestData, &'a [f64], String)> {
+    let has_memory = fit.relaxed.is_some() || fit.softened.is_some();
+    let mut drawn = Vec::new();
+    for (data, predicted) in tests.iter().zip(&fit.predicted) {
+        let parts = Some(data.by_protocol()).filter(|parts| parts.len() > 1 && !has_memory);
+        let Some(parts) = parts else {
+            drawn.push((data.clone(), &predicted[..], data.test.name().to_owned()));
+            continue;
+        };
+        let mut rest = &predicted[..];
+        for (part, number) in parts.into_iter().zip(1..) {
+            let (own, others) = rest.split_at(part.observations.len().min(rest.len()));
+            rest = others;
+            drawn.push((part, own, format!("protocol {number}")));
+        }
+    }
+    drawn
 }
 
 /// The axis of what the tests were deformed by.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::test_data::{Observation, Test, TestData};
+use super::test_data::{Observation, Test, TestData, Times};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::statistics::{extremes, farthest};
@@ -183,6 +183,28 @@ impl TestData {
         pulls
             .map(|rows| &self.observations[each * rows.start..each * rows.end])
             .collect()
+    }
+}
+
+impl TestData {
+    /// The test as one for each of its [`Self::protocols`].
+    pub fn by_protocol(&self) -> Vec<Self> {
+        let protocols = self.protocols();
+        if protocols.len() < 2 {
+            return vec![self.clone()];
+        }
+        let of_protocol = |observations: &[Observation]| {
+            let widest =
+                [0, 1].map(|axis| farthest(observations.iter().map(|one| one.strains[axis])));
+            Self {
+                observations: observations.to_vec(),
+                drawn_axis: usize::from(widest[1].abs() > widest[0].abs()),
+                times: Times::None,
+                left_out: Vec::new(),
+                ..self.clone()
+            }
+        };
+        protocols.into_iter().map(of_protocol).collect()
     }
 }
 
