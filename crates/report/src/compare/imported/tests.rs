@@ -207,7 +207,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         (
             ".csv",
             format!("{}3,2,1,1,0.3\n", head.replace('\n', ",uz_mm\n")),
-            "do not stay in a plane: `uz_mm` reaches 0.3000 compared with 1.0000",
+            "do not stay in a plane: `uz` reaches 0.3000 compared with 1.0000",
         ),
         (
             ".csv",
