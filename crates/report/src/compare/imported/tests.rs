@@ -240,7 +240,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
             "two displacements at (4, 2) mm: (1, 1) and (1, 0.9) mm (leave the rows of one load factor",
         ),
         (
-            ".txt",
+            ".docx",
             String::new(),
             "is not a .vtu, .vtk, .pvd, .msh, .frd or .csv file",
         ),
