@@ -176,9 +176,14 @@ pub fn is_harmless(name: &str) -> bool {
 }
 
 /// Whether the user ignores a column, by its name with or without its unit.
-fn is_ignored(name: &str, ignored: &[String]) -> bool {
+fn is_ignored(column: &Column, ignored: &[String]) -> bool {
+    let head = plain_name(&column.head());
     ignored.iter().any(|ignored| {
-        let rest = name.strip_prefix(&*plain_name(ignored));
+        let ignored = plain_name(ignored);
+        if ignored == head {
+            return true;
+        }
+        let rest = column.name.strip_prefix(&*ignored);
         let unit = rest.map(|rest| rest.strip_prefix('_').unwrap_or(rest));
         rest == Some("") || unit.is_some_and(|unit| is_pixel(unit) || millimetres(unit).is_some())
     })
@@ -188,7 +193,7 @@ fn is_ignored(name: &str, ignored: &[String]) -> bool {
 pub fn others<'a>(table: &'a Table, used: &[usize], ignored: &[String]) -> Vec<&'a Column> {
     let columns = table.columns.iter().enumerate();
     let other = columns.filter(|(index, column)| {
-        let passed = is_ignored(&column.name, ignored) || is_harmless(&column.name);
+        let passed = is_ignored(column, ignored) || is_harmless(&column.name);
         !used.contains(index) && !passed
     });
     other.map(|(_, column)| column).collect()
@@ -268,7 +273,7 @@ pub const OUT_OF_PLANE: [Names; 2] = [HEIGHT, LIFT];
 /// The columns out of the plane that are present and not ignored.
 pub fn out_of_plane(table: &Table, names: [Names; 2], ignored: &[String]) -> Vec<usize> {
     let found = names.map(|names| find(table, names).map(|(index, _)| index));
-    let wanted = |index: &usize| !is_ignored(&table.columns[*index].name, ignored);
+    let wanted = |index: &usize| !is_ignored(&table.columns[*index], ignored);
     found.into_iter().flatten().filter(wanted).collect()
 }
 

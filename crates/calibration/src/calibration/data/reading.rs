@@ -67,9 +67,12 @@ impl TestData {
             table.check_numbers(layout.columns(), hint)?;
         }
         let chosen = chosen_rows(&head, &layout, &measured).map_err(|fault| input(*fault))?;
-        let all_are_stated = reading.contains_key(ROWS);
-        let gross = Some(layout.gross_rows(table, &chosen)).filter(|_| !all_are_stated);
-        let gross = gross.unwrap_or_default();
+        let rows_are_stated = head.text(ROWS).map_err(|fault| input(*fault))?.is_some();
+        let gross = if rows_are_stated {
+            Vec::new()
+        } else {
+            layout.gross_rows(table, &chosen)
+        };
         let (chosen, _) = kept(&chosen, |row| !gross.contains(row));
         let fewer = (chosen.len() < all.len()).then(|| table.with_rows(&chosen));
         let head = match &fewer {
