@@ -81,20 +81,17 @@ pub(super) fn tables(
 fn of_archive(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>, Unconvertible> {
     let archive = Archive::open(bytes)?;
     let names = archive.names();
-    match () {
-        () if names.iter().any(|name| name.ends_with("workbook.xml")) => {
-            spreadsheet::tables(archive, part)
-        }
-        () if !names.is_empty() && names.iter().all(|name| name.ends_with(".npy")) => {
-            arrays::of_npz(archive, part)
-        }
-        () => {
-            let hint = "give a table as text, .xlsx, .npy, .npz or .mat";
-            Err(Unconvertible::new(
-                "is an archive without a workbook or arrays of NumPy",
-                hint,
-            ))
-        }
+    let are_arrays = !names.is_empty() && names.iter().all(|name| name.ends_with(".npy"));
+    if names.iter().any(|name| name.ends_with("workbook.xml")) {
+        spreadsheet::tables(archive, part)
+    } else if are_arrays {
+        arrays::of_npz(archive, part)
+    } else {
+        let hint = "give a table as text, .xlsx, .npy, .npz or .mat";
+        Err(Unconvertible::new(
+            "is an archive without a workbook or arrays of NumPy",
+            hint,
+        ))
     }
 }
 

@@ -193,16 +193,12 @@ impl TestData {
         if protocols.len() < 2 {
             return vec![self.clone()];
         }
-        let of_protocol = |observations: &[Observation]| {
-            let widest =
-                [0, 1].map(|axis| farthest(observations.iter().map(|one| one.strains[axis])));
-            Self {
-                observations: observations.to_vec(),
-                drawn_axis: usize::from(widest[1].abs() > widest[0].abs()),
-                times: Times::None,
-                left_out: Vec::new(),
-                ..self.clone()
-            }
+        let of_protocol = |observations: &[Observation]| Self {
+            observations: observations.to_vec(),
+            drawn_axis: Observation::drawn_axis(Observation::farthest_strains(observations)),
+            times: Times::None,
+            left_out: Vec::new(),
+            ..self.clone()
         };
         protocols.into_iter().map(of_protocol).collect()
     }

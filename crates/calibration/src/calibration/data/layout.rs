@@ -169,7 +169,7 @@ impl Layout {
         let stresses = observations.iter().map(|one| one.stress.abs());
         let largest_stress = stresses.fold(0.0, f64::max);
         check_signs(head, &observations, self.test)?;
-        let widest = [0, 1].map(|axis| farthest(observations.iter().map(|one| one.strains[axis])));
+        let widest = Observation::farthest_strains(&observations);
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
         let warnings = [
             reversals(head, self.test, &along),
@@ -181,7 +181,7 @@ impl Layout {
             test: self.test,
             stress_measure: self.stress_measure,
             axes: self.stresses.iter().map(|own| own.axis).collect(),
-            drawn_axis: usize::from(widest[1].abs() > widest[0].abs()),
+            drawn_axis: Observation::drawn_axis(widest),
             loaded: Loaded::of(observations.iter().flat_map(|one| one.strains)),
             observations,
             largest_stress,

@@ -91,6 +91,16 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// The largest strains of some observations along both axes.
+    pub(super) fn farthest_strains(all: &[Self]) -> [f64; 2] {
+        [0, 1].map(|axis| farthest(all.iter().map(|one| one.strains[axis])))
+    }
+
+    /// The axis that is stretched further, by the largest strains along both.
+    pub(super) fn drawn_axis([first, second]: [f64; 2]) -> usize {
+        usize::from(second.abs() > first.abs())
+    }
+
     /// The mean of neighbouring observations along one axis.
     pub(in crate::calibration) fn mean(bin: &[Self]) -> Self {
         if let [one] = bin {

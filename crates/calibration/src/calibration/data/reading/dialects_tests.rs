@@ -1,7 +1,7 @@
 //! The same specimen in the dialects of testing machines: units in names, in brackets, or in a line of their own; columns in any order; force,
 //! stress or both; one axis or two.
 
-use super::layouts_tests::{is_right, stress};
+use super::layouts_tests::{SPECIMEN, is_right, stress};
 use super::tests::read;
 
 /// A quantity with its unit, and its values by the strain.
@@ -55,11 +55,6 @@ const LOAD: Quantity = ("Load", "mN", |x| 1e4 * stress(x));
 const STRAIN: Quantity = ("Strain", "%", |x| 100.0 * x);
 const STRESS: Quantity = ("Stress", "KPa", |x| 1e3 * stress(x));
 
-const SPECIMEN: [(&str, &str); 3] = [
-    ("test", "uniaxial"),
-    ("length", "20 mm"),
-    ("area", "10 mm^2"),
-];
 const MEASURES: [(&str, &str); 3] = [
     ("test", "uniaxial"),
     ("strain measure", "nominal"),
@@ -198,4 +193,17 @@ fn rows_are_chosen_by_lines_columns_and_strains_and_signs_are_reversed() {
         let fault = read(text, &[&SPECIMEN[..], &[(key, value)]].concat()).unwrap_err();
         assert!(fault.contains(message), "{fault}");
     }
+}
+
+#[test]
+fn rows_that_are_stated_in_the_file_are_kept_whatever_they_hold() {
+    let table = table(&[EXTENSION, LOAD], 0, ",").replacen("0.000000000,0.000000000", "0,9999", 1);
+    let count = |head: &str| {
+        let data = read(
+            &format!("{head}{table}"),
+            &[&SPECIMEN[..], &[("zero", "none")]].concat(),
+        );
+        data.unwrap().observations.len()
+    };
+    assert_eq!([count(""), count("# rows: 1..\n")], [39, 40]);
 }

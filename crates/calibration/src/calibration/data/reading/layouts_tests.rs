@@ -48,7 +48,7 @@ pub fn is_right(data: &TestData) -> bool {
     on_curve && data.observations.len() == strains().count()
 }
 
-const SPECIMEN: [(&str, &str); 3] = [
+pub const SPECIMEN: [(&str, &str); 3] = [
     ("test", "uniaxial"),
     ("length", "20 mm"),
     ("area", "10 mm^2"),
