@@ -21,7 +21,7 @@ pub fn report() -> Result<String, Box<dyn Error>> {
     let mesh = Mesh::plate([150.0, 50.0], [12, 4], CellShape::Quad9);
     let specimen = Specimen {
         mesh: &mesh,
-        law: Card::load("pva-10", Path::new("."))?.law,
+        laws: Card::load("pva-10", Path::new("."))?.law.into(),
         thickness: 2.0,
     };
     let known = |edge: &str, condition| (edge.to_owned(), condition);

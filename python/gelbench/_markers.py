@@ -101,6 +101,7 @@ def correct(
     physics: str | None = None,
     fit: Sequence[str] = (),
     sheet: str | None = None,
+    regions: Mapping[str, Material | PathLike] | None = None,
     conditions: PathLike | None = None,
     unit: str | None = None,
     array: str | None = None,
@@ -160,6 +161,8 @@ def correct(
     sheet : {"plane-stress", "plane-strain"}, optional
         A thin sheet with free surfaces (if omitted), or a thick body between walls, whose material needs a resistance to a change of
         volume.
+    regions : mapping, optional
+        The materials of named groups of the mesh's cells: ``{"inclusion": "pva-10"}``; all other cells are of `material`.
     conditions : path, optional
         A file with the known conditions, instead of the arguments from `free` to `sheet`.
     unit, array, grid, columns, ignore_columns, encoding, y_axis, places, rest
@@ -228,6 +231,7 @@ def correct(
         "refine": refine,
         "cells": cells,
         "holes": holes,
+        "regions": [(name, card(_material(one))) for name, one in (regions or {}).items()],
         "allow_large": allow_large,
     }
     size = number(thickness, "mm", "thickness")

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gelbench::document::TextEncoding;
 use gelbench::error::Error;
 use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
+use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Exemptions, MeshReading};
 use gelbench::results::GridSeries;
 use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
@@ -43,6 +44,7 @@ pub struct Options {
     refine: bool,
     cells: String,
     holes: bool,
+    regions: Vec<(String, Py<MaterialCard>)>,
     allow_large: bool,
 }
 
@@ -145,8 +147,15 @@ pub fn correct(
     options: Options,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Results, String)> {
+    let regions = options.regions.iter();
+    let regions = regions.map(|(name, own)| (name.clone(), (*own.borrow(py).card).clone()));
+    let regions: Vec<(String, Card)> = regions.collect();
     run(py, progress, |watch| {
         let card = watched((*material.card).clone(), watch);
+        let mut conditions = Conditions::parse("conditions", &known)?;
+        let regions = regions.into_iter();
+        let regions = regions.map(|(name, card)| (name, watched(card, watch)));
+        conditions.regions.extend(regions);
         let request = Request {
             reading: options.reading()?,
             material: card.name.clone(),
@@ -155,7 +164,7 @@ pub fn correct(
             cell_size: options.cell_size,
             shape: options.shape()?,
             holes: options.holes,
-            conditions: Conditions::parse("conditions", &known)?,
+            conditions,
             forces: options.forces.clone(),
             budget: budget(options.allow_large),
             files: files.clone(),

@@ -297,3 +297,93 @@ fn an_inclusion_has_the_force_and_the_displacement_of_another_code() {
         }
     }
 }
+
+/// A field of markers of two strips in parallel: homogeneous, and as both cards alone make it.
+fn markers_of_parallel_strips() -> String {
+    let across = 1.4_f64.powf(-0.5) - 1.0;
+    let mut text = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
+    for (i, j) in (0..33).flat_map(|i| (0..17).map(move |j| (i, j))) {
+        let [x, y] = [f64::from(i) * 0.5, f64::from(j) * 0.5];
+        // Draws that do not depend on their neighbours.
+        let noise = |seed: f64| {
+            0.002 * ((seed * 12.9898 + f64::from(i * 17 + j)).sin() * 43758.5453).fract()
+        };
+        let (ux, uy) = (0.4 * x + noise(1.0), across * y + noise(2.0));
+        let _ = writeln!(text, "{x},{y},{ux:.6},{uy:.6}");
+    }
+    text
+}
+
+#[test]
+fn a_corrected_field_has_the_force_of_the_cards_of_all_regions() {
+    let folder = folder(BOTH, 0);
+    fs::write(
+        folder.path().join("markers.csv"),
+        markers_of_parallel_strips(),
+    )
+    .unwrap();
+    let cards = "[[material]]\non = \"upper\"\ncard = \"meunier-yeoh\"\n";
+    fs::write(folder.path().join("known.toml"), cards).unwrap();
+    let force = |arguments: &[&str]| {
+        let all = [
+            &[
+                "correct",
+                "markers.csv",
+                "--material",
+                "neo-hooke",
+                "--thickness",
+                "0.5 mm",
+            ],
+            &[
+                "--mesh",
+                "strip.msh",
+                "--free",
+                "bottom,top",
+                "--output",
+                "out",
+            ],
+            arguments,
+        ];
+        gelbench(folder.path(), &all.concat()).code(0);
+        let report = machine_report(&folder.path().join("out"));
+        let forces = report["steps"][0]["forces"].as_array().unwrap();
+        let right = forces.iter().find(|own| own["edge"] == "right").unwrap();
+        number(right, &["x_N", "value"])
+    };
+    let exact = 0.5 * 4.0 * (stress("neo-hooke") + stress("meunier-yeoh"));
+    let of_option = force(&["--region", "upper=meunier-yeoh"]);
+    assert!(
+        (of_option / exact - 1.0).abs() < 2e-3,
+        "{of_option} {exact}"
+    );
+    assert_eq!(of_option, force(&["--study", "known.toml"]));
+    let of_one = force(&[]);
+    assert!((of_one / (0.5 * 8.0 * stress("neo-hooke")) - 1.0).abs() < 2e-3);
+}
+
+#[test]
+fn a_card_for_a_region_that_the_mesh_lacks_is_refused() {
+    let folder = folder(BOTH, 0);
+    fs::write(
+        folder.path().join("markers.csv"),
+        markers_of_parallel_strips(),
+    )
+    .unwrap();
+    let given = [
+        "correct",
+        "markers.csv",
+        "--material",
+        "neo-hooke",
+        "--thickness",
+        "0.5 mm",
+        "--mesh",
+        "strip.msh",
+        "--region",
+        "uper=meunier-yeoh",
+    ];
+    let message = gelbench(folder.path(), &given).code(2);
+    assert!(
+        words(&message).contains("no region `uper` did you mean `upper`"),
+        "{message}"
+    );
+}

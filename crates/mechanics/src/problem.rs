@@ -31,7 +31,7 @@ pub use boundary::BoundaryProblem;
 pub use boundary_conditions::{Drive, LONGEST_TURN, Load, Support};
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use groups::mean_displacement;
-pub use laws::{CellLaws, Region, SheetLaws};
+pub use laws::{CellLaws, LawAndRegions, Region, SheetLaws};
 pub use model::Model;
 pub use plate::{ClampedPlate, Measures};
 pub use reactions::{GroupState, Reactions};

@@ -6,13 +6,13 @@ use clap::{ArgAction, Args};
 
 use super::pictures::PictureOptions;
 use super::values::{CELLS, HOLES, PLACES, Y_AXIS};
-use super::values::{encoding, force, force_column, gap, length, scale_error, size, unit};
+use super::values::{encoding, force, force_column, gap, length, region, scale_error, size, unit};
 use crate::command::choice::one_of;
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
 use gelbench_base::document::TextEncoding;
 use gelbench_estimation::estimation::{JointSettings, MeasuredForce, Physics, Robust};
-use gelbench_mechanics::material::PlaneState;
+use gelbench_mechanics::material::{Card, PlaneState};
 use gelbench_mechanics::mesh::{CellShape, Exemptions};
 use gelbench_studies::studies::markers::ForceColumn;
 
@@ -30,6 +30,9 @@ pub struct Options {
     /// Thickness at rest, such as "2 mm"
     #[arg(long, value_name = "LENGTH", value_parser = size, allow_hyphen_values = true, required_unless_present = "specimen")]
     pub thickness: Option<f64>,
+    /// The card of a region of the mesh with a material of its own: its name, = and the card, such as inclusion=pva-10
+    #[arg(long, value_name = "REGION=CARD", value_parser = region)]
+    pub region: Vec<(String, Card)>,
     /// A thin sheet with free surfaces (plane stress, the default), or a thick body between walls (plane strain), whose card needs a
     /// `[volume]`
     #[arg(long, value_parser = one_of(&PlaneState::NAMES))]

@@ -54,6 +54,7 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
         .force_columns
         .extend_from_slice(&options.force_column);
     conditions.fit.extend_from_slice(&options.fit);
+    conditions.regions.extend_from_slice(&options.region);
     conditions.sheet = options.sheet.or(conditions.sheet);
     conditions.noise = options.noise.or(conditions.noise);
     conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);

@@ -1,9 +1,12 @@
 //! The values of the options of `gelbench correct`.
 
+use std::path::Path;
+
 use gelbench_base::document::TextEncoding;
-use gelbench_base::error::Diagnostic;
+use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::{self, Dimension};
 use gelbench_estimation::estimation::MeasuredForce;
+use gelbench_mechanics::material::Card;
 use gelbench_mechanics::mesh::CellShape;
 use gelbench_studies::studies::markers::{ForceColumn, measured_force};
 
@@ -25,6 +28,20 @@ pub const HOLES: [(&str, bool); 2] = [("found", true), ("closed", false)];
 pub fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {
     let (edge, axis, value, deviation) = on_an_edge(text, "right x 1.2 N ± 0.02 N")?;
     Ok(measured_force(edge, axis, newtons(&value)?, deviation))
+}
+
+/// A region, and its card.
+pub fn region(text: &str) -> Result<(String, Card), Diagnostic> {
+    let (name, card) = text.split_once('=').ok_or_else(|| {
+        let hint = "write the region and its card, as in \"inclusion=pva-10\"";
+        Diagnostic::error("", "it is not a card for a region").hint(hint)
+    })?;
+    let card = Card::load(card.trim(), Path::new("."));
+    let card = card.map_err(|fault| match fault {
+        Error::Input(mut faults) if !faults.is_empty() => faults.swap_remove(0),
+        other => Diagnostic::error("", other.to_string()),
+    })?;
+    Ok((name.trim().to_owned(), card))
 }
 
 /// An edge, an axis, a column of forces and its standard deviation.

@@ -145,7 +145,7 @@ fn large(data: &Data) -> Result<(String, f64), Error> {
     let subject = Subject::plate(data)?;
     let specimen = Specimen {
         mesh: &Mesh::plate(problem.size, [549, 183], CellShape::Quad4),
-        law: Arc::clone(&problem.law),
+        laws: Arc::clone(&problem.law).into(),
         thickness: problem.thickness,
     };
     let data = subject.data(Disturbance::noise(MIDDLE), 0);

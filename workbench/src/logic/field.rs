@@ -12,7 +12,7 @@ use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
 use gelbench::results::{Drawing, Results};
 use gelbench::studies::markers::MarkerStudy;
-use gelbench_mechanics::problem::CellLaws;
+use gelbench_mechanics::problem::SheetLaws;
 use gelbench_report::output::{self, vtk};
 use gelbench_report::results::{Panel, mesh_outlines, nodal_states};
 use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES, played};
@@ -303,7 +303,7 @@ fn preview(study: &MarkerStudy) -> Preview {
 
 fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> CorrectedFrame {
     let (mesh, u) = (&study.mesh, &estimate.displacement[..]);
-    let laws = CellLaws::from(study.law(estimate));
+    let laws = SheetLaws::from(&study.laws(estimate)).in_cells(&study.mesh);
     let states = nodal_states(&laws, mesh, &[u], &[]);
     let at_nodes = |name: &str, value: &dyn Fn(usize) -> f64| {
         (name.to_owned(), Panel::at_nodes(name, mesh, u, value))

@@ -1,7 +1,5 @@
 //! The equations that the nearest field satisfies, and their dependence on the parameters.
 
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, DVector};
 
 use super::edges::{Body, EdgeMotion, bodies};
@@ -41,7 +39,6 @@ pub struct Equations<'a> {
     pub motion: EdgeMotion,
     /// The bodies that hold the sheet.
     pub bodies: Vec<Body>,
-    pub law: Arc<dyn HyperelasticLaw>,
     pub energy: SheetEnergy,
     pub newton: Newton,
     /// Forces on the interior, where requested, and their present values in N.
@@ -64,7 +61,7 @@ impl<'a> Equations<'a> {
     pub fn new(task: &Task<'a>, edges: &[Edge]) -> Result<Self, Error> {
         let Specimen {
             mesh,
-            law,
+            laws,
             thickness,
         } = &task.specimen;
         let conditions: Vec<_> = edges
@@ -73,11 +70,11 @@ impl<'a> Equations<'a> {
             .collect();
         let spacing = task.observations.spacing(mesh);
         let motion = EdgeMotion::new(mesh, &conditions, &singular_corners(edges), spacing);
-        let law = match &task.knowledge.law {
-            Some(regressed) => regressed.at(&regressed.start()),
-            None => Arc::clone(law),
+        let laws = match &task.knowledge.law {
+            Some(regressed) => laws.with_law(regressed.at(&regressed.start())),
+            None => laws.clone(),
         };
-        let energy = SheetEnergy::of_mesh(Arc::clone(&law), mesh, *thickness);
+        let energy = SheetEnergy::of_mesh(laws, mesh, *thickness);
         let held = motion
             .at(&vec![0.0; motion.parameters()])
             .held(energy.unknowns());
@@ -98,12 +95,16 @@ impl<'a> Equations<'a> {
             task: task.clone(),
             bodies: bodies(mesh, conditions.iter().copied()),
             motion,
-            law,
             energy,
             newton: newton.map_err(solve)?,
             body: weighted.then(|| BodyForce::new(mesh, &held)),
             forces,
         })
+    }
+
+    /// The law of a cell.
+    pub fn law(&self, cell: usize) -> &dyn HyperelasticLaw {
+        self.energy.laws().of(cell)
     }
 
     /// A smooth field near the data, in equilibrium, and its trust of the markers.
@@ -233,8 +234,9 @@ impl<'a> Equations<'a> {
             self.forces = body.forces(last, self.forces.len());
         }
         if let Some(regressed) = &self.task.knowledge.law {
-            self.law = regressed.at(self.law_values(parameters));
-            self.energy = self.energy.with_law(Arc::clone(&self.law));
+            self.energy = self
+                .energy
+                .with_law(regressed.at(self.law_values(parameters)));
         }
     }
 

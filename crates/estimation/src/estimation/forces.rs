@@ -151,8 +151,9 @@ impl NearestField<'_> {
         let mesh = self.equations.task.specimen.mesh;
         let energy = |cell: usize, local: [f64; 2]| {
             let gradient = PlaneTensor::from(mesh.gradient_at(&self.field, cell, local));
-            Kinematics::new(&gradient)
-                .map_or(0.0, |kinematics| self.equations.law.stress(&kinematics).0)
+            Kinematics::new(&gradient).map_or(0.0, |kinematics| {
+                self.equations.law(cell).stress(&kinematics).0
+            })
         };
         let over = |cell: usize| -> f64 {
             let points = mesh.shape(cell).quadrature().into_iter();

@@ -37,6 +37,14 @@ const EXPLAINS: f64 = 0.98;
 /// likeliest length is too uncertain for valid intervals: by their coverage, `gelbench validate interval-coverage`.
 const INDEPENDENT: f64 = 100.0;
 
+/// The conditions that an edge may have instead of a stated one.
+const OTHER_CONDITIONS: [EdgeCondition; 4] = [
+    EdgeCondition::Free,
+    EdgeCondition::Rigid,
+    EdgeCondition::Known([Some(0.0), None]),
+    EdgeCondition::Known([None, Some(0.0)]),
+];
+
 /// The noise that was found, and the verdict.
 #[derive(Default)]
 pub struct Judgement {
@@ -95,6 +103,10 @@ pub fn judge(
     if against.is_some() {
         let each = basis.edge_by_edge(found, edges, &granted);
         contradiction = contradicted(together.as_ref(), &each, level);
+        let contradicted = contradiction.iter().flat_map(|all| &all.edges);
+        for (name, _) in contradicted {
+            trials.extend(basis.other_conditions(found, edges, &granted, name));
+        }
         trials.extend(together.filter(|_| each.len() > 1));
         trials.extend(each);
         let moved = found.moved_edges(edges)?.into_iter();
@@ -159,6 +171,24 @@ impl Basis<'_> {
         trials.collect()
     }
 
+    /// What an edge with a stated condition explains with each of those that it may have instead.
+    fn other_conditions(
+        &self,
+        found: &NearestField,
+        edges: &[Edge],
+        granted: &[Granted],
+        name: &str,
+    ) -> Vec<Trial> {
+        let trials = OTHER_CONDITIONS.into_iter().filter_map(|condition| {
+            let scored = with_condition(found, edges, condition, &|other| other == name)?;
+            let model = Model::of_score(self.rows, found, &scored).granting(self.rows, granted);
+            let edge = name.to_owned();
+            let alternative = Alternative::Condition { edge, condition };
+            Some(self.try_out(found, alternative, &model))
+        });
+        trials.collect()
+    }
+
     /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
     fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
@@ -200,12 +230,22 @@ fn is_stated(edge: &Edge) -> bool {
 
 /// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
 fn released(found: &NearestField, edges: &[Edge], goes: &dyn Fn(&str) -> bool) -> Option<Scored> {
+    with_condition(found, edges, EdgeCondition::Unknown, goes)
+}
+
+/// The same with another condition of these edges; `None` too where they have it.
+fn with_condition(
+    found: &NearestField,
+    edges: &[Edge],
+    condition: EdgeCondition,
+    goes: &dyn Fn(&str) -> bool,
+) -> Option<Scored> {
     let mut relaxed = edges.to_vec();
     let mut any = false;
     for edge in &mut relaxed {
         if is_stated(edge) && goes(&edge.segment.name) {
-            edge.condition = EdgeCondition::Unknown;
-            any = true;
+            any |= edge.condition != condition;
+            edge.condition = condition;
         }
     }
     let search = any

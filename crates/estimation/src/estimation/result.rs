@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
-use super::equations::{Equations, solve};
+use super::equations::solve;
 use super::input::{Edge, Neighbours};
 use super::judge::{Judgement, judge};
 use super::outcome::{
@@ -177,8 +177,8 @@ impl NearestField<'_> {
         neighbours: &[(usize, Neighbours)],
         better: [f64; 4],
     ) -> Result<StressEstimate, Error> {
-        let Equations { task, law, .. } = &self.equations;
-        let specimen = &task.specimen;
+        let specimen = &self.equations.task.specimen;
+        let law = self.equations.law(cell);
         let mesh = specimen.mesh;
         let centre = mesh.shape(cell).centre();
         let (gradients, _) = mesh.gradients(cell, centre);

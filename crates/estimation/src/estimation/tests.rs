@@ -283,7 +283,7 @@ fn forces_on_the_interior_make_up_for_a_wrong_law_and_vanish_with_the_right_one(
     let pva = Card::load("pva-10", std::path::Path::new(".")).unwrap();
     let run = |law: Arc<dyn HyperelasticLaw>, physics: Physics| {
         let wrong = Specimen {
-            law,
+            laws: law.into(),
             ..specimen(&mesh)
         };
         let knowledge = Knowledge {

@@ -9,7 +9,6 @@
 //! edge with known displacements has these instead of ū, a rigid one the rigid motion nearest to ū.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use super::edges::{Body, bodies};
 use super::equations::{approach, solve};
@@ -60,7 +59,7 @@ pub fn transfer(
             "state which edges are held, or leave their conditions open",
         ));
     }
-    let energy = SheetEnergy::of_mesh(Arc::clone(&specimen.law), mesh, specimen.thickness);
+    let energy = SheetEnergy::of_mesh(specimen.laws.clone(), mesh, specimen.thickness);
     let held: Vec<bool> = imposed.iter().map(Option::is_some).collect();
     let mut newton = Newton::new(&energy, &held).map_err(solve)?;
     let (field, residual, steps) = equilibrium(&mut newton, &energy, mesh, &start, &imposed)?;
@@ -187,12 +186,13 @@ fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstima
             element: mesh.describe_cell(cell),
         })
     })?;
-    let (_, stress) = specimen.law.stress(&kinematics);
+    let law = specimen.laws.of(cell);
+    let (_, stress) = law.stress(&kinematics);
     Ok(StressEstimate {
         first_piola_kirchhoff_stress: stress.into(),
         stress_error: [0.0; 4],
         mesh_error: 0.0,
-        thickness: specimen.thickness * specimen.law.thickness_stretch(&kinematics),
+        thickness: specimen.thickness * law.thickness_stretch(&kinematics),
         thickness_error: 0.0,
     })
 }

@@ -31,6 +31,15 @@ impl<'a> From<&'a Arc<dyn HyperelasticLaw>> for SheetLaws<'a> {
     }
 }
 
+/// The law of the cells that belong to no region, and the regions.
+pub type LawAndRegions = (Arc<dyn HyperelasticLaw>, Vec<Region>);
+
+impl<'a> From<&'a LawAndRegions> for SheetLaws<'a> {
+    fn from((law, regions): &'a LawAndRegions) -> Self {
+        Self { law, regions }
+    }
+}
+
 impl<'a> SheetLaws<'a> {
     /// Every law: that of the cells of no region first, then those of the regions.
     pub fn all(self) -> impl Iterator<Item = &'a Arc<dyn HyperelasticLaw>> + Clone {
@@ -87,6 +96,24 @@ impl CellLaws {
     /// The law of a cell.
     pub fn of(&self, cell: usize) -> &dyn HyperelasticLaw {
         &*self.laws[usize::from(self.number(cell))]
+    }
+
+    /// The same with another law of the cells that belong to no region.
+    #[must_use]
+    pub fn with_law(&self, law: Arc<dyn HyperelasticLaw>) -> Self {
+        let mut other = self.clone();
+        other.laws[0] = law;
+        other
+    }
+
+    /// The laws of the cells of a refined mesh, each of which has four in the place of one.
+    #[must_use]
+    pub fn refined(&self) -> Self {
+        let parts = self.of_cells.iter().flat_map(|number| [*number; 4]);
+        Self {
+            laws: self.laws.clone(),
+            of_cells: parts.collect(),
+        }
     }
 
     /// All laws by their numbers.

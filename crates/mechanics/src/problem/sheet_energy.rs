@@ -109,11 +109,11 @@ impl SheetEnergy {
         }
     }
 
-    /// The energy of the same cells with another law of all of them.
+    /// The energy of the same cells with another law of those that belong to no region.
     #[must_use]
     pub fn with_law(&self, law: Arc<dyn HyperelasticLaw>) -> Self {
         Self {
-            laws: law.into(),
+            laws: self.laws.with_law(law),
             ..self.clone()
         }
     }

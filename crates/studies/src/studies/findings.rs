@@ -76,22 +76,7 @@ impl<'a> Examined<'a> {
 
     /// What a rule finds in the cells of each card in the best model's mesh; of several cards, with the names of their regions.
     fn of_cards(&self, rule: impl Fn(&Card, &[usize]) -> Option<Found>) -> Option<Found> {
-        let (mesh, specimen) = (self.best()?.mesh, self.specimen);
-        let regions = specimen.numbered_regions();
-        if regions.is_empty() {
-            let cells: Vec<usize> = (0..mesh.cell_count()).collect();
-            return rule(&specimen.card, &cells);
-        }
-        let laws = specimen.problem.laws().in_cells(mesh);
-        let found = regions.into_iter().filter_map(|(number, name, card)| {
-            let cells =
-                (0..mesh.cell_count()).filter(|cell| usize::from(laws.number(*cell)) == number);
-            let (message, remedy) = rule(card, &cells.collect::<Vec<_>>())?;
-            Some((format!("{name}: {message}"), remedy))
-        });
-        let (messages, remedies): (Vec<String>, Vec<String>) = found.unzip();
-        let remedy = remedies.into_iter().next()?;
-        Some((messages.join("; "), remedy))
+        self.specimen.cards().in_turn(self.best()?.mesh, rule)
     }
 
     /// Its mesh and the study's problem, of equilibria.

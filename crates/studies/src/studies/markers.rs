@@ -18,8 +18,10 @@ use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on,
 use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
+use crate::problem::LawAndRegions;
 use crate::results::{Finding, locking};
 use crate::studies::card::card_in_plane;
+use crate::studies::regions::{SheetCards, divided, fault_of};
 
 mod alike;
 mod area;
@@ -63,8 +65,10 @@ pub use verdict::worst as worst_answer;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct MarkerStudy {
-    /// The material.
+    /// The material; of several that of the cells that belong to no region.
     pub card: Card,
+    /// The cards of regions of the mesh by their names.
+    pub regions: Vec<(String, Card)>,
     /// Thickness at rest in mm.
     pub thickness: f64,
     /// The specimen's mesh.
@@ -94,14 +98,46 @@ pub struct MarkerStudy {
     pub unknown_gap: Option<f64>,
 }
 
-/// The warnings about a card on a mesh.
-fn of_material(card: &Card, mesh: &Mesh) -> impl Iterator<Item = Diagnostic> {
-    let left_out = card.viscosity.left_out();
-    let left_out = left_out.map(|told| {
-        Diagnostic::warning("", told)
-            .hint("use a card fitted to tests at the rate of this experiment")
+/// The warnings about cards on a mesh, each once.
+fn of_materials(cards: SheetCards, mesh: &Mesh) -> Vec<Diagnostic> {
+    let mut all: Vec<Diagnostic> = Vec::new();
+    for card in cards.all() {
+        let left_out = card.viscosity.left_out();
+        let left_out = left_out.map(|left_out| {
+            Diagnostic::warning("", left_out)
+                .hint("use a card fitted to tests at the rate of this experiment")
+        });
+        let warnings = card.warnings().into_iter();
+        let warnings = warnings.chain(too_stiff(&*card.law, mesh)).chain(left_out);
+        for warning in warnings {
+            if !all.contains(&warning) {
+                all.push(warning);
+            }
+        }
+    }
+    all
+}
+
+/// Whether a mesh has the regions that have cards of their own.
+///
+/// # Errors
+/// [`Error::Input`] with every one that it has not.
+fn check_regions(regions: &[(String, Card)], mesh: &Mesh) -> Result<(), Error> {
+    let names: Vec<&str> = regions.iter().map(|(name, _)| &**name).collect();
+    let faults = names.iter().enumerate().filter_map(|(index, name)| {
+        let (message, hint) = fault_of(name, &names[..index], mesh)?;
+        Some(Diagnostic::error("", message).hint(hint))
     });
-    too_stiff(&*card.law, mesh).into_iter().chain(left_out)
+    finding::none_of(faults.collect())
+}
+
+/// The warning about parts of a mesh of which none has a card of its own.
+fn of_divided(regions: &[(String, Card)], mesh: &Mesh) -> Option<Diagnostic> {
+    let parts = divided(mesh).filter(|_| regions.is_empty())?;
+    let message =
+        format!("the cells of the mesh are divided into {parts}: all of them get the one card");
+    let hint = "give a part that has another material its own card: --region NAME=CARD, or [[material]] in the file of --study";
+    Some(Diagnostic::warning("", message).hint(hint))
 }
 
 /// The warning about a mesh whose cells lock.
@@ -148,14 +184,23 @@ impl MarkerStudy {
     /// # Errors
     /// As [`Self::prepare`].
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
-        check_memory(&*card.law, "a correction of measured fields")?;
-        let card = in_plane(card, request.conditions.sheet)?;
+        let on = request.conditions.sheet;
+        let card = in_plane(card, on)?;
+        let regions = std::mem::take(&mut request.conditions.regions).into_iter();
+        let regions = regions.map(|(region, card)| Ok((region, in_plane(card, on)?)));
+        let regions: Vec<(String, Card)> = regions.collect::<Result<_, Error>>()?;
+        let cards = SheetCards {
+            card: &card,
+            regions: &regions,
+        };
+        for card in cards.all() {
+            check_memory(&*card.law, "a correction of measured fields")?;
+        }
         let mut field = read(&request.files, &request.reading)?;
         let told = request
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
         field.warnings.extend(told);
-        field.warnings.extend(card.warnings());
         let SpecimenMesh {
             mut mesh,
             cell_size,
@@ -167,6 +212,7 @@ impl MarkerStudy {
         name_parts(&mut mesh, request.conditions.edge_names());
         area::name(&mut mesh, &request.conditions.areas)?;
         request.conditions.suit(&mesh, &field.series)?;
+        check_regions(&regions, &mesh)?;
         let regressed = request.conditions.regressed_law(&card)?;
         let coarse = match request.mesh {
             MeshSource::File(..) => field.mesh,
@@ -186,12 +232,14 @@ impl MarkerStudy {
             let message = format!("markers outside the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
-        warnings.extend(of_material(&card, &mesh));
+        warnings.extend(of_materials(cards, &mesh));
+        warnings.extend(of_divided(&regions, &mesh));
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))
             .flatten();
         Ok(Self {
             card,
+            regions,
             thickness: request.thickness,
             mesh,
             cell_size,
@@ -208,14 +256,37 @@ impl MarkerStudy {
         })
     }
 
+    /// The cards of the cells.
+    pub fn cards(&self) -> SheetCards<'_> {
+        SheetCards {
+            card: &self.card,
+            regions: &self.regions,
+        }
+    }
+
     /// The law that an estimate has found, else that of the card.
-    pub fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
+    fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
         match &self.regressed {
             Some(regressed) if !estimate.parameters.is_empty() => {
                 let values = estimate.parameters.iter().map(|(.., found)| found.value);
                 regressed.at(&values.collect::<Vec<_>>())
             }
             _ => Arc::clone(&self.card.law),
+        }
+    }
+
+    /// The laws of the sheet, with that which an estimate has found.
+    pub fn laws(&self, estimate: &FieldEstimate) -> LawAndRegions {
+        let (_, regions) = self.cards().laws();
+        (self.law(estimate), regions)
+    }
+
+    /// The sheet as it is estimated.
+    pub(super) fn specimen(&self) -> Specimen<'_> {
+        Specimen {
+            mesh: &self.mesh,
+            laws: self.cards().in_cells(&self.mesh),
+            thickness: self.thickness,
         }
     }
 
@@ -305,11 +376,7 @@ impl MarkerStudy {
     /// # Errors
     /// As [`estimate`], with the frame in its message.
     pub fn estimate_frame(&self, frame: &Frame) -> Result<FieldEstimate, Error> {
-        let specimen = Specimen {
-            mesh: &self.mesh,
-            law: Arc::clone(&self.card.law),
-            thickness: self.thickness,
-        };
+        let specimen = self.specimen();
         let law = self.regressed.as_ref();
         let knowledge = Knowledge {
             edge_gap: self.unknown_gap,

@@ -178,7 +178,7 @@ impl Settings {
         let thickness = self.data.plate.problem.thickness;
         let specimen = Specimen {
             mesh: &subject.mesh,
-            law: Arc::clone(&subject.truth.law),
+            laws: Arc::clone(&subject.truth.law).into(),
             thickness,
         };
         let found = match wrong {

@@ -166,7 +166,7 @@ impl Subject {
     pub fn estimate(&self, data: &Markers, knowledge: &Knowledge) -> Result<FieldEstimate, Error> {
         let specimen = Specimen {
             mesh: &self.mesh,
-            law: Arc::clone(&self.truth.law),
+            laws: Arc::clone(&self.truth.law).into(),
             thickness: self.thickness,
         };
         estimate(&specimen, &data.markers, knowledge)

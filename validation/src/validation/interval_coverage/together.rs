@@ -2,6 +2,7 @@
 //! are left out are predicted, and whether the right law is found among others.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -12,7 +13,7 @@ use super::truth::Truth;
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::estimation::{
-    JointEstimate, JointFrame, JointSettings, Knowledge, MeasuredForce, RegressedLaw,
+    JointEstimate, JointFrame, JointSettings, Knowledge, MeasuredForce, RegressedLaw, Specimen,
     estimate_jointly,
 };
 use crate::markers::Marker;
@@ -154,8 +155,11 @@ impl Test {
         });
         let frames = markers.iter().zip(knowledge);
         let frames = frames.map(|(markers, knowledge)| JointFrame {
-            mesh: &self.subject.mesh,
-            thickness: settings.data.plate.problem.thickness,
+            specimen: Specimen {
+                mesh: &self.subject.mesh,
+                laws: Arc::clone(&self.subject.truth.law).into(),
+                thickness: settings.data.plate.problem.thickness,
+            },
             markers,
             knowledge,
         });

@@ -1,23 +1,21 @@
 //! The input of an estimate: the specimen, and what is known besides the displacements.
 
-use std::sync::Arc;
-
 use serde::{Deserialize, Serialize};
 
 use super::regressed_law::RegressedLaw;
 use super::uncertain_law::UncertainLaw;
 use crate::error::Diagnostic;
 use crate::estimation::regression::Robust;
-use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
+use crate::problem::CellLaws;
 
 /// The sheet whose displacements were measured.
 #[derive(Clone, Debug)]
 pub struct Specimen<'a> {
     /// Its mesh.
     pub mesh: &'a Mesh,
-    /// Its material.
-    pub law: Arc<dyn HyperelasticLaw>,
+    /// The materials of its cells.
+    pub laws: CellLaws,
     /// Its thickness at rest in mm.
     pub thickness: f64,
 }
@@ -45,9 +43,9 @@ pub struct Knowledge {
     pub edge_gap: Option<f64>,
     /// Relative standard deviation of the scale of the picture: a specimen that comes nearer to its camera appears to grow.
     pub scale_deviation: f64,
-    /// Parameters of the law that are found with the field; the specimen's law is not used then.
+    /// A law of the cells that belong to no region, in the place of the specimen's, with parameters that are found with the field.
     pub law: Option<RegressedLaw>,
-    /// The specimen's law with its uncertainty, which the errors include; not used where parameters are found.
+    /// The law of the cells that belong to no region with its uncertainty, which the errors include; not used where parameters are found.
     pub uncertain_law: Option<UncertainLaw>,
 }
 

@@ -3,19 +3,16 @@
 use nalgebra::DVector;
 
 use super::direction::Direction;
-use crate::estimation::input::{Knowledge, MeasuredForce, RegressedLaw};
+use crate::estimation::input::{Knowledge, MeasuredForce, RegressedLaw, Specimen};
 use crate::markers::Marker;
 use crate::material::parameters::Parameter;
-use crate::mesh::Mesh;
 use crate::statistics::{Estimate, chi_squared_limit};
 
-/// One frame of one specimen. The law in `knowledge` is not used.
+/// One frame of one specimen. The law in `knowledge` is not used, nor is that of the cells that belong to no region: theirs is searched for.
 #[derive(Clone, Debug)]
 pub struct JointFrame<'a> {
-    /// The specimen's mesh.
-    pub mesh: &'a Mesh,
-    /// Its thickness at rest in mm.
-    pub thickness: f64,
+    /// The specimen.
+    pub specimen: Specimen<'a>,
     /// The markers.
     pub markers: &'a [Marker],
     /// What is known besides the displacements.

@@ -91,7 +91,8 @@ impl<'a> Frame<'a> {
     /// # Errors
     /// As [`crate::estimation::estimate`].
     pub fn new(source: &'a JointFrame<'a>, law: &RegressedLaw) -> Result<Self, Error> {
-        let (first, mut observations) = observe(source.mesh, source.markers, &source.knowledge)?;
+        let (first, mut observations) =
+            observe(source.specimen.mesh, source.markers, &source.knowledge)?;
         let knowledge = Knowledge {
             law: None,
             forces: Vec::new(),
@@ -307,10 +308,10 @@ impl<'a> Frame<'a> {
 }
 
 fn specimen<'a>(frame: &JointFrame<'a>, law: &RegressedLaw) -> Specimen<'a> {
+    let laws = frame.specimen.laws.with_law(law.at(&law.start()));
     Specimen {
-        mesh: frame.mesh,
-        law: law.at(&law.start()),
-        thickness: frame.thickness,
+        laws,
+        ..frame.specimen.clone()
     }
 }
 
@@ -327,7 +328,9 @@ fn correlated_noise(nearest: &NearestField) -> Option<CorrelatedNoise> {
 /// none, or frames differ in their markers.
 pub fn common_noise(frames: &[&Frame], parts: &[FrameInformation]) -> f64 {
     let pairs = frames.windows(2).zip(parts.windows(2));
-    let same = pairs.filter(|(pair, _)| std::ptr::eq(pair[0].source.mesh, pair[1].source.mesh));
+    let same = pairs.filter(|(pair, _)| {
+        std::ptr::eq(pair[0].source.specimen.mesh, pair[1].source.specimen.mesh)
+    });
     let [product, size] = same.fold([0.0; 2], |[product, size], (_, parts)| {
         let [ab, aa, bb] = residual_products(&parts[0].residuals, &parts[1].residuals);
         [product + ab, size + 0.5 * (aa + bb)]

@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
 use crate::estimation::EdgeCondition;
-use crate::estimation::tests::with_grips;
+use crate::estimation::tests::{specimen, with_grips};
 use crate::estimation::{Knowledge, MeasuredForce};
 use crate::markers::Marker;
 use crate::material::Card;
@@ -103,8 +103,7 @@ impl Series {
             common_deviation: 0.0,
         };
         JointFrame {
-            mesh: &self.mesh,
-            thickness: THICKNESS,
+            specimen: specimen(&self.mesh),
             markers,
             knowledge: Knowledge {
                 forces: vec![measured],

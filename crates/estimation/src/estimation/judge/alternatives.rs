@@ -89,10 +89,9 @@ impl NearestField<'_> {
     }
 
     fn varied_stiffness(&self) -> Vec<Vec<f64>> {
-        let law = &self.equations.law;
         let whole = self.equations.task.specimen.mesh.bounding_box();
-        self.stresses(5, &|place, kinematics| {
-            let stress = law.stress(kinematics).1;
+        self.stresses(5, &|cell, place, kinematics| {
+            let stress = self.equations.law(cell).stress(kinematics).1;
             let shapes = shapes(place, whole);
             shapes[1..].iter().map(|shape| stress * *shape).collect()
         })
@@ -109,14 +108,14 @@ impl NearestField<'_> {
                 coefficients: [0.0, 0.0, 1.0],
             }),
         ];
-        self.stresses(4, &|_, kinematics| {
+        self.stresses(4, &|_, _, kinematics| {
             laws.iter().map(|law| law.stress(kinematics).1).collect()
         })
     }
 
     /// Fibres along x and y, and shear between them: F S with one component of S = E each.
     fn directions(&self) -> Vec<Vec<f64>> {
-        self.stresses(3, &|_, kinematics| {
+        self.stresses(3, &|_, _, kinematics| {
             let f = kinematics.deformation_gradient;
             let [xx, xy, yy] = kinematics.twice_green_lagrange.map(|change| change / 2.0);
             vec![
@@ -129,7 +128,7 @@ impl NearestField<'_> {
 
     /// ½ (ln J)².
     fn volume_change(&self) -> Vec<Vec<f64>> {
-        self.stresses(1, &|_, kinematics| {
+        self.stresses(1, &|_, _, kinematics| {
             let area = kinematics.area_ratio();
             vec![cofactor(&kinematics.deformation_gradient) * (area.ln() / area)]
         })
@@ -139,7 +138,7 @@ impl NearestField<'_> {
     fn stresses(
         &self,
         count: usize,
-        stresses: &dyn Fn([f64; 2], &Kinematics) -> Vec<PlaneTensor>,
+        stresses: &dyn Fn(usize, [f64; 2], &Kinematics) -> Vec<PlaneTensor>,
     ) -> Vec<Vec<f64>> {
         let mesh = self.equations.task.specimen.mesh;
         let mut forces = vec![vec![0.0; self.field.len()]; count];
@@ -154,7 +153,7 @@ impl NearestField<'_> {
                 let Ok(kinematics) = Kinematics::new(&point.gradient(&own)) else {
                     continue;
                 };
-                let all = stresses(centre, &kinematics).into_iter();
+                let all = stresses(cell, centre, &kinematics).into_iter();
                 for (stress, force) in all.zip(&mut forces) {
                     let mut added = vec![0.0; own.len()];
                     point.add_force(&stress, &mut added);

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::estimation::input::EdgeCondition;
 use crate::statistics::small_probability;
 use crate::units::decimals;
 
@@ -141,7 +142,14 @@ impl Reason {
 pub enum Alternative {
     /// One edge moves in an unknown smooth way.
     Edge(String),
-    /// All edges with a stated condition do so.
+    /// One edge has another condition than the stated one.
+    Condition {
+        /// Its name.
+        edge: String,
+        /// The condition.
+        condition: EdgeCondition,
+    },
+    /// All edges with a stated condition move in an unknown smooth way.
     Edges,
     /// A free edge, or all of them, lies elsewhere.
     MovedEdge {
@@ -173,6 +181,9 @@ impl Alternative {
     pub fn words(&self) -> String {
         match self {
             Self::Edge(name) => format!("an unknown motion of `{name}`"),
+            Self::Condition { edge, condition } => {
+                format!("`{edge}` {}", condition_words(*condition))
+            }
             Self::Edges => "an unknown motion of all edges with a stated condition".into(),
             Self::MovedEdge { edge, outwards } => {
                 let way = if *outwards > 0.0 { "out" } else { "in" };
@@ -198,6 +209,22 @@ impl Alternative {
                 format!("stiffness times thickness multiplied by {factor:.3}")
             }
         }
+    }
+}
+
+/// The condition that would be stated instead.
+fn condition_words(condition: EdgeCondition) -> &'static str {
+    match condition {
+        EdgeCondition::Free => "free (--free)",
+        EdgeCondition::Rigid => "as a rigid grip (--rigid)",
+        EdgeCondition::Unknown => "moved in an unknown way",
+        EdgeCondition::Known([Some(_), None]) => {
+            "on rollers that hold ux (condition = \"known\", ux = \"0 mm\")"
+        }
+        EdgeCondition::Known([None, Some(_)]) => {
+            "on rollers that hold uy (condition = \"known\", uy = \"0 mm\")"
+        }
+        EdgeCondition::Known(_) => "fixed",
     }
 }
 

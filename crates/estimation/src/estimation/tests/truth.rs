@@ -127,7 +127,7 @@ pub(super) fn estimate_mesh() -> Mesh {
 pub(in super::super) fn specimen(mesh: &Mesh) -> Specimen<'_> {
     Specimen {
         mesh,
-        law: law(),
+        laws: law().into(),
         thickness: THICKNESS,
     }
 }

@@ -7,6 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use super::*;
+use crate::mesh::{CellShape, Mesh};
 
 /// 31 × 18 markers on the plate.
 fn places() -> Vec<[f64; 2]> {
@@ -65,7 +66,7 @@ fn found(
     markers: &[Marker],
 ) -> FieldEstimate {
     let specimen = Specimen {
-        law,
+        laws: law.into(),
         ..specimen(mesh)
     };
     estimate(&specimen, markers, &with_grips(EdgeCondition::Unknown)).unwrap()
@@ -114,5 +115,48 @@ fn a_wrong_law_is_refuted_by_white_noise_and_never_explained_by_correlated_noise
         let noisy = disturbed(&truth, &places, Some(&root), 0.02, seed);
         let noisy = found(pva(), &mesh, &noisy);
         assert!(!noisy.is_explained(), "{seed} {:?}", noisy.verdict);
+    }
+}
+
+/// Half of a plate between grips, whose axis of symmetry below is stated to be something else.
+#[test]
+fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
+    let truth = Mesh::plate(SIZE, [26, 14], CellShape::Quad9);
+    let moved = |values: [Option<f64>; 2]| Support::Displacement(values);
+    let problem = BoundaryProblem {
+        thickness: THICKNESS,
+        law: law(),
+        regions: Vec::new(),
+        supports: vec![
+            ("left".into(), moved([Some(0.0); 2])),
+            ("right".into(), moved([Some(24.0), Some(0.0)])),
+            ("bottom".into(), moved([None, Some(0.0)])),
+        ],
+        loads: Vec::new(),
+    };
+    let energy = problem.finite_elements(&truth);
+    let model = problem.on(&truth, &energy).unwrap();
+    let states = model.solve(&[0.5, 1.0], NewtonSettings::default(), &|_| ());
+    let field = states.unwrap().remove(1).displacement;
+    let at = |place: [f64; 2]| truth.displacement_at(&field, place);
+    let markers = noisy(&places(), &at, 0.02, 3);
+    let roller = EdgeCondition::Known([None, Some(0.0)]);
+    for stated in [EdgeCondition::Free, EdgeCondition::Rigid, roller] {
+        let mut knowledge = with_grips(EdgeCondition::Rigid);
+        let bottom = knowledge.edges.iter_mut().find(|(name, _)| name == "bottom");
+        bottom.unwrap().1 = stated;
+        let mesh = estimate_mesh();
+        let verdict = estimate(&specimen(&mesh), &markers, &knowledge).unwrap().verdict;
+        let proposed = verdict.trials.iter().find_map(|trial| match &trial.alternative {
+            Alternative::Condition { edge, condition } => Some((edge.as_str(), *condition)),
+            _ => None,
+        });
+        if stated == roller {
+            assert_ne!(verdict.answer, Answer::NotExplained, "{verdict:?}");
+            assert_eq!(proposed, None);
+        } else {
+            assert_eq!(verdict.answer, Answer::NotExplained, "{stated:?}");
+            assert_eq!(proposed, Some(("bottom", roller)), "{stated:?} {verdict:#?}");
+        }
     }
 }

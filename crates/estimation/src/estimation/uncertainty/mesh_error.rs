@@ -174,7 +174,7 @@ impl NearestField<'_> {
             fixed[*unknown] = true;
         }
         let thickness = self.equations.task.specimen.thickness;
-        let energy = SheetEnergy::of_mesh(self.equations.law.clone(), &fine, thickness);
+        let energy = SheetEnergy::of_mesh(self.equations.energy.laws().refined(), &fine, thickness);
         let forces = match &self.equations.body {
             Some(_) => BodyForce::new(&fine, &fixed).forces(self.body_coefficients(), fixed.len()),
             None => vec![0.0; fixed.len()],

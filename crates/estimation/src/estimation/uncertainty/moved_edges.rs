@@ -64,7 +64,7 @@ impl NearestField<'_> {
                 let Ok(kinematics) = Kinematics::new(&gradient) else {
                     continue;
                 };
-                let stress = self.equations.law.stress(&kinematics).1;
+                let stress = self.equations.law(cell).stress(&kinematics).1;
                 let tension = [0, 1]
                     .map(|axis| stress[2 * axis] * tangent[0] + stress[2 * axis + 1] * tangent[1]);
                 let weight = 0.5 * length * specimen.thickness;

@@ -47,6 +47,8 @@ pub struct Conditions {
     pub edge_gap: Option<f64>,
     /// Relative standard deviation of the scale of the pictures.
     pub scale_deviation: f64,
+    /// The cards of regions of the mesh by their names; all other cells have the card of the request.
+    pub regions: Vec<(String, Card)>,
     /// Plane stress or plane strain; plane stress where it is not given.
     pub sheet: Option<PlaneState>,
     /// The specimen itself, where the file holds it.

@@ -27,11 +27,11 @@ pub fn figures(
     let fields = vec![&estimate.displacement[..]];
     let deformed = [Deformed::elastic(&*pictures.label, &study.mesh, fields)];
     let file = |name: &str| format!("{name}.png");
-    let law = study.law(estimate);
+    let laws = study.laws(estimate);
     let mut all = vec![pictures.along(0), pictures.along(1)];
     all.extend(sheet_figures(
         sheet,
-        (&law).into(),
+        (&laws).into(),
         &deformed,
         &pictures.label,
         &file,

@@ -233,23 +233,31 @@ fn stated_noise(estimate: &FieldEstimate) -> Option<Doubt> {
 
 /// Strains that are too large for the law.
 fn large_strains(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
-    let law = study.law(estimate);
-    let reason = small_strain::reason(&*law, &study.mesh, &estimate.displacement)?;
-    Some((reason, small_strain::LARGE_STRAINS))
+    let (mesh, field) = (&study.mesh, &estimate.displacement);
+    let reason = study.cards().in_turn(mesh, |card, cells| {
+        let reason = small_strain::reason_in_cells(&*card.law, (mesh, cells), field)?;
+        Some((reason, String::new()))
+    });
+    Some((reason?.0, small_strain::LARGE_STRAINS))
 }
 
 /// Stretches beyond the range of the card, on more than a hundredth of the area: its law is an extrapolation there. A law whose
 /// parameters are all estimated with the field is calibrated by it.
 fn beyond_card(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let acting = study.regressed.as_ref().map(RegressedLaw::acting);
-    if acting.is_some_and(|keys| estimate.parameters.len() == keys.len()) {
-        return None;
-    }
-    let stretches = Stretches::new(&study.card, &study.mesh, &estimate.displacement);
-    let reason = stretches.reason(&study.card, "");
-    let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
+    let is_calibrated = acting.is_some_and(|keys| estimate.parameters.len() == keys.len());
+    let (mesh, field) = (&study.mesh, &estimate.displacement);
+    let reason = study.cards().in_turn(mesh, |card, cells| {
+        if is_calibrated && std::ptr::eq(card, &study.card) {
+            return None;
+        }
+        let stretches = Stretches::of_cells(card, (mesh, cells), field);
+        let reason = stretches.reason(card, "");
+        let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
+        Some((reason, String::new()))
+    });
     Some((
-        reason,
+        reason?.0,
         "stresses and forces there are extrapolated, which no interval includes: use a card fitted to tests up to these stretches",
     ))
 }

@@ -53,7 +53,11 @@ pub fn basis(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
         return None;
     }
     let deviations = estimate.law_deviations.iter().flatten();
-    Some(match deviations.copied().reduce(f64::max) {
+    let others = match study.regions[..] {
+        [] => "",
+        _ => " The regions are as stiff as their cards, whose error no interval includes.",
+    };
+    let of_card = match deviations.copied().reduce(f64::max) {
         None => format!(
             "Forces and stresses are given the card `{name}`, which records no uncertainty: its relative error in stiffness is one of theirs \
              that no interval includes, and that only a measured force shows (--force)."
@@ -63,7 +67,8 @@ pub fn basis(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
              as well is not in it.",
             decimals(estimate.reach * most, 4)
         ),
-    })
+    };
+    Some(of_card + others)
 }
 
 impl MarkerStudy {

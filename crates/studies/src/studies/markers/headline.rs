@@ -29,10 +29,10 @@ pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> 
     if study.regressed.is_some() {
         blocks.push(parameters(study, estimates));
     }
-    let law = study.law(last);
+    let laws = study.laws(last);
     let sheet = LoadedSheet {
         at: format!("frame {}", frame.number),
-        laws: (&law).into(),
+        laws: (&laws).into(),
         deformed: Deformed::elastic("corrected", &study.mesh, vec![&last.displacement]),
         singular: singular_points(&study.mesh, &fixed_nodes(last)),
         gauge: None,

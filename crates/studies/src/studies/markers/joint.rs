@@ -162,8 +162,7 @@ impl MarkerStudy {
         let frames = self.series.frames.iter();
         frames
             .map(|frame| JointFrame {
-                mesh: &self.mesh,
-                thickness: self.thickness,
+                specimen: self.specimen(),
                 markers: &frame.markers,
                 knowledge: Knowledge {
                     robust: self.conditions.robust.unwrap_or(Robust::Tukey),

@@ -17,7 +17,7 @@ pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Findi
     let mut lines = vec![format!(
         "{}; {}; mesh {}: {}",
         reading::short(&study.understood),
-        study.card.name,
+        study.cards().words(&study.mesh, |card| card.name.clone()),
         study.mesh_origin,
         study.mesh.describe()
     )];
@@ -92,12 +92,12 @@ pub(super) fn interval(value: &Estimate, explained: bool, exact: &str) -> String
 /// The tables of a correction.
 pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let mut blocks = vec![Block::paragraph(format!(
-        "{} frames, read as {}. Material {} ({}): {}, {} mm thick. Mesh {}: {}.",
+        "{} frames, read as {}. Material {}, {} mm thick. Mesh {}: {}.",
         estimates.len(),
         study.understood.layout,
-        study.card.name,
-        study.card.title,
-        study.card.describe_sheet(),
+        study.cards().words(&study.mesh, |card| {
+            format!("{} ({}): {}", card.name, card.title, card.describe_sheet())
+        }),
         study.thickness,
         study.mesh_origin,
         study.mesh.describe()

@@ -8,7 +8,6 @@ use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, import};
-use crate::studies::regions::divided;
 use crate::units::decimals;
 
 /// A mesh that is made has at most about so many cells, if no size is given.
@@ -75,12 +74,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
     };
     match (&request.mesh, &field.mesh) {
         (MeshSource::File(path, reading), _) => {
-            let (mesh, mut warnings) = import(path, *reading).map_err(Error::Input)?;
-            warnings.extend(divided(&mesh).map(|parts| {
-                let message = format!("the cells of the mesh are divided into {parts}: all of them get the one card");
-                let hint = "a correction of measured fields has one material: cut the mesh to the part that has it";
-                Diagnostic::warning("", message).hint(hint)
-            }));
+            let (mesh, warnings) = import(path, *reading).map_err(Error::Input)?;
             whole(&mesh, &format!("of {}", path.display()))?;
             let origin = format!("from {}", path.display());
             Ok(SpecimenMesh {

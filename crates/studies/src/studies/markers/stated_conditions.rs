@@ -10,6 +10,7 @@ use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::Error;
 use crate::estimation::{EdgeCondition, MeasuredForce, Physics, Robust, Unnamed};
 use crate::material::PlaneState;
+use crate::studies::card::read_card;
 use crate::studies::sections;
 use crate::units::Dimension;
 
@@ -36,7 +37,11 @@ impl Conditions {
     /// As [`Self::of_file`].
     pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
         let faults = Faults::default();
-        let conditions = read(&Document::parse(file, text, &faults).root(None, &faults));
+        let folder = Path::new(file).parent().unwrap_or(Path::new("."));
+        let conditions = read(
+            &Document::parse(file, text, &faults).root(None, &faults),
+            folder,
+        );
         faults.finish()?;
         Ok(conditions)
     }
@@ -46,13 +51,13 @@ impl Conditions {
 pub fn keys(text: &str) -> Vec<Key> {
     let faults = Faults::default();
     let document = Document::parse("", text, &faults);
-    read(&document.root(None, &faults));
+    read(&document.root(None, &faults), Path::new("."));
     drop(document);
     faults.keys()
 }
 
 /// Reads all keys; faults are recorded.
-fn read(root: &Section) -> Conditions {
+fn read(root: &Section, folder: &Path) -> Conditions {
     let length = |key, bound| {
         let has = root.has(key);
         has.then(|| root.quantity(key, Dimension::Length, bound))
@@ -93,6 +98,16 @@ fn read(root: &Section) -> Conditions {
             } else {
                 conditions.forces.push(force(section));
             }
+        }
+    }
+    if root.has("material") {
+        for section in root.tables("material") {
+            let section = section.requiring(&["on", "card"]);
+            let card = read_card(&section, folder);
+            conditions
+                .regions
+                .extend(card.map(|card| (section.text("on"), card)));
+            section.unknown_keys();
         }
     }
     if root.has("edges") {

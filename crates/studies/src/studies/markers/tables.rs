@@ -6,7 +6,7 @@ use super::quantities::{nominal, nominal_stress, residuals};
 use crate::document::write_records;
 use crate::estimation::FieldEstimate;
 use crate::markers::Frame;
-use crate::problem::CellLaws;
+use crate::problem::SheetLaws;
 use crate::results::cell_states;
 use crate::studies::markers::MarkerStudy;
 
@@ -73,7 +73,7 @@ pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
         }
     }
     text.push('\n');
-    let laws = CellLaws::from(field.law(estimate));
+    let laws = SheetLaws::from(&field.laws(estimate)).in_cells(&field.mesh);
     let states = cell_states(&laws, &field.mesh, &[&estimate.displacement], &[]);
     for (index, (cell, state)) in estimate.cells.iter().zip(states).enumerate() {
         let mut values = field.mesh.centre(index).to_vec();

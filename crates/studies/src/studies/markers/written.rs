@@ -53,7 +53,10 @@ pub fn results_with(
     let figures = last.map(|(frame, last)| figures::figures(field, frame, last, &pictures.fields));
     let outcome = Outcome {
         problem: json::problem(field, estimates),
-        material: Some(Material::from(&field.card)),
+        material: Some(match &field.cards().numbered(&field.mesh)[..] {
+            [] => Material::from(&field.card),
+            regions => Material::of_regions(regions),
+        }),
         along: "frame",
         steps: field
             .frames_with(estimates)
@@ -157,8 +160,8 @@ fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
 }
 
 fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
-    let law = field.law(estimate);
-    let sheet = Sheet::elastic((&law).into(), field.thickness);
+    let laws = field.laws(estimate);
+    let sheet = Sheet::elastic((&laws).into(), field.thickness);
     let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
     let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([
         nodal("reaction_N", &estimate.reactions),
@@ -175,7 +178,7 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     }
     let cells = estimate.cells.iter();
     // Nothing acts across a sheet in plane stress; in plane strain that error is not estimated.
-    let across = match law.plane_state() {
+    let across = match field.card.law.plane_state() {
         PlaneState::Stress => 0.0,
         PlaneState::Strain => f64::NAN,
     };

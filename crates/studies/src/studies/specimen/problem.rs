@@ -12,6 +12,7 @@ use crate::problem::{BoundaryProblem, ClampedPlate, Model};
 use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings, Remembering};
 use crate::studies::pictures::Pictures;
+use crate::studies::regions::{NumberedRegion, SheetCards};
 use crate::studies::sections::Tolerances;
 use crate::studies::{ModelKind, Progress};
 
@@ -187,24 +188,17 @@ impl Specimen {
         )
     }
 
-    /// The cards of all laws, in the order of the problem's laws.
-    pub fn cards(&self) -> Vec<&Card> {
-        let regions = self.regions.iter().map(|(_, card)| card);
-        std::iter::once(&self.card).chain(regions).collect()
+    /// The cards of its cells.
+    pub fn cards(&self) -> SheetCards<'_> {
+        SheetCards {
+            card: &self.card,
+            regions: &self.regions,
+        }
     }
 
     /// The regions that have cells, each with its number, its name and its card; empty where all cells have one card.
-    pub fn numbered_regions(&self) -> Vec<(usize, &str, &Card)> {
-        if self.regions.is_empty() {
-            return Vec::new();
-        }
-        let mesh = self.outline.coarse();
-        let laws = self.problem.laws().in_cells(&mesh);
-        let has_rest = (0..mesh.cell_count()).any(|cell| laws.number(cell) == 0);
-        let rest = has_rest.then_some((0, "the remaining cells", &self.card));
-        let regions = self.regions.iter().zip(1..);
-        let regions = regions.map(|((name, card), number)| (number, &**name, card));
-        rest.into_iter().chain(regions).collect()
+    pub fn numbered_regions(&self) -> Vec<NumberedRegion<'_>> {
+        self.cards().numbered(&self.outline.coarse())
     }
 
     /// The card, or the cards with their regions, in words.

@@ -53,12 +53,7 @@ pub fn material(specimen: &Specimen) -> Material {
 /// The same in a sentence.
 fn material_words(specimen: &Specimen) -> String {
     let words = |card: &Card| format!("{}: the card `{}`", card.describe_sheet(), card.name);
-    let regions = specimen.numbered_regions().into_iter();
-    let regions = regions.map(|(_, name, card)| format!("{}, on {name}", words(card)));
-    match &regions.collect::<Vec<_>>()[..] {
-        [] => words(&specimen.card),
-        several => format!("several materials ({})", several.join("; ")),
-    }
+    specimen.cards().words(&specimen.outline.coarse(), words)
 }
 
 /// The same for machines.

@@ -4,11 +4,10 @@ use std::path::Path;
 
 use super::super::problem::Outline;
 use crate::document::Section;
-use crate::error::suggestion;
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::studies::card::read_card;
-use crate::studies::regions::regions_of;
+use crate::studies::regions::{fault_of, regions_of};
 
 /// The key of the region that a card is for.
 const ON: &str = "on";
@@ -175,53 +174,8 @@ impl Entry<'_> {
                 "take shape = \"mesh\" with a file whose cells have names, or write one [material]";
             return fault(message, hint);
         }
-        self.fault_on(region, before, mesh)
-    }
-
-    /// The same of a region that the mesh should have.
-    fn fault_on(&self, region: &String, before: &[Self], mesh: &Mesh) -> Option<(String, String)> {
-        let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
-        let known = regions_of(mesh);
-        if known.is_empty() {
-            let message = format!(
-                "the mesh has no region `{region}`: none of its cells have a name of their own"
-            );
-            return fault(
-                message,
-                "name its surfaces (Gmsh: Physical Surface), or write one [material]",
-            );
-        }
-        if !known.contains(&region.as_str()) {
-            let message = format!("the mesh has no region `{region}`");
-            let near = suggestion(region, &known, "");
-            let all = format!("its regions are {}", known.join(", "));
-            let hint = if near.starts_with("did") {
-                format!("{near} {all}")
-            } else {
-                all
-            };
-            return Some((message, hint));
-        }
-        if before.iter().any(|own| own.on.as_ref() == Some(region)) {
-            let message = format!("the region `{region}` has a card already");
-            return fault(message, "leave out one of the two");
-        }
-        let cells = &mesh.groups()[region].cells;
-        let named = before
-            .iter()
-            .filter_map(|own| mesh.groups().get_key_value(own.on.as_ref()?));
-        let shared = named.map(|(name, group)| {
-            let common = cells
-                .iter()
-                .filter(|cell| group.cells.binary_search(cell).is_ok());
-            (name, common.count())
-        });
-        let (other, count) = shared.into_iter().find(|(_, count)| *count > 0)?;
-        let message = format!("the region `{region}` shares {count} cells with `{other}`");
-        fault(
-            message,
-            "a cell has one card: name regions without common cells",
-        )
+        let before = before.iter().filter_map(|own| own.on.as_deref());
+        fault_of(region, &before.collect::<Vec<_>>(), mesh)
     }
 
     /// The plane states of another card and of this one, where they differ.
