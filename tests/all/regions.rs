@@ -383,7 +383,7 @@ fn a_card_for_a_region_that_the_mesh_lacks_is_refused() {
     ];
     let message = gelbench(folder.path(), &given).code(2);
     assert!(
-        words(&message).contains("no region `uper` did you mean `upper`"),
-        "{message}"
+        words(&message.get_output().stderr).contains("no region `uper` did you mean `upper`"),
+        "{message:?}"
     );
 }

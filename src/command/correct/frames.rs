@@ -69,27 +69,59 @@ fn estimates(
 ) -> Result<Estimates, Error> {
     let (mut compared, mut failed) = (ComparedFrames::default(), Vec::new());
     let mut was_kept = false;
-    for frame in &field.series.frames {
-        progress.tell(&format!("frame {}", frame.number));
-        let kept = folder.kept(&frame.number.to_string());
-        let is_kept = kept.is_some();
-        let estimate = kept.map_or_else(|| field.estimate_frame(frame), Ok);
-        progress.advance();
-        match estimate {
-            Ok(estimate) => {
-                let settled = compared.push(frame, estimate);
-                if let Some((before, estimate)) = settled.filter(|_| !was_kept) {
-                    write(field, before, estimate, folder)?;
+    for frames in field.series.frames.chunks(rayon::current_num_threads()) {
+        for (frame, is_kept, estimate) in together(field, frames, folder, progress) {
+            progress.advance();
+            match estimate {
+                Ok(estimate) => {
+                    let settled = compared.push(frame, estimate);
+                    if let Some((before, estimate)) = settled.filter(|_| !was_kept) {
+                        write(field, before, estimate, folder)?;
+                    }
+                    was_kept = is_kept;
                 }
-                was_kept = is_kept;
+                Err(fault) => failed.push((frame.number, fault)),
             }
-            Err(fault) => failed.push((frame.number, fault)),
         }
     }
     if let Some((last, estimate)) = compared.last().filter(|_| !was_kept) {
         write(field, last, estimate, folder)?;
     }
     Ok((compared.into_estimates(), failed))
+}
+
+/// A frame, whether a run before has kept its estimate, and the estimate.
+type EstimatedFrame<'a> = (&'a Frame, bool, Result<FieldEstimate, Error>);
+
+/// The estimates of some frames, in their order: those that are kept, and the others at the same time.
+fn together<'a>(
+    field: &MarkerStudy,
+    frames: &'a [Frame],
+    folder: &mut ResultFolder,
+    progress: &Progress,
+) -> Vec<EstimatedFrame<'a>> {
+    let kept = frames
+        .iter()
+        .map(|frame| folder.kept(&frame.number.to_string()));
+    let kept: Vec<Option<FieldEstimate>> = kept.collect();
+    let pairs = frames.iter().zip(&kept);
+    let others: Vec<&Frame> = pairs
+        .filter_map(|(frame, kept)| kept.is_none().then_some(frame))
+        .collect();
+    let numbers: Vec<String> = others
+        .iter()
+        .map(|frame| frame.number.to_string())
+        .collect();
+    if !numbers.is_empty() {
+        progress.tell(&format!("frame {}", numbers.join(", ")));
+    }
+    let mut estimated = field.estimate_frames(others).into_iter();
+    let each = frames.iter().zip(kept).filter_map(|(frame, kept)| {
+        let is_kept = kept.is_some();
+        let estimate = kept.map(Ok).or_else(|| estimated.next());
+        Some((frame, is_kept, estimate?))
+    });
+    each.collect()
 }
 
 fn write(

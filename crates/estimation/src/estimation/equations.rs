@@ -11,7 +11,7 @@ use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::vector::largest;
-use crate::solve::{Assembly, Inadmissible, Newton, NewtonSettings, Potential, Sum};
+use crate::solve::{Assembly, Convergence, Inadmissible, Newton, NewtonSettings, Potential, Sum};
 
 mod approach;
 mod body_force;
@@ -45,6 +45,16 @@ pub struct Equations<'a> {
     pub body: Option<BodyForce>,
     pub forces: Vec<f64>,
 }
+
+/// [`Newton::solve`], or [`Newton::solve_near`].
+type NewtonMethod = fn(
+    &mut Newton,
+    &dyn Potential,
+    &mut [f64],
+    &mut [f64],
+    NewtonSettings,
+    &dyn Fn(usize) -> String,
+) -> Result<Convergence, SolveFault>;
 
 /// A state of the search.
 #[derive(Clone, Debug)]
@@ -114,7 +124,7 @@ impl<'a> Equations<'a> {
         for degree in (1..=DEGREE).rev() {
             let polynomial = match self.task.knowledge.robust {
                 Robust::No => Polynomial::nearest(&points, degree),
-                _ => Polynomial::trimmed(&points, degree),
+                _ => self.task.observations.trimmed(degree),
             };
             let Some(polynomial) = polynomial else {
                 continue;
@@ -182,6 +192,16 @@ impl<'a> Equations<'a> {
         place: &mut SearchState,
         settings: NewtonSettings,
     ) -> Result<Vec<f64>, Error> {
+        self.settle_by(Newton::solve, place, settings)
+    }
+
+    /// The same by one way of Newton's method.
+    fn settle_by(
+        &mut self,
+        method: NewtonMethod,
+        place: &mut SearchState,
+        settings: NewtonSettings,
+    ) -> Result<Vec<f64>, Error> {
         self.take(&place.parameters);
         let mut wanted = place.field.clone();
         self.motion.at(&place.parameters).write(&mut wanted);
@@ -192,7 +212,7 @@ impl<'a> Equations<'a> {
         approach(newton, energy, &mut place.field, &wanted, &describe).map_err(solve)?;
         let field = &mut place.field;
         let solved = self.with_potential(|newton, potential| {
-            newton.solve(potential, field, &mut residual, settings, &describe)
+            method(newton, potential, field, &mut residual, settings, &describe)
         });
         solved.map_err(solve)?;
         Ok(residual)
@@ -294,7 +314,8 @@ impl<'a> Equations<'a> {
         let free = self.newton.free().iter();
         let lost = free.fold(0.0, |most: f64, unknown| most.max(residual[*unknown].abs()));
         if lost > LOST * largest(&residual) {
-            self.settle(place, ON_THE_WAY)?;
+            // The tangent of the linearisation before is near.
+            self.settle_by(Newton::solve_near, place, ON_THE_WAY)?;
         }
         Ok(())
     }

@@ -103,8 +103,8 @@ pub fn judge(
     if against.is_some() {
         let each = basis.edge_by_edge(found, edges, &granted);
         contradiction = contradicted(together.as_ref(), &each, level);
-        let contradicted = contradiction.iter().flat_map(|all| &all.edges);
-        for (name, _) in contradicted {
+        let first = contradiction.iter().find_map(|all| all.edges.first());
+        if let Some((name, _)) = first {
             trials.extend(basis.other_conditions(found, edges, &granted, name));
         }
         trials.extend(together.filter(|_| each.len() > 1));

@@ -110,16 +110,21 @@ impl<'a> SamplingPoint<'a> {
     pub fn add_stiffness(&self, tangent: &[f64], stiffness: &mut [f64]) {
         let tangent = self.by_natural(tangent);
         let size = 2 * self.derivatives.len();
-        for (b, d) in self.derivatives.iter().enumerate() {
-            for k in 0..2 {
-                let [first, second] = [&tangent[2 * k], &tangent[2 * k + 1]];
-                let column: [f64; 4] =
-                    std::array::from_fn(|row| first[row] * d[0] + second[row] * d[1]);
-                for (node, d) in self.derivatives.iter().enumerate().skip(b) {
-                    let row = 2 * node;
-                    stiffness[row * size + 2 * b + k] += d[0] * column[0] + d[1] * column[1];
-                    stiffness[(row + 1) * size + 2 * b + k] += d[0] * column[2] + d[1] * column[3];
-                }
+        for (node, rows) in stiffness.chunks_exact_mut(2 * size).enumerate() {
+            let own = self.derivatives[node];
+            let x = tangent.map(|column| own[0] * column[0] + own[1] * column[1]);
+            let y = tangent.map(|column| own[0] * column[2] + own[1] * column[3]);
+            let (along_x, along_y) = rows.split_at_mut(size);
+            let pairs = along_x
+                .as_chunks_mut()
+                .0
+                .iter_mut()
+                .zip(along_y.as_chunks_mut().0);
+            for (d, ([xx, xy], [yx, yy])) in self.derivatives[..=node].iter().zip(pairs) {
+                *xx += d[0] * x[0] + d[1] * x[1];
+                *xy += d[0] * x[2] + d[1] * x[3];
+                *yx += d[0] * y[0] + d[1] * y[1];
+                *yy += d[0] * y[2] + d[1] * y[3];
             }
         }
     }

@@ -65,6 +65,9 @@ const NEGLIGIBLE: f64 = 1e-4;
 /// The share of the relative residual before a step that may remain after it if its tangent is to be used again.
 const SERVES: f64 = 0.05;
 
+/// The same of the tangent of another state nearby: three such steps cost less than a factor.
+const SERVES_NEARBY: f64 = 0.3;
+
 /// Relative residual below which the tangent no longer changes its definiteness.
 const SMALL: f64 = 1e-3;
 
@@ -170,6 +173,45 @@ impl Newton {
         Ok(descent.log)
     }
 
+    /// As [`Self::solve`] from a state near that of the tangent factorised last: its factor is used as long as it shortens the residual
+    /// quickly, and is that of the tangent at the end if it suffices.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_near(
+        &mut self,
+        potential: &dyn Potential,
+        u: &mut [f64],
+        residual: &mut [f64],
+        settings: NewtonSettings,
+        describe: Describe,
+    ) -> Result<Convergence, SolveFault> {
+        let Some(stiffest) = self.tangent.factorised_stiffest() else {
+            return self.solve(potential, u, residual, settings, describe);
+        };
+        let start = u.to_vec();
+        let energy = Assembly::residual(potential, u, residual);
+        let energy = energy.map_err(|fault| inverted(fault, describe))?;
+        let mut descent = Descent {
+            potential,
+            u: &mut *u,
+            residual: &mut *residual,
+            settings,
+            log: Convergence::default(),
+        };
+        let near = Iterate {
+            energy,
+            relative: f64::INFINITY,
+            negligible: NEGLIGIBLE * stiffest,
+            shifted: false,
+        };
+        if self.hold_tangent(&mut descent, near, SERVES_NEARBY) {
+            return Ok(descent.log);
+        }
+        u.copy_from_slice(&start);
+        self.solve(potential, u, residual, settings, describe)
+    }
+
     /// Newton's method with a factor for every tangent.
     fn solve_directly(&mut self, to: &mut Descent, describe: Describe) -> Result<(), SolveFault> {
         let settings = to.settings;
@@ -213,7 +255,7 @@ impl Newton {
             if now.shifted || now.relative > SMALL {
                 continue;
             }
-            if self.hold_tangent(to, Iterate { energy, ..now }) {
+            if self.hold_tangent(to, Iterate { energy, ..now }, SERVES) {
                 return Ok(());
             }
         }
@@ -221,7 +263,7 @@ impl Newton {
 
     /// Takes steps with the tangent taken last, which was positive definite nearby, while each reduces the residual
     /// enough: such steps cost a fraction of a factor. Returns whether the residual has come below the tolerance.
-    fn hold_tangent(&mut self, to: &mut Descent, near: Iterate) -> bool {
+    fn hold_tangent(&mut self, to: &mut Descent, near: Iterate, serves: f64) -> bool {
         let (mut before, mut energy) = (near.relative, near.energy);
         loop {
             let after = self.relative_residual(to.residual, near.negligible * largest(to.u));
@@ -231,8 +273,8 @@ impl Newton {
                 return true;
             }
             let more = to.log.iterations() + 1 < to.settings.max_iterations;
-            let serves = after <= SERVES * before && more;
-            let step = serves.then(|| self.tangent.step(to.residual).ok());
+            let is_used = after <= serves * before && more;
+            let step = is_used.then(|| self.tangent.step(to.residual).ok());
             let Some(step) = step.flatten() else {
                 return false;
             };

@@ -58,6 +58,13 @@ impl Tangent {
         Ok(self.cholesky.as_mut().expect("analysed above"))
     }
 
+    /// The largest entry on the diagonal of the symmetric tangent whose factor is at hand; `None` where there is none.
+    pub(super) fn factorised_stiffest(&self) -> Option<f64> {
+        let factor = self.cholesky.as_ref().filter(|_| self.iterative.is_none());
+        let values = factor?.values();
+        (!values.is_empty() && self.skew.is_none()).then(|| self.assembly.stiffest(values))
+    }
+
     /// The free unknowns, ascending.
     pub fn free(&self) -> &[usize] {
         self.assembly.free()

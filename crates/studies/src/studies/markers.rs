@@ -9,6 +9,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::error::{Diagnostic, Error};
 use crate::estimation::{
     Answer, FieldEstimate, Knowledge, Reason, RegressedLaw, Specimen, UncertainLaw, estimate,
@@ -311,11 +313,13 @@ impl MarkerStudy {
     /// As [`estimate`], with the frame in its message, where none can be.
     pub fn estimate(&mut self, watch: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
         let (mut compared, mut failed) = (ComparedFrames::default(), Vec::new());
-        for frame in &self.series.frames {
-            watch(frame);
-            match self.estimate_frame(frame) {
-                Ok(estimate) => drop(compared.push(frame, estimate)),
-                Err(fault) => failed.push((frame.number, fault)),
+        for frames in self.series.frames.chunks(rayon::current_num_threads()) {
+            frames.iter().for_each(watch);
+            for (frame, estimate) in frames.iter().zip(self.estimate_frames(frames)) {
+                match estimate {
+                    Ok(estimate) => drop(compared.push(frame, estimate)),
+                    Err(fault) => failed.push((frame.number, fault)),
+                }
             }
         }
         let mut estimates = compared.into_estimates();
@@ -369,6 +373,15 @@ impl MarkerStudy {
         let doubts = once(&all, "frame-left-out", faults.into_iter());
         self.doubts.extend(doubts);
         Ok(())
+    }
+
+    /// Estimates the fields of some frames, each by itself, at the same time.
+    pub fn estimate_frames<'a>(
+        &self,
+        frames: impl IntoParallelIterator<Item = &'a Frame>,
+    ) -> Vec<Result<FieldEstimate, Error>> {
+        let frames = frames.into_par_iter();
+        frames.map(|frame| self.estimate_frame(frame)).collect()
     }
 
     /// Estimates the field of a frame by itself.

@@ -1,8 +1,10 @@
 //! The markers of a frame on a mesh.
 
+use std::sync::OnceLock;
+
 use nalgebra::DVector;
 
-use super::start::Points;
+use super::start::{DEGREE, Points, Polynomial};
 use crate::error::Diagnostic;
 use crate::markers::Marker;
 use crate::mesh::Mesh;
@@ -30,6 +32,8 @@ pub struct Observations {
     pub reweighted: usize,
     /// H: two rows per marker.
     pub interpolation: SparseRows,
+    /// The trimmed polynomial of each degree, computed when it is first needed: every search begins at one.
+    trimmed: [OnceLock<Option<Polynomial>>; DEGREE],
 }
 
 impl Observations {
@@ -60,6 +64,7 @@ impl Observations {
             known_noise: known > 0,
             reweighted: 0,
             interpolation: SparseRows::new(2 * mesh.nodes.len()),
+            trimmed: Default::default(),
         };
         for (index, marker) in markers.iter().enumerate() {
             all.add(mesh, index, marker, deviation(marker))?;
@@ -133,6 +138,18 @@ impl Observations {
         DVector::from_iterator(there.len(), data.zip(there).map(|(d, u)| d - u))
     }
 
+    /// The polynomial of a degree through the markers that gross errors do not affect.
+    ///
+    /// # Panics
+    /// Where the degree is 0, or more than the largest.
+    pub fn trimmed(&self, degree: usize) -> Option<Polynomial> {
+        let known = &self.trimmed[degree - 1];
+        known
+            .get_or_init(|| Polynomial::trimmed(&self.points(), degree))
+            .clone()
+    }
+
+    /// Places and displacements.
     pub fn points(&self) -> Points<'_> {
         Points {
             places: &self.places,

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::seq::index::sample;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 
 use crate::statistics::{extremes, robust_deviation};
 
@@ -30,8 +31,9 @@ pub struct Points<'a> {
 impl Polynomial {
     /// The polynomial nearest to all markers; `None` where they do not determine it.
     pub fn nearest(points: &Points, degree: usize) -> Option<Self> {
-        let all: Vec<usize> = (0..points.places.len()).collect();
-        Self::through(points, degree, &all)
+        let rows = Rows::new(points, degree, 1);
+        let all: Vec<usize> = (0..rows.displacements.len()).collect();
+        Some(rows.polynomial(rows.through(&all)?))
     }
 
     /// The polynomial with the smallest distance to its nearest half of the markers: least trimmed squares, from
@@ -43,87 +45,20 @@ impl Polynomial {
         const SAMPLES: usize = 300;
         const KEPT: usize = 10;
         let stride = points.places.len().div_ceil(3000).max(1);
-        let some: Vec<usize> = (0..points.places.len()).step_by(stride).collect();
-        let half = some.len() / 2 + 1;
+        let rows = Rows::new(points, degree, stride);
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut found: Vec<(f64, Self)> = (0..SAMPLES)
-            .filter_map(|_| {
-                let start = Self::of_sample(points, degree, &some, &mut random)?;
-                start.concentrated(points, &some, half, 2)
-            })
+        let samples: Vec<_> = (0..SAMPLES)
+            .filter_map(|_| rows.sample(&mut random))
             .collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let better = found.into_iter().take(KEPT);
-        let better = better.filter_map(|(_, start)| start.concentrated(points, &some, half, 30));
+        let starts = samples.into_par_iter();
+        let mut starts: Vec<_> = starts
+            .filter_map(|start| rows.concentrated(start, 2))
+            .collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let better = starts.into_iter().take(KEPT);
+        let better = better.filter_map(|(_, start)| rows.concentrated(start, 30));
         let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
-        best.map(|(_, polynomial)| polynomial)
-    }
-
-    fn of_sample(
-        points: &Points,
-        degree: usize,
-        some: &[usize],
-        random: &mut impl Rng,
-    ) -> Option<Self> {
-        let count = terms([0.0; 2], degree).len();
-        if some.len() < count {
-            return None;
-        }
-        let chosen = sample(random, some.len(), count).into_iter();
-        let chosen: Vec<usize> = chosen.map(|index| some[index]).collect();
-        Self::through(points, degree, &chosen)
-    }
-
-    /// Fits the nearest `half` repeatedly; returns the sum of their squared distances, and the last fit.
-    fn concentrated(
-        self,
-        points: &Points,
-        some: &[usize],
-        half: usize,
-        most: usize,
-    ) -> Option<(f64, Self)> {
-        let (mut polynomial, mut least) = (self, f64::INFINITY);
-        for _ in 0..most {
-            let distances = polynomial.distances(points);
-            let mut order = some.to_vec();
-            order.sort_by(|a, b| distances[*a].total_cmp(&distances[*b]));
-            order.truncate(half);
-            let sum = order.iter().map(|index| distances[*index].powi(2)).sum();
-            if sum >= least {
-                break;
-            }
-            least = sum;
-            polynomial = Self::through(points, polynomial.degree, &order)?;
-        }
-        Some((least, polynomial))
-    }
-
-    fn through(points: &Points, degree: usize, chosen: &[usize]) -> Option<Self> {
-        let [centre, size] = frame(points.places);
-        let local = |index: usize| local(points.places[index], centre, size[0]);
-        let count = terms([0.0; 2], degree).len();
-        if chosen.len() < count {
-            return None;
-        }
-        let rows: Vec<f64> = chosen
-            .iter()
-            .flat_map(|index| terms(local(*index), degree))
-            .collect();
-        let design = DMatrix::from_row_slice(chosen.len(), count, &rows);
-        let values = DMatrix::from_fn(chosen.len(), 2, |row, axis| {
-            points.displacements[chosen[row]][axis]
-        });
-        let factor = (design.transpose() * &design).cholesky()?;
-        let weakest = factor.l_dirty().diagonal().min();
-        if weakest < 1e-6 {
-            return None;
-        }
-        Some(Self {
-            coefficients: factor.solve(&(design.transpose() * values)),
-            centre,
-            size: size[0],
-            degree,
-        })
+        best.map(|(_, coefficients)| rows.polynomial(coefficients))
     }
 
     /// The displacement at a place in mm.
@@ -151,6 +86,113 @@ impl Polynomial {
             .iter()
             .map(|d| f64::from(u8::from(*d <= limit)))
             .collect()
+    }
+}
+
+/// Some markers with the terms of polynomials at their places, for many fits.
+struct Rows {
+    centre: [f64; 2],
+    size: f64,
+    degree: usize,
+    /// Number of terms.
+    count: usize,
+    /// Marker after marker.
+    terms: Vec<f64>,
+    displacements: Vec<[f64; 2]>,
+}
+
+impl Rows {
+    /// Every so many of the markers.
+    fn new(points: &Points, degree: usize, stride: usize) -> Self {
+        let [centre, [size, _]] = frame(points.places);
+        let places = points.places.iter().step_by(stride);
+        let displacements = points.displacements.iter().step_by(stride);
+        Self {
+            count: terms([0.0; 2], degree).len(),
+            terms: places
+                .flat_map(|place| terms(local(*place, centre, size), degree))
+                .collect(),
+            displacements: displacements.copied().collect(),
+            centre,
+            size,
+            degree,
+        }
+    }
+
+    fn polynomial(&self, coefficients: DMatrix<f64>) -> Polynomial {
+        Polynomial {
+            centre: self.centre,
+            size: self.size,
+            degree: self.degree,
+            coefficients,
+        }
+    }
+
+    /// The coefficients of a polynomial through as few markers as determine it.
+    fn sample(&self, random: &mut impl Rng) -> Option<DMatrix<f64>> {
+        let all = self.displacements.len();
+        let chosen = (all >= self.count).then(|| sample(random, all, self.count));
+        self.through(&chosen?.into_vec())
+    }
+
+    /// The coefficients nearest to some markers; `None` where these do not determine them.
+    fn through(&self, chosen: &[usize]) -> Option<DMatrix<f64>> {
+        let count = self.count;
+        if chosen.len() < count {
+            return None;
+        }
+        let mut normal = DMatrix::zeros(count, count);
+        let mut target = DMatrix::zeros(count, 2);
+        for index in chosen {
+            let row = &self.terms[index * count..(index + 1) * count];
+            for (i, own) in row.iter().enumerate() {
+                for (j, other) in row[i..].iter().enumerate() {
+                    normal[(i + j, i)] += own * other;
+                }
+                for axis in [0, 1] {
+                    target[(i, axis)] += own * self.displacements[*index][axis];
+                }
+            }
+        }
+        let factor = normal.cholesky()?;
+        let weakest = factor.l_dirty().diagonal().min();
+        (weakest >= 1e-6).then(|| factor.solve(&target))
+    }
+
+    /// The square of each marker's distance from a polynomial.
+    fn squares(&self, coefficients: &DMatrix<f64>) -> Vec<f64> {
+        let rows = self.terms.chunks_exact(self.count).zip(&self.displacements);
+        let square = |(row, displacement): (&[f64], &[f64; 2])| {
+            let off = [0, 1].map(|axis| {
+                let factors = &coefficients.as_slice()[axis * self.count..];
+                let terms = row.iter().zip(factors);
+                displacement[axis] - terms.map(|(term, factor)| term * factor).sum::<f64>()
+            });
+            off[0] * off[0] + off[1] * off[1]
+        };
+        rows.map(square).collect()
+    }
+
+    /// Fits the nearest half repeatedly; returns the sum of its squared distances, and the last fit.
+    fn concentrated(&self, start: DMatrix<f64>, most: usize) -> Option<(f64, DMatrix<f64>)> {
+        let (mut coefficients, mut least) = (start, f64::INFINITY);
+        let half = self.displacements.len() / 2 + 1;
+        for _ in 0..most {
+            let squares = self.squares(&coefficients);
+            let mut order: Vec<usize> = (0..squares.len()).collect();
+            if half < order.len() {
+                order.select_nth_unstable_by(half, |a, b| squares[*a].total_cmp(&squares[*b]));
+                order.truncate(half);
+                order.sort_unstable();
+            }
+            let sum = order.iter().map(|index| squares[*index]).sum();
+            if sum >= least {
+                break;
+            }
+            least = sum;
+            coefficients = self.through(&order)?;
+        }
+        Some((least, coefficients))
     }
 }
 

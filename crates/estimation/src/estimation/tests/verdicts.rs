@@ -143,20 +143,32 @@ fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
     let roller = EdgeCondition::Known([None, Some(0.0)]);
     for stated in [EdgeCondition::Free, EdgeCondition::Rigid, roller] {
         let mut knowledge = with_grips(EdgeCondition::Rigid);
-        let bottom = knowledge.edges.iter_mut().find(|(name, _)| name == "bottom");
+        let bottom = knowledge
+            .edges
+            .iter_mut()
+            .find(|(name, _)| name == "bottom");
         bottom.unwrap().1 = stated;
         let mesh = estimate_mesh();
-        let verdict = estimate(&specimen(&mesh), &markers, &knowledge).unwrap().verdict;
-        let proposed = verdict.trials.iter().find_map(|trial| match &trial.alternative {
-            Alternative::Condition { edge, condition } => Some((edge.as_str(), *condition)),
-            _ => None,
-        });
+        let verdict = estimate(&specimen(&mesh), &markers, &knowledge)
+            .unwrap()
+            .verdict;
+        let proposed = verdict
+            .trials
+            .iter()
+            .find_map(|trial| match &trial.alternative {
+                Alternative::Condition { edge, condition } => Some((edge.as_str(), *condition)),
+                _ => None,
+            });
         if stated == roller {
             assert_ne!(verdict.answer, Answer::NotExplained, "{verdict:?}");
             assert_eq!(proposed, None);
         } else {
             assert_eq!(verdict.answer, Answer::NotExplained, "{stated:?}");
-            assert_eq!(proposed, Some(("bottom", roller)), "{stated:?} {verdict:#?}");
+            assert_eq!(
+                proposed,
+                Some(("bottom", roller)),
+                "{stated:?} {verdict:#?}"
+            );
         }
     }
 }

@@ -8,6 +8,7 @@
 //! that moves most: a mistake is that of a file.
 
 use nalgebra::Matrix2;
+use rayon::prelude::*;
 
 use super::MarkerStudy;
 use super::quantities::{residual_rms, used};
@@ -143,7 +144,7 @@ impl MarkerStudy {
             return None;
         }
         let gradient = frame.mean_gradient()?;
-        let tried = Mistake::ALL.into_iter().filter_map(|mistake| {
+        let tried = Mistake::ALL.into_par_iter().filter_map(|mistake| {
             let markers = frame.markers.iter().map(|marker| mistake.undone(*marker));
             let meant = Frame {
                 markers: markers.collect(),
@@ -153,7 +154,9 @@ impl MarkerStudy {
             let estimate = may_be.then(|| self.estimate_frame(&meant).ok()).flatten()?;
             is_nearer(&estimate, written).then_some((mistake, estimate))
         });
-        tried.min_by(|(_, a), (_, b)| criterion(a).total_cmp(&criterion(b)))
+        let tried: Vec<_> = tried.collect();
+        let least = |(_, a): &(_, _), (_, b): &(_, _)| criterion(a).total_cmp(&criterion(b));
+        tried.into_iter().min_by(least)
     }
 }
 

@@ -1,0 +1,212 @@
+//! What people wait for: `cargo bench --bench waiting` runs the commands as they are typed, and shows the least of three times.
+//!
+//! With `GELBENCH_BEFORE=PROGRAM`, one built from an earlier commit, both programs run each command in turn. With a word behind `--`, as in
+//! `cargo bench --bench waiting -- markers`, only the commands whose name has it are run. Markers are those of a strip with a hole from finite
+//! elements (neo-Hooke, pulled by 40 %), with normal noise of 3 µm.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::time::Instant;
+
+use gelbench::material::NeoHooke;
+use gelbench::mesh::{CellShape, Mesh};
+use gelbench::problem::BoundaryProblem;
+use gelbench::solve::NewtonSettings;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+#[expect(dead_code, reason = "other shapes are those of tests")]
+#[path = "../tests/common/sheets.rs"]
+mod sheets;
+
+use sheets::{STRIP_WITH_HOLE, held, named};
+
+/// Standard deviation of the markers' displacements in mm.
+const NOISE: f64 = 0.003;
+
+const CORRECT: &str =
+    "--material neo-hooke --thickness 2mm --outline outline.csv --rigid left,right";
+
+/// The commands in words, and what is typed behind `gelbench`. Each word is one argument; `_` stands for a blank in it.
+const COMMANDS: [[&str; 2]; 13] = [
+    ["main job", "run examples/pva_plate.toml"],
+    ["strip with a hole", "run examples/strip_with_hole.toml"],
+    ["dog-bone", "run examples/dog_bone.toml"],
+    ["released plate", "run examples/released_plate.toml"],
+    [
+        "every law, tensile test",
+        "materials fit materials/data/treloar_1944_uniaxial.csv --all",
+    ],
+    [
+        "Holzapfel-Gasser-Ogden, 1,020 stresses",
+        "materials fit validation/measured/tissue_biaxial/protocols.csv --law holzapfel-gasser-ogden --one-specimen",
+    ],
+    [
+        "Ogden-Hill, two terms",
+        "materials fit materials/data/treloar_1944_uniaxial.csv --law ogden-hill-2",
+    ],
+    [
+        "1,441 markers, parameter fitted",
+        "correct 1441.csv CORRECT --fit c10 --force right_x_FORCE_N",
+    ],
+    [
+        "1,441 markers, edges wrong",
+        "correct 1441.csv CORRECT --free left",
+    ],
+    [
+        "630 markers, weighted physics",
+        "correct 630.csv CORRECT --physics weighted",
+    ],
+    ["3,400 markers, gross errors", "correct gross.csv CORRECT"],
+    ["10 frames of 5,000 markers", "correct frames.csv CORRECT"],
+    [
+        "100,000 markers",
+        "correct 100000.csv CORRECT --allow-large",
+    ],
+];
+
+/// The strip with a hole in equilibrium.
+struct Truth {
+    mesh: Mesh,
+    displacement: Vec<f64>,
+    force: f64,
+}
+
+impl Truth {
+    fn new() -> Self {
+        let problem = BoundaryProblem {
+            thickness: 2.0,
+            law: Arc::new(NeoHooke { c10: 0.05 }),
+            regions: Vec::new(),
+            supports: named([("left", held(0.0, 0.0)), ("right", held(40.0, 0.0))]),
+            loads: Vec::new(),
+        };
+        let mesh = STRIP_WITH_HOLE.mesh(32, CellShape::Quad9);
+        let energy = problem.finite_elements(&mesh);
+        let model = problem.on(&mesh, &energy).expect("a problem");
+        let states = model.solve(&[0.5, 1.0], NewtonSettings::default(), &|_| ());
+        let last = states.expect("an equilibrium").remove(1);
+        let force = model.reaction(&last, "right")[0];
+        Self {
+            displacement: last.displacement,
+            force,
+            mesh,
+        }
+    }
+
+    /// So many markers in so many frames, some of them with gross errors.
+    fn write(&self, file: &Path, count: usize, frames: usize, gross: usize) {
+        let mut random = ChaCha8Rng::seed_from_u64(count as u64);
+        let mut out = BufWriter::new(File::create(file).expect("a file"));
+        writeln!(out, "frame,x [mm],y [mm],ux [mm],uy [mm]").expect("written");
+        let [low, high] = self.mesh.bounding_box();
+        let spacing = ((high[0] - low[0]) * (high[1] - low[1]) / count as f64).sqrt();
+        let lines = [0, 1].map(|axis| ((high[axis] - low[axis]) / spacing) as usize);
+        let middle = [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0);
+        for frame in 1..=frames {
+            let share = frame as f64 / frames as f64;
+            for number in 0..lines[0] * lines[1] {
+                let at = [number / lines[1], number % lines[1]];
+                let place = [0, 1].map(|axis| low[axis] + spacing * (at[axis] as f64 + 0.5));
+                if (place[0] - middle[0]).hypot(place[1] - middle[1]) < 8.2 {
+                    continue;
+                }
+                let wrong = if number < gross {
+                    random.random_range(0.5..2.0)
+                } else {
+                    0.0
+                };
+                let u = self.mesh.displacement_at(&self.displacement, place);
+                let u = u.map(|u| {
+                    let noise: f64 = StandardNormal.sample(&mut random);
+                    share * u + NOISE * noise + wrong
+                });
+                let ([x, y], [ux, uy]) = (place, u);
+                writeln!(out, "{frame},{x:.5},{y:.5},{ux:.6},{uy:.6}").expect("written");
+            }
+        }
+    }
+
+    fn write_outline(&self, file: &Path) {
+        let mut text = "x [mm],y [mm],line\n".to_owned();
+        for (line, nodes) in self.mesh.boundary().iter().enumerate() {
+            for [x, y] in nodes.iter().map(|node| self.mesh.nodes[*node]) {
+                text += &format!("{x},{y},{}\n", line + 1);
+            }
+        }
+        fs::write(file, text).expect("written");
+    }
+}
+
+/// Seconds of one run of a command in the repository; `None` where it fails in another way than by its verdict.
+fn seconds(program: &Path, arguments: &[String]) -> Option<f64> {
+    let begin = Instant::now();
+    let status = Command::new(program)
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .expect("a program");
+    let is_done = matches!(status.code(), Some(0 | 1 | 5));
+    is_done.then(|| begin.elapsed().as_secs_f64())
+}
+
+fn main() {
+    let wanted = std::env::args().skip(1).find(|word| !word.starts_with('-'));
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let truth = Truth::new();
+    truth.write_outline(&at("outline.csv"));
+    for (name, count, frames, gross) in [
+        ("630.csv", 630, 1, 0),
+        ("1441.csv", 1_441, 1, 0),
+        ("gross.csv", 3_400, 1, 60),
+        ("frames.csv", 5_000, 10, 0),
+        ("100000.csv", 100_000, 1, 0),
+    ] {
+        truth.write(&at(name), count, frames, gross);
+    }
+    let argument = |word: &str| {
+        let word = word.replace('_', if word.contains("FORCE") { " " } else { "_" });
+        let word = word.replace("FORCE", &truth.force.to_string());
+        let own = at(&word);
+        if own.exists() {
+            own.display().to_string()
+        } else {
+            word
+        }
+    };
+    let programs: Vec<PathBuf> = std::env::var_os("GELBENCH_BEFORE")
+        .map(PathBuf::from)
+        .into_iter()
+        .chain([PathBuf::from(env!("CARGO_BIN_EXE_gelbench"))])
+        .collect();
+    let before = if programs.len() > 1 {
+        " before [s] |"
+    } else {
+        ""
+    };
+    println!("| command |{before} now [s] |");
+    println!("|---|---{}|", before.replace(" before [s] ", "---"));
+    for [name, typed] in COMMANDS {
+        if wanted.as_ref().is_some_and(|word| !name.contains(&**word)) {
+            continue;
+        }
+        let typed = typed.replace("CORRECT", CORRECT);
+        let mut arguments: Vec<String> = typed.split(' ').map(&argument).collect();
+        arguments.extend(["--output".to_owned(), at("out").display().to_string()]);
+        let mut least = vec![f64::INFINITY; programs.len()];
+        for _ in 0..3 {
+            for (least, program) in least.iter_mut().zip(&programs) {
+                *least = least.min(seconds(program, &arguments).unwrap_or(f64::NAN));
+            }
+        }
+        let cells = least.iter().map(|seconds| format!(" {seconds:.2} |"));
+        println!("| {name} |{}", cells.collect::<String>());
+    }
+}
