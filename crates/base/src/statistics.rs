@@ -1,7 +1,7 @@
 //! Statistics, each formula in one place: quantiles and tail probabilities, estimates with their intervals, robust measures of
 //! scale, the inverse of normal matrices, B-splines, noise that correlates with distance or along curves.
 
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, Dyn};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{Beta, ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
@@ -188,7 +188,21 @@ pub fn inverse(matrix: &DMatrix<f64>, least: f64) -> Option<DMatrix<f64>> {
     let factor = scaled(matrix).cholesky()?;
     let pivots = factor.l_dirty().diagonal();
     let determined = pivots.iter().all(|pivot| *pivot >= least);
-    determined.then(|| scaled(&factor.inverse()))
+    determined.then(|| scaled(&inverse_of(&factor)))
+}
+
+/// M⁻¹ = L⁻ᵀL⁻¹ from the factor M = LLᵀ, a third of the time of a solution for every unit vector.
+pub fn inverse_of(factor: &Cholesky<f64, Dyn>) -> DMatrix<f64> {
+    let lower = factor.l_dirty();
+    let count = lower.nrows();
+    let mut inverse = DMatrix::identity(count, count);
+    for column in 0..count {
+        let rest = count - column;
+        let block = lower.view((column, column), (rest, rest));
+        let mut below = inverse.view_mut((column, column), (rest, 1));
+        block.solve_lower_triangular_unchecked_mut(&mut below);
+    }
+    inverse.transpose() * inverse
 }
 
 #[cfg(test)]

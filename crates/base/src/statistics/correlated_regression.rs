@@ -15,8 +15,8 @@ use std::cmp::Ordering;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::chi_squared_limit;
 use super::correlation::{Correlation, Decay, Sites, Whitening};
+use super::{chi_squared_limit, inverse_of};
 
 /// A regression whose rows would have variance one if they were white; two rows for each place.
 pub struct CorrelatedRegression<'a> {
@@ -135,7 +135,7 @@ impl WhiteRegression {
             .iter()
             .map(|pivot| 2.0 * pivot.ln())
             .sum();
-        let effective = factor.solve(&self.normal).trace() / variance;
+        let effective = inverse_of(&factor).dot(&self.normal) / variance;
         Some((log - target.dot(&solution), solution, effective))
     }
 

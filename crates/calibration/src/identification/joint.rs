@@ -222,7 +222,7 @@ impl Joint<'_> {
                 }
             }
         }
-        let mut elimination = matrix.factorise()?;
+        let elimination = matrix.factorise()?;
         let by_data = DVector::from_vec(elimination.solve(&pull)?);
         let mut by_functions = DMatrix::zeros(motions, count);
         for (index, column) in coupling.column_iter().enumerate() {

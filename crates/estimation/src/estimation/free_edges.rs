@@ -33,6 +33,17 @@ fn nearest<'a>(task: &Task<'a>, edges: &[Edge], most: usize) -> Result<NearestFi
     Equations::new(task, edges)?.run(most)
 }
 
+/// The same from a field with other edges, and anew where that leads to none.
+fn nearest_from<'a>(
+    task: &Task<'a>,
+    edges: &[Edge],
+    most: usize,
+    before: &NearestField,
+) -> Result<NearestField<'a>, Error> {
+    let found = Equations::new(task, edges)?.run_near(before, most);
+    found.or_else(|_| nearest(task, edges, most))
+}
+
 /// The edges to be tested, the longest first.
 fn open(edges: &[Edge]) -> Vec<usize> {
     let mut open: Vec<usize> = (0..edges.len())
@@ -62,7 +73,7 @@ fn from_loaded<'a>(
             continue;
         }
         // Where no equilibrium with the free edge is found, the edge is not free.
-        let trial = nearest(task, &freed, TRIAL_STEPS);
+        let trial = nearest_from(task, &freed, TRIAL_STEPS, &found);
         let probability = trial
             .as_ref()
             .map_or(0.0, |trial| probability(&found, trial));
@@ -90,7 +101,7 @@ fn from_free<'a>(
     for index in open {
         let mut released = edges.clone();
         released[index].condition = given[index].condition;
-        let Ok(trial) = nearest(task, &released, TRIAL_STEPS) else {
+        let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &found) else {
             continue;
         };
         let probability = probability(&trial, &found);
@@ -115,7 +126,7 @@ fn settle<'a>(
     if singular_corners(&edges) == before {
         Ok((found, edges))
     } else {
-        Ok((nearest(task, &edges, MOST_STEPS)?, edges))
+        Ok((nearest_from(task, &edges, MOST_STEPS, &found)?, edges))
     }
 }
 

@@ -111,11 +111,21 @@ impl<'a> Equations<'a> {
         }))
     }
 
-    /// One linearised regression from the field of another search, with its trust of the markers.
+    /// The same from the field of another search, with its trust of the markers.
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn score(mut self, found: &NearestField) -> Result<Scored, Error> {
+    pub fn run_near(
+        mut self,
+        found: &NearestField,
+        most: usize,
+    ) -> Result<NearestField<'a>, Error> {
+        let (place, variances) = self.near(found)?;
+        self.run_from(place, variances, VARIANCE_STEPS, most)
+    }
+
+    /// The state near the field of another search, and its variances but for those of the edges.
+    fn near(&mut self, found: &NearestField) -> Result<(SearchState, VarianceComponents), Error> {
         let mut parameters = self.nearest_parameters(&found.field);
         let others = &found.parameters[found.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
@@ -124,10 +134,19 @@ impl<'a> Equations<'a> {
             field: found.field.clone(),
         };
         self.settle(&mut place, ON_THE_WAY)?;
-        let mut variances = VarianceComponents {
+        let variances = VarianceComponents {
             smoothing: Vec::new(),
             ..found.variances.clone()
         };
+        Ok((place, variances))
+    }
+
+    /// One linearised regression from the field of another search, with its trust of the markers.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn score(mut self, found: &NearestField) -> Result<Scored, Error> {
+        let (place, mut variances) = self.near(found)?;
         let linear = self.linearise(&place)?;
         let fit = self.regress(&place, false, &linear, &mut variances)?;
         Ok(Scored {

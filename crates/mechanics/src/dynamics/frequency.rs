@@ -88,7 +88,7 @@ pub fn slowest(
     if assembly.free().is_empty() {
         return Ok(Vec::new());
     }
-    let mut cholesky = factorised(motion, &assembly, displacement)?;
+    let cholesky = factorised(motion, &assembly, displacement)?;
     let mass = gather(assembly.free(), &motion.mass);
     let roots = DVector::from_iterator(mass.len(), mass.iter().map(|m| m.sqrt()));
     let width = (2 * count).max(count + 6).min(mass.len());

@@ -77,8 +77,6 @@ pub struct Cholesky {
     factor: Vec<f64>,
     values: Vec<f64>,
     workspace: MemBuffer,
-    /// Memory for a factorisation or a single right-hand side.
-    scratch: StackReq,
 }
 
 impl Cholesky {
@@ -124,13 +122,11 @@ impl Cholesky {
             },
         )
         .map_err(|_| FactorFault::OutOfMemory)?;
-        let scratch = symbolic
-            .factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default())
-            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let scratch =
+            symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default());
         Ok(Self {
             factor: zeros(symbolic.len_val())?,
             workspace: workspace(scratch)?,
-            scratch,
             values: Vec::new(),
             pattern,
             symbolic,
@@ -175,7 +171,7 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`FactorFault`] when the residual shows that A is singular to working precision.
-    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, FactorFault> {
+    pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, FactorFault> {
         let mut x = b.to_vec();
         self.substitute(&mut x);
         let mut correction = self.defect(b, &x);
@@ -190,24 +186,22 @@ impl Cholesky {
     }
 
     /// x ← A⁻¹ x by substitution alone, without refinement and verification: for iterations that check their own residual.
-    pub fn substitute(&mut self, x: &mut [f64]) {
+    pub fn substitute(&self, x: &mut [f64]) {
         self.substitute_columns(x, 1);
     }
 
     /// X ← A⁻¹ X for columns one after the other, as [`Self::substitute`]: eight together take less than three times as
     /// long as one.
-    pub fn substitute_columns(&mut self, x: &mut [f64], columns: usize) {
+    pub fn substitute_columns(&self, x: &mut [f64], columns: usize) {
         let needed = self
             .symbolic
             .solve_in_place_scratch::<f64>(columns, Par::Seq);
-        if columns > 1 {
-            self.workspace = MemBuffer::new(needed.or(self.scratch));
-        }
+        let mut workspace = MemBuffer::new(needed);
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
             MatMut::from_column_major_slice_mut(x, self.pattern.size(), columns),
             Par::Seq,
-            MemStack::new(&mut self.workspace),
+            MemStack::new(&mut workspace),
         );
     }
 }

@@ -1,5 +1,7 @@
 //! The tangent of a potential, factorised: small changes of an equilibrium, and its softest mode.
 
+use rayon::prelude::*;
+
 use super::assembly::Assembly;
 use super::iterative::{Iterative, LinearSolver};
 use super::potential::{Inadmissible, Potential};
@@ -117,17 +119,21 @@ impl Tangent {
             return Ok(changes);
         }
         let free = self.assembly.free();
-        let cholesky = self.cholesky.as_mut().expect("factorised");
-        for group in others.chunks(TOGETHER) {
+        let cholesky = self.cholesky.as_ref().expect("factorised");
+        let groups = others.par_chunks(TOGETHER).flat_map_iter(|group| {
             let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
             let mut columns: Vec<f64> = right.collect();
             cholesky.substitute_columns(&mut columns, group.len());
             // Without free unknowns every column is empty.
-            for (residual, begin) in group.iter().zip((0..).step_by(free.len().max(1))) {
+            let begins = (0..).step_by(free.len().max(1));
+            let pairs = group.iter().zip(begins);
+            let spreads = pairs.map(|(residual, begin)| {
                 let column = columns.get(begin..begin + free.len());
-                changes.push(spread(free, column.unwrap_or_default(), residual.len()));
-            }
-        }
+                spread(free, column.unwrap_or_default(), residual.len())
+            });
+            spreads.collect::<Vec<_>>()
+        });
+        changes.par_extend(groups);
         Ok(changes)
     }
 
