@@ -346,7 +346,9 @@ fn a_corrected_field_has_the_force_of_the_cards_of_all_regions() {
         ];
         gelbench(folder.path(), &all.concat()).code(0);
         let report = machine_report(&folder.path().join("out"));
-        let forces = report["steps"][0]["forces"].as_array().unwrap();
+        let forces = report["steps"][0]["corrected"]["forces"]
+            .as_array()
+            .unwrap();
         let right = forces.iter().find(|own| own["edge"] == "right").unwrap();
         number(right, &["x_N", "value"])
     };
@@ -383,7 +385,8 @@ fn a_card_for_a_region_that_the_mesh_lacks_is_refused() {
     ];
     let message = gelbench(folder.path(), &given).code(2);
     assert!(
-        words(&message.get_output().stderr).contains("no region `uper` did you mean `upper`"),
+        words(&message.get_output().stderr)
+            .contains("no region `uper` help: did you mean `upper`?"),
         "{message:?}"
     );
 }

@@ -105,7 +105,9 @@ pub fn free_edges(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
     strain: f64,
 ) -> Option<PlaneTensor> {
-    let of = |scale: Scale| free_edges_by(response, strain, scale);
+    // λ^−½ − 1
+    let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt());
+    let of = |scale: Scale| free_edges_by(response, [strain, lateral], scale);
     of(Scale::Stretch).or_else(|| of(Scale::Logarithm))
 }
 
@@ -149,10 +151,9 @@ impl Scale {
 
 fn free_edges_by(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
-    strain: f64,
+    [strain, lateral]: [f64; 2],
     scale: Scale,
 ) -> Option<PlaneTensor> {
-    let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt()); // λ^−½ − 1
     let mut h = Vector4::new(strain, 0.0, 0.0, lateral);
     let at = |h: &PlaneTensor| Some(response(&Kinematics::new(h).ok()?));
     let mut state = at(&h)?;
@@ -182,8 +183,19 @@ fn free_edges_by(
 /// The tension curve of a strip with free edges along the first axis, from the sheet's response: the slope is
 /// condensed over H₁₂ and H₂₂. NaN where the strip has no equilibrium.
 pub fn tension(response: &dyn Fn(&Kinematics) -> SheetResponse, strain: f64) -> TensionResponse {
+    tension_near(response, strain, None)
+}
+
+/// The same where H₂₂ of the strip may be known beforehand.
+pub fn tension_near(
+    response: &dyn Fn(&Kinematics) -> SheetResponse,
+    strain: f64,
+    lateral: Option<f64>,
+) -> TensionResponse {
+    let near = || free_edges_by(response, [strain, lateral?], Scale::Stretch);
     let condensed = || {
-        let state = response(&Kinematics::new(&free_edges(response, strain)?).ok()?);
+        let free = near().or_else(|| free_edges(response, strain))?;
+        let state = response(&Kinematics::new(&free).ok()?);
         let a = &state.tangent;
         let block = Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]);
         let coupling = Vector2::new(a[(1, 0)], a[(3, 0)]);

@@ -1,7 +1,8 @@
 //! One equilibrium of a loaded body.
 
+use super::convergence::NewtonSettings;
 use super::loading::{Loading, Stage, State};
-use super::newton::{Newton, NewtonSettings};
+use super::newton::Newton;
 use super::potential::Potential;
 use crate::error::SolveFault;
 

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::convergence::Convergence;
 use super::iterative::LinearSolver;
-use super::newton::Convergence;
 use super::potential::Potential;
 
 /// The position of a body on its path.

@@ -1,53 +1,12 @@
 //! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
 
-use serde::{Deserialize, Serialize};
-
 use super::assembly::Assembly;
+use super::convergence::{Convergence, NewtonSettings};
 use super::iterative::LinearSolver;
 use super::potential::{Inadmissible, Potential};
 use super::tangent::{Describe, Tangent, inverted};
 use super::vector::{dot, gather, largest, scale};
 use crate::error::SolveFault;
-
-/// Stopping criteria.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NewtonSettings {
-    /// Largest residual of a free unknown relative to the largest reaction. Default: 1e-10.
-    pub tolerance: f64,
-    /// Iterations allowed. Default: 40.
-    pub max_iterations: usize,
-}
-
-impl Default for NewtonSettings {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-10,
-            max_iterations: 40,
-        }
-    }
-}
-
-/// How a solution was reached.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
-pub struct Convergence {
-    /// Relative residual before each iteration and after the last.
-    pub residuals: Vec<f64>,
-    /// The potential at the solution.
-    pub energy: f64,
-    /// Iterations in which the full step was shortened.
-    pub cut_steps: usize,
-    /// Iterations in which the tangent was not positive definite and was shifted.
-    pub shifted_steps: usize,
-    /// Load steps of the shortest length in which the body moved farther than predicted: it snapped to another branch.
-    pub snaps: usize,
-}
-
-impl Convergence {
-    /// Number of iterations.
-    pub fn iterations(&self) -> usize {
-        self.residuals.len().saturating_sub(1)
-    }
-}
 
 /// A minimisation prepared for one potential and one set of held unknowns.
 pub struct Newton {
@@ -85,6 +44,24 @@ struct Descent<'a> {
     residual: &'a mut [f64],
     settings: NewtonSettings,
     log: Convergence,
+}
+
+impl<'a> Descent<'a> {
+    fn new(
+        potential: &'a dyn Potential,
+        u: &'a mut [f64],
+        residual: &'a mut [f64],
+        settings: NewtonSettings,
+    ) -> Self {
+        let log = Convergence::default();
+        Self {
+            potential,
+            u,
+            residual,
+            settings,
+            log,
+        }
+    }
 }
 
 /// The state of the iteration.
@@ -150,13 +127,7 @@ impl Newton {
         describe: Describe,
     ) -> Result<Convergence, SolveFault> {
         self.indefinite = None;
-        let mut descent = Descent {
-            potential,
-            u,
-            residual,
-            settings,
-            log: Convergence::default(),
-        };
+        let mut descent = Descent::new(potential, u, residual, settings);
         if self.tangent.iterative.is_some() {
             let start = descent.u.to_vec();
             if self.solve_inexactly(&mut descent).is_some() {
@@ -191,20 +162,13 @@ impl Newton {
         };
         let start = u.to_vec();
         let energy = Assembly::residual(potential, u, residual);
-        let energy = energy.map_err(|fault| inverted(fault, describe))?;
-        let mut descent = Descent {
-            potential,
-            u: &mut *u,
-            residual: &mut *residual,
-            settings,
-            log: Convergence::default(),
-        };
         let near = Iterate {
-            energy,
+            energy: energy.map_err(|fault| inverted(fault, describe))?,
             relative: f64::INFINITY,
             negligible: NEGLIGIBLE * stiffest,
             shifted: false,
         };
+        let mut descent = Descent::new(potential, u, residual, settings);
         if self.hold_tangent(&mut descent, near, SERVES_NEARBY) {
             return Ok(descent.log);
         }

@@ -1,10 +1,11 @@
 //! Equilibria along a path of load factors.
 
+use super::convergence::NewtonSettings;
 use super::ending::diagnose;
 use super::equilibrium::equilibrium;
 use super::journal::{Attendance, Journal, Milestone};
 use super::loading::{Loading, Stage, State};
-use super::newton::{Newton, NewtonSettings};
+use super::newton::Newton;
 use super::potential::Potential;
 use super::tangent::Tangent;
 use super::vector::{difference, norm};

@@ -134,22 +134,43 @@ impl<L: BodyLaw> BodySheet<L> {
         };
         let area = (area_change.ln_1p() / 3.0).exp_m1();
         let place = |step: usize| area + (1.0 + area) * THICKNESSES[step];
-        let Some([mut low, mut high]) = rising(place, slope, self.expected(area_change, z)) else {
-            return f64::NAN;
-        };
-        while high - low > f64::EPSILON * high.abs().max(low.abs()) {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if slope(middle) < 0.0 {
-                low = middle
-            } else {
-                high = middle
-            }
+        match rising(place, slope, self.expected(area_change, z)) {
+            Some(ends) => root_between(ends, slope),
+            None => f64::NAN,
         }
-        high
     }
+}
+
+/// The root of a rising function between two places: by secants whose end that stays counts half (Illinois), and by halves where they are slow.
+fn root_between([mut low, mut high]: [f64; 2], function: impl Fn(f64) -> f64) -> f64 {
+    let (mut below, mut above) = (function(low), function(high));
+    let mut stayed = 0_i32;
+    while high - low > f64::EPSILON * high.abs().max(low.abs()) {
+        let secant = high - above * (high - low) / (above - below);
+        let is_slow = stayed.abs() > 3;
+        let middle = if is_slow || !(low < secant && secant < high) {
+            0.5 * (low + high)
+        } else {
+            secant
+        };
+        if middle <= low || middle >= high {
+            break;
+        }
+        let value = function(middle);
+        if value < 0.0 {
+            (low, below) = (middle, value);
+            stayed = stayed.max(0) + 1;
+            above *= if stayed > 1 { 0.5 } else { 1.0 };
+        } else {
+            (high, above) = (middle, value);
+            stayed = stayed.min(0) - 1;
+            below *= if stayed < -1 { 0.5 } else { 1.0 };
+        }
+        if value == 0.0 {
+            break;
+        }
+    }
+    high
 }
 
 /// Of the pieces between ascending places, finds one over which a function rises through zero, and whose middle is
