@@ -60,7 +60,10 @@ pub struct Choice<'a> {
 
 impl<'a> Choice<'a> {
     /// Chooses the columns of a table.
-    pub fn of(head: &'a Head<'a>, test: Option<Test>) -> Self {
+    ///
+    /// # Errors
+    /// The faults of the columns that are stated: what else the table lacks would follow from them.
+    pub fn of(head: &'a Head<'a>, test: Option<Test>) -> Result<Self, Vec<Diagnostic>> {
         let columns = &head.table.columns;
         let mut choice = Self {
             head,
@@ -69,13 +72,7 @@ impl<'a> Choice<'a> {
             questions: Vec::new(),
             of_times: None,
         };
-        let chosen = match chosen(head) {
-            Ok(chosen) => chosen,
-            Err(questions) => {
-                choice.questions = questions;
-                return choice;
-            }
-        };
+        let chosen = chosen(head)?;
         for (_, quantity) in Quantity::NAMES {
             if let Some(column) = chosen.of(*quantity) {
                 choice.roles[column] = stated(head, column, *quantity);
@@ -89,7 +86,7 @@ impl<'a> Choice<'a> {
                 choice.of_names(kind);
             }
         }
-        choice
+        Ok(choice)
     }
 
     /// Whether a column of a kind has been chosen.

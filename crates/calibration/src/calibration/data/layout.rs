@@ -57,7 +57,7 @@ impl Layout {
             questions,
             of_times,
             ..
-        } = Choice::of(head, stated.as_ref().ok().copied());
+        } = Choice::of(head, stated.as_ref().ok().copied())?;
         // Strains that are measured along two axes are those of a biaxial test, whatever its ratio.
         let is_stated = !matches!(head.setting("test", None), Ok(None));
         let strains_across = of_kind(&roles, Kind::Strain).filter(|(_, role)| role.axis() == 1);
