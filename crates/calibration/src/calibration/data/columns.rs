@@ -1,7 +1,5 @@
 //! Measures and units of the columns that are read.
 
-use std::ops::Range;
-
 use super::record::Machine;
 use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, SECOND_PIOLA_KIRCHHOFF, of_kind};
 use super::strain_column::StrainColumn;
@@ -254,7 +252,7 @@ fn rounded(value: f64) -> f64 {
 
 impl TableReading {
     /// What some roles say, and the rows that are fitted.
-    pub fn of(head: &Head, roles: &[Role], rows: &Range<usize>) -> Self {
+    pub fn of(head: &Head, roles: &[Role], [first, last]: [usize; 2]) -> Self {
         let mut found = Self::default();
         for kind in [
             Kind::Strain,
@@ -278,11 +276,8 @@ impl TableReading {
                 }
             }
         }
-        let line = |row: usize| {
-            let (_, place) = &head.table.rows[row.min(head.table.rows.len() - 1)];
-            head.table.source.line(place.start)
-        };
-        found.lines = [line(rows.start), line(rows.end.saturating_sub(1))];
+        let line = |row: usize| head.table.source.line(head.table.rows[row].1.start);
+        found.lines = [line(first), line(last)];
         found
     }
 }

@@ -196,7 +196,7 @@ fn force(u: f64, slack: f64) -> f64 {
 }
 
 /// Three cycles to 6 mm with a hold at each end, as a machine records them.
-fn record(slack: f64, names: &str) -> String {
+pub fn record(slack: f64, names: &str) -> String {
     let mut text = format!("# test: uniaxial\n{names}\n");
     let mut row = |time: f64, u: f64| {
         let scatter = 1e-3 * ((12.9898 * time).sin() + (78.233 * time).cos());
@@ -221,7 +221,7 @@ fn record(slack: f64, names: &str) -> String {
     text
 }
 
-const SPECIMEN: [(&str, &str); 3] = [
+pub const SPECIMEN: [(&str, &str); 3] = [
     ("length", "20 mm"),
     ("width", "5 mm"),
     ("thickness", "2 mm"),
