@@ -193,7 +193,7 @@ impl<'a> Choice<'a> {
             possible.len(),
             first.role.kind.name()
         );
-        let question = question(message, options.collect());
+        let question = question(self.head, message, options.collect());
         match first.role.kind {
             Kind::Time => self.of_times = Some(question),
             _ => self.questions.push(question),
@@ -234,7 +234,7 @@ impl<'a> Choice<'a> {
                 "{}: the columns have no names, and more than one reading is possible",
                 self.head.table.source.name
             );
-            let question = question(message, options.collect());
+            let question = question(self.head, message, options.collect());
             self.questions.push(question);
         }
     }
@@ -294,10 +294,10 @@ fn has_numbers(head: &Head, own: &Named) -> bool {
 }
 
 /// The question which of some readings is meant.
-fn question(message: String, options: Vec<String>) -> Diagnostic {
-    let hint = format!(
-        "choose one: {}; or write `# {COLUMNS}: …` with it at the top of the file",
-        options.join(", or ")
-    );
+fn question(head: &Head, message: String, options: Vec<String>) -> Diagnostic {
+    let mut hint = format!("choose one: {}", options.join(", or "));
+    if head.table.is_text {
+        hint += &format!("; or write `# {COLUMNS}: …` with it at the top of the file");
+    }
     Diagnostic::error("", message).hint(hint)
 }

@@ -239,10 +239,14 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
     })
 }
 
-/// The unit of a column, or the one that is stated for its kind.
+/// The unit of a column, or the one that is stated for its kind where the column has none that is known.
 pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
     let said = || head.setting(&format!("{} unit", kind.name()), None);
-    column.unit.clone().or_else(|| said().ok().flatten())
+    let own = column.unit.clone();
+    let is_known =
+        |own: &&String| units::is_known(own) || units::factor(own, Dimension::Ratio).is_ok();
+    let known = own.as_ref().filter(is_known).cloned();
+    known.or_else(|| said().ok().flatten()).or(own)
 }
 
 /// A dimension of the specimen without the rounding of its arithmetic.
