@@ -206,13 +206,15 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
         ]
     } else {
         let title = format!("{law} fitted to {}", names(tests));
-        let zero = fit.quality.stretch_range.map(|stretch| [stretch, 0.0]);
+        let lines = curves_with_bands(fit, &courses);
+        // As long as the curve's axis, with the slack that the residuals do not have.
+        let stretches = lines.iter().flat_map(|line| &line.points);
+        let zero = extremes(stretches.map(|[x, _]| *x)).map(|x| [x, 0.0]);
         let residuals = courses.iter();
         let residuals = residuals.map(|course| course.residuals(STRETCH, Scale::Interval));
         let residuals = [Line::new("", zero, INK, Stroke::Solid)]
             .into_iter()
             .chain(residuals);
-        let lines = curves_with_bands(fit, &courses);
         vec![
             (over(title, deformation(tests), lines), 460),
             (residual_chart(deformation(tests), residuals.collect()), 250),
