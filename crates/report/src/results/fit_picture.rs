@@ -320,3 +320,33 @@ fn names(tests: &[TestData]) -> String {
         _ => format!("{} tests", tests.len()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::{FitSettings, fit};
+    use crate::document::Statements;
+    use crate::material::registry::Law;
+
+    /// A record of 20 mm that hangs loose over 2 mm, where the curve's axis has stretches below 1.
+    #[test]
+    fn residuals_have_the_axis_of_the_curve() {
+        let force = |u: f64| 0.5 * (u - 2.0).max(0.0);
+        let rows = (0..100).map(|row| 0.1 * f64::from(row));
+        let rows: String = rows.map(|u| format!("{u},{}\n", force(u))).collect();
+        let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2\nextension [mm],load [N]";
+        let test = TestData::parse("a.csv", &format!("{head}\n{rows}"), &Statements::new());
+        let tests = [test.unwrap()];
+        let law = Law::named("neo-hooke").unwrap();
+        let found = fit(law, &tests, &FitSettings::default()).unwrap();
+        let Drawing::Charts(charts) = fit_picture(&found, &found.fitted_tests(&tests)) else {
+            panic!("a fit is drawn by charts");
+        };
+        let axes = charts.iter().map(|(chart, _)| {
+            let points = chart.lines.iter().flat_map(|line| &line.points);
+            extremes(points.map(|point| point[0]))
+        });
+        let axes: Vec<[f64; 2]> = axes.collect();
+        assert!(axes[0] == axes[1] && axes[0][0] < 0.95, "{axes:?}");
+    }
+}

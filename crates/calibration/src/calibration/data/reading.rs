@@ -88,23 +88,28 @@ impl TestData {
             );
             Diagnostic::warning("", message).hint("they are left out")
         }));
-        for (rows, what) in [
-            (gross, "rows that leave the curve of their neighbours"),
-            (
-                torn,
-                "rows behind a rupture, where the specimen carries nothing",
-            ),
-        ] {
-            data.warnings.extend(rows.first().map(|row| {
-                let message = format!("{what}: {}", rows.len());
-                let hint = "they are left out; `--rows 1..` keeps all rows";
-                Diagnostic::warning("", message)
-                    .hint(hint)
-                    .at(&table.source, table.rows[*row].1.clone())
-            }));
-        }
+        let gross = left_out(
+            table,
+            &gross,
+            "rows that leave the curve of their neighbours",
+        );
+        let behind = "rows behind a rupture, where the specimen carries nothing";
+        let torn = left_out(table, &torn, behind);
+        data.warnings.extend(gross.into_iter().chain(torn));
         Ok(data)
     }
+}
+
+/// The warning about rows that are left out, where there are any.
+fn left_out(table: &Table, rows: &[usize], what: &str) -> Option<Diagnostic> {
+    let message = format!("{what}: {}", rows.len());
+    let hint = "they are left out; `--rows 1..` keeps all rows";
+    let place = table.rows[*rows.first()?].1.clone();
+    Some(
+        Diagnostic::warning("", message)
+            .hint(hint)
+            .at(&table.source, place),
+    )
 }
 
 /// Those of some rows that fulfil a condition, and how many do not.
