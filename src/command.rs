@@ -73,7 +73,7 @@ const SAMPLES: &str = "Samples:
   gelbench materials list                    the cards that are included
   gelbench materials show pva-10             one card with its moduli and its source
   gelbench materials new --law neo-hooke --young \"20 kPa\" --poisson 0.45    a card of what is known
-  gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
+  gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the nearest that is stable and identifiable
 
 Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n5 measured data are not explained, 70 a fault of gelbench itself, 130 interrupted.";
 

@@ -32,7 +32,8 @@ pub struct FitArguments {
     /// The law
     #[arg(long, group = "laws", value_parser = a_law())]
     law: Option<&'static Law>,
-    /// Fit all laws, rank them, and write the first one that is stable over the data and whose parameters are all identifiable
+    /// Fit all laws, rank them by AICc, and write the first one that is stable over the data and whose parameters are all identifiable: none
+    /// is at a bound or has an interval that holds zero
     #[arg(long, group = "laws")]
     all: bool,
     /// Also fit a Prony series, to tests with a column of times (relaxation, creep, cycles, several rates), with this

@@ -69,7 +69,7 @@ pub struct ReadingArguments {
     /// Rows to use: lines of the file such as 12..340, or a column and its value such as SetName=Test
     #[arg(long, value_name = "ROWS")]
     rows: Option<String>,
-    /// Nominal strains to use, such as 0..0.3 or ..30%
+    /// Nominal strains to use, counted from the zero that is fitted, such as 0..0.3 or ..30%
     #[arg(long, value_name = "LOW..HIGH", allow_hyphen_values = true)]
     strain_range: Option<String>,
     /// Columns whose sign is reversed: strain, stress or both

@@ -17,7 +17,7 @@ use dimension::{CELSIUS, UNITS};
 pub use figures::{brief, decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
 pub use ranges::{SIZES, on_the_end};
-pub use remedy::{bare_ratio, could_be_stretch_ratios, symbol};
+pub use remedy::{RareUnit, bare_ratio, could_be_stretch_ratios, rare, symbol};
 pub use sheet_size::implausible_sheet;
 
 /// Why a text is not a quantity of the wanted dimension.

@@ -1,6 +1,6 @@
 //! Columns named by the user, with their roles.
 
-use super::{Column, Table, plain_name};
+use super::{Column, Table};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
 
 /// What a column of a table may be for some reader.
@@ -121,8 +121,8 @@ impl<R: ColumnRole> FoundColumns<R> {
     }
 }
 
-/// The only column with a name: as written, with or without its unit, otherwise in any case; of columns that their names do not tell
-/// apart, the one of a number from 1 on.
+/// The only column with a name: as written, with or without its unit, otherwise in any case, with the column's own unit or none; of columns
+/// that their names do not tell apart, the one of a number from 1 on.
 ///
 /// # Errors
 /// A fault with the columns that there are, where there is none of this name, or more than one.
@@ -130,7 +130,7 @@ pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
     let ways: [&dyn Fn(&Column) -> bool; 3] = [
         &|column| column.head() == name,
         &|column| column.written == name,
-        &|column| column.name == plain_name(name.split(['[', '(']).next().unwrap_or(name)),
+        &|column| column.is_meant(name),
     ];
     let heads: Vec<String> = table.columns.iter().map(Column::head).collect();
     let all = heads.join(", ");
@@ -170,4 +170,46 @@ pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
     };
     let message = format!("there is no column `{name}`");
     Err(table.fault(table.columns_place.clone(), message, &hint))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A unit or a gauge that is not the column's names another column, which the file does not have.
+    #[test]
+    fn a_column_is_meant_with_its_own_unit_and_gauge_or_with_neither() {
+        let heads = "Load [N];Tensile strain (Strain 1);Strain (Strain 2) (%);X (mm)";
+        let table = Table::parse("a.csv", &format!("{heads}\n1;2;3;4\n5;6;7;8")).unwrap();
+        for (name, expected) in [
+            ("load", Some(0)),
+            ("Load (N)", Some(0)),
+            ("load, newton", Some(0)),
+            ("Load (kN)", None),
+            ("Load [px]", None),
+            ("tensile strain", Some(1)),
+            ("tensile strain [strain 1]", Some(1)),
+            ("Tensile strain (Strain 2)", None),
+            ("Strain", Some(2)),
+            ("Strain [%]", Some(2)),
+            ("Strain (Strain 2)", Some(2)),
+            ("Strain (Strain 3) (%)", None),
+            ("X (px)", None),
+            ("2", Some(1)),
+        ] {
+            assert_eq!(column_named(&table, name).ok(), expected, "{name}");
+        }
+        let fault = column_named(&table, "Load (kN)").unwrap_err();
+        assert!(fault.message.contains("there is no column `Load (kN)`"));
+        assert!(fault.hint.unwrap().contains("did you mean `Load [N]`"));
+    }
+
+    #[test]
+    fn a_gauge_that_the_file_has_not_is_none_of_two() {
+        let heads = "Tensile strain (Strain 1);Tensile strain (Strain 2)";
+        let table = Table::parse("a.csv", &format!("{heads}\n1;2\n5;6")).unwrap();
+        let told = |name: &str| column_named(&table, name).unwrap_err().message;
+        assert!(told("Tensile strain (Strain 3)").starts_with("there is no column"));
+        assert!(told("Tensile strain").contains("the file has 2 columns"));
+    }
 }

@@ -13,6 +13,8 @@ pub struct Column {
     pub unit: Option<String>,
     /// Its name as it is written, without the unit.
     pub written: String,
+    /// What stands in brackets behind the name and is no unit, such as the number of the gauge, in the form of a name.
+    remark: String,
     /// Name and unit as they are written.
     head: String,
 }
@@ -24,22 +26,27 @@ impl Column {
         let field = unquoted(field);
         let bracketed = |split: Option<(&str, &str)>| {
             let (_, unit) = split?;
-            Some(unit.trim_end_matches([']', ')', '）', '］']).to_owned())
+            Some(unit.trim_end_matches(CLOSING).to_owned())
         };
         let first = bracketed(field.split_once(BRACKETS));
         let last = bracketed(field.rsplit_once(BRACKETS)).filter(|unit| is_unit(unit));
         let behind = glued(field);
-        let unit = match (last, behind) {
-            (Some(unit), _) => Some(spelled(&unit)),
+        let unit = match (&last, behind) {
+            (Some(unit), _) => Some(spelled(unit)),
             (None, Some((_, unit))) => Some(spelled(unit)),
             (None, None) => first.as_deref().map(spelled),
         };
-        let name = behind.map_or(field, |(name, _)| name);
-        let name = name.split_once(BRACKETS).map_or(name, |(name, _)| name);
+        let name = match (&last, behind) {
+            (_, Some((name, _))) => name,
+            (Some(_), None) => field.rsplit_once(BRACKETS).map_or(field, |(name, _)| name),
+            (None, None) => field,
+        };
+        let (name, remark) = name.split_once(BRACKETS).unwrap_or((name, ""));
         Self {
             name: plain_name(name),
             unit,
             written: name.trim().to_owned(),
+            remark: plain_name(remark.trim_end().trim_end_matches(CLOSING)),
             head: field.to_owned(),
         }
     }
@@ -60,10 +67,21 @@ impl Column {
     pub fn head(&self) -> String {
         self.head.clone()
     }
+
+    /// Whether a user means this column by a name in any case: a unit or a remark behind the name must be the column's, and may be left out.
+    pub(super) fn is_meant(&self, wanted: &str) -> bool {
+        let wanted = Self::new(wanted);
+        let unit = wanted.unit.filter(|unit| is_unit(unit));
+        self.name == wanted.name
+            && (wanted.remark.is_empty() || wanted.remark == self.remark)
+            && unit.is_none_or(|unit| self.unit.as_ref() == Some(&unit))
+    }
 }
 
 /// What opens a unit, or a remark, behind a name.
 const BRACKETS: [char; 4] = ['[', '(', '（', '［'];
+/// What closes it.
+const CLOSING: [char; 4] = [']', ')', '）', '］'];
 
 /// The symbol of a unit, however it is spelled; any other text as it is.
 fn spelled(unit: &str) -> String {

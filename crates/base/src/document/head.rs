@@ -64,9 +64,13 @@ impl<'a> Head<'a> {
         } else {
             example.to_owned()
         };
-        let hint = format!(
-            "write `# {key}: {example}` at the top of the file, or give --{option} {quoted}"
-        );
+        let hint = if self.table.is_text {
+            format!(
+                "write `# {key}: {example}` at the top of the file, or give --{option} {quoted}"
+            )
+        } else {
+            format!("give --{option} {quoted}")
+        };
         Box::new(Diagnostic::error("", message).hint(hint))
     }
 
@@ -207,9 +211,26 @@ impl<'a> Head<'a> {
             _ => self.setting(key, readable)?,
         };
         let unit = unit.ok_or_else(|| self.missing(key, example))?;
+        let rare = units::rare(&unit).filter(|rare| rare.dimension == dimension);
+        // Who names it beside the file means it.
+        let is_meant = self
+            .given
+            .get(key)
+            .is_some_and(|given| given.trim() == unit);
+        if let Some(rare) = rare.filter(|_| is_meant) {
+            return Ok(rare.factor);
+        }
         let symbol = units::symbol(&unit).unwrap_or(&unit);
         units::factor(symbol, dimension).map_err(|fault| {
-            let hint = fault.remedy(&unit, dimension);
+            let option = key.replace(' ', "-");
+            let hint = match rare {
+                Some(rare) => format!(
+                    "`{unit}` is {}: if {usual} is meant, correct it or give --{option} {usual}; if not, give --{option} {unit}",
+                    rare.meaning,
+                    usual = rare.usual
+                ),
+                None => fault.remedy(&unit, dimension),
+            };
             let place = self.table.columns_place.clone();
             self.fault(place, format!("the {key} {fault}"), &hint)
         })

@@ -28,6 +28,8 @@ pub struct Table {
     pub encoding: Option<TextEncoding>,
     /// The name of the sheet or the array that was read, where the file has several tables.
     pub part: Option<String>,
+    /// Whether it is a text, above whose rows the user can write statements.
+    pub is_text: bool,
     /// The columns.
     pub columns: Vec<Column>,
     /// The place of the line that names the columns.
@@ -86,6 +88,7 @@ impl Table {
             let table = Self::separated(&name, text.text.clone(), b'\t')?;
             Ok(Self {
                 part: text.name.clone(),
+                is_text: false,
                 ..table
             })
         };
@@ -120,6 +123,7 @@ impl Table {
             }),
             encoding: None,
             part: None,
+            is_text: true,
             delimiter,
             columns: Vec::new(),
             columns_place: 0..0,

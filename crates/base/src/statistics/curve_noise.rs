@@ -275,7 +275,7 @@ impl CurveNoise {
             return f64::NAN;
         }
         let [least, most] = super::extremes(errors.iter().copied());
-        let reach = student_reach(self.freedom);
+        let reach = self.reach();
         let [mut low, mut high] = [least * reach, most * reach];
         for _ in 0..HALVINGS {
             if high - low <= 1e-12 * high {
@@ -292,6 +292,11 @@ impl CurveNoise {
             }
         }
         high
+    }
+
+    /// Half the width of a 95 % interval in standard errors, where one noise is known to be the true one.
+    pub fn reach(&self) -> f64 {
+        student_reach(self.freedom)
     }
 
     /// The covariance of the estimates.

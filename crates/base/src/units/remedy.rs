@@ -101,15 +101,43 @@ impl QuantityFault {
     }
 }
 
+/// A unit that differs in its capitals alone from a usual one, which is mostly meant.
+#[derive(Clone, Copy, Debug)]
+pub struct RareUnit {
+    /// What it measures.
+    pub dimension: Dimension,
+    /// The factor to the internal unit.
+    pub factor: f64,
+    /// What it means.
+    pub meaning: &'static str,
+    /// The usual unit.
+    pub usual: &'static str,
+}
+
+/// The unit of this name, where it is none that this field uses but one of other capitals is.
+pub fn rare(unit: &str) -> Option<RareUnit> {
+    let (dimension, factor, meaning, usual) = match unit {
+        "mPa" => (Dimension::Stress, 1e-9, "a thousandth of a Pa", "MPa"),
+        "MN" => (Dimension::Force, 1e6, "a million N", "mN"),
+        _ => return None,
+    };
+    Some(RareUnit {
+        dimension,
+        factor,
+        meaning,
+        usual,
+    })
+}
+
 /// The symbol of a unit in a table's head, however it is spelled: `KPa`, `Mpa`, `sec`, `Newton`, `kN/m²`. `None` where it is not known, or where
-/// capitals decide: `mPa` is no unit of this field, a thousandth of a Pa.
+/// it is [`rare`].
 pub fn symbol(unit: &str) -> Option<&'static str> {
     let text = normalised(unit.trim());
     let exact = UNITS.iter().find(|(known, ..)| *known == text);
     if let Some((known, ..)) = exact {
         return Some(known);
     }
-    if text.starts_with("mPa") || text.starts_with("MN") && !text.contains('/') {
+    if rare(&text).is_some() {
         return None;
     }
     let lower = text.to_lowercase();

@@ -29,7 +29,8 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     if let Some(base) = fit.softened.as_ref().and_then(|own| own.card.as_deref()) {
         return softened_card(base, fit, provenance);
     }
-    let files = provenance.files.join(", ");
+    let files = provenance.files.iter().map(|file| file_name(file));
+    let files = files.collect::<Vec<_>>().join(", ");
     let [specimen, source, doi] = ["specimen", "source", "doi"].map(|key| stated(tests, key));
     let title = match &specimen {
         Some(specimen) => format!("{specimen}, {}", fit.law.name),

@@ -32,6 +32,15 @@ use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all; [`Error::Solve`] when the search ends at no minimum.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
+    nearest(law, tests, settings)?.that_follows(tests)
+}
+
+/// The fit of a law, however far it is from the data.
+pub fn nearest(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+) -> Result<Fit, Error> {
     check_measures(tests)?;
     if law.name == SWELLING {
         let message = format!(

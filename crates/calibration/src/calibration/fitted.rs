@@ -7,6 +7,7 @@ use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::settings::{FitSettings, MEASURE};
 use super::softened::Softened;
 use super::trust::Quality;
+use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::Law;
@@ -58,6 +59,35 @@ impl Fit {
     /// The stress measure of the data.
     pub fn stress_measure(&self) -> StressMeasure {
         self.stress_measure
+    }
+
+    /// The fit, unless it does not follow the data at all, which no stated bound keeps it from: such parameters describe nothing.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with what was taken of the data, in which the reason may be.
+    pub(in crate::calibration) fn that_follows(self, tests: &[TestData]) -> Result<Self, Error> {
+        let quality = &self.quality;
+        if quality.follows_data() || !self.settings.bounds.is_empty() {
+            return Ok(self);
+        }
+        let message = format!(
+            "{}: the law does not follow the data at all: the mean deviation is {:.0} %, R² {:.2}",
+            self.law.name, quality.nmad_percent, quality.r_squared
+        );
+        let taken = tests.iter().map(|test| {
+            let remarks = test.remarks.iter().map(|remark| format!("; {remark}"));
+            format!(
+                "{}: {}{}",
+                test.name,
+                test.table.sentence(),
+                remarks.collect::<String>()
+            )
+        });
+        let hint = format!(
+            "look at columns, rows, signs and zero that were taken, or choose another law; {}",
+            taken.collect::<Vec<_>>().join("; ")
+        );
+        Err(Error::input(message, hint))
     }
 
     /// The tests as they were fitted: with the zeros that were found together with the law.

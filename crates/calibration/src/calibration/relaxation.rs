@@ -6,7 +6,7 @@
 //! of which the data resolve nothing.
 
 use super::data::{Branches, TestData, Times};
-use super::fit::{check_measures, fit};
+use super::fit::{check_measures, nearest};
 use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
 use super::regression::Misfit;
@@ -68,12 +68,13 @@ pub fn fit_relaxation(
     let more = series_warnings(&fit, &solution.misfit.response, resolved);
     fit.quality.warnings.extend(more);
     fit.quality.warnings.extend(taken_zeros(tests));
-    Ok(Fit {
+    let fit = Fit {
         of_law,
         choices: elastic.choices,
         relaxed: Some(Relaxed { material, tried }),
         ..fit
-    })
+    };
+    fit.that_follows(tests)
 }
 
 /// A law with a number of terms.
@@ -148,7 +149,7 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         let hint = "relaxation is fitted to incompressible laws only: choose another law";
         return Err(Error::input(message, hint));
     }
-    fit(law, tests, &settings.without(&[SHARES, TIMES].concat()))
+    nearest(law, tests, &settings.without(&[SHARES, TIMES].concat()))
 }
 
 /// The shortest interval between rows and the longest duration of a history, in s.

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::data::{Observation, TestData};
-use super::fit::{check_measures, fit};
+use super::fit::{check_measures, nearest};
 use super::fitted::Fit;
 use super::least_squares::{Residuals, descend};
 use super::regression::{Misfit, improved};
@@ -75,7 +75,7 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
     let softening = solution.misfit.response.softening(&solution.values);
     fit.of_law = of_law;
     fit.choices = first.choices;
-    Ok(softened(fit, base, tests, softening))
+    softened(fit, base, tests, softening).that_follows(tests)
 }
 
 /// Values of r, m and β behind those of the law, at which the search begins; `largest` is the largest energy of the tests in mJ/mm³.
@@ -156,7 +156,7 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
         return Err(Error::input(message, hint));
     }
     let rising: Vec<TestData> = tests.iter().map(rising).collect();
-    let fit = fit(law, &rising, &settings.without(&SOFTENING))?;
+    let fit = nearest(law, &rising, &settings.without(&SOFTENING))?;
     Ok(First {
         law,
         fitted: fit.fitted,

@@ -206,13 +206,15 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
         ]
     } else {
         let title = format!("{law} fitted to {}", names(tests));
-        let zero = fit.quality.stretch_range.map(|stretch| [stretch, 0.0]);
+        let lines = curves_with_bands(fit, &courses);
+        // As long as the curve's axis, with the slack that the residuals do not have.
+        let stretches = lines.iter().flat_map(|line| &line.points);
+        let zero = extremes(stretches.map(|[x, _]| *x)).map(|x| [x, 0.0]);
         let residuals = courses.iter();
         let residuals = residuals.map(|course| course.residuals(STRETCH, Scale::Interval));
         let residuals = [Line::new("", zero, INK, Stroke::Solid)]
             .into_iter()
             .chain(residuals);
-        let lines = curves_with_bands(fit, &courses);
         vec![
             (over(title, deformation(tests), lines), 460),
             (residual_chart(deformation(tests), residuals.collect()), 250),
@@ -316,5 +318,35 @@ fn names(tests: &[TestData]) -> String {
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
         _ => format!("{} tests", tests.len()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::{FitSettings, fit};
+    use crate::document::Statements;
+    use crate::material::registry::Law;
+
+    /// A record of 20 mm that hangs loose over 2 mm, where the curve's axis has stretches below 1.
+    #[test]
+    fn residuals_have_the_axis_of_the_curve() {
+        let force = |u: f64| 0.5 * (u - 2.0).max(0.0);
+        let rows = (0..100).map(|row| 0.1 * f64::from(row));
+        let rows: String = rows.map(|u| format!("{u},{}\n", force(u))).collect();
+        let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2\nextension [mm],load [N]";
+        let test = TestData::parse("a.csv", &format!("{head}\n{rows}"), &Statements::new());
+        let tests = [test.unwrap()];
+        let law = Law::named("neo-hooke").unwrap();
+        let found = fit(law, &tests, &FitSettings::default()).unwrap();
+        let Drawing::Charts(charts) = fit_picture(&found, &found.fitted_tests(&tests)) else {
+            panic!("a fit is drawn by charts");
+        };
+        let axes = charts.iter().map(|(chart, _)| {
+            let points = chart.lines.iter().flat_map(|line| &line.points);
+            extremes(points.map(|point| point[0]))
+        });
+        let axes: Vec<[f64; 2]> = axes.collect();
+        assert!(axes[0] == axes[1] && axes[0][0] < 0.95, "{axes:?}");
     }
 }

@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::document::Table;
 use crate::document::converted::afford;
+use crate::document::{Head, Statements, Table};
 
 /// A file that NumPy, SciPy or openpyxl has written.
 fn corpus(name: &str) -> PathBuf {
@@ -61,6 +61,13 @@ fn arrays_of_numpy_and_matlab_are_tables() {
             )
         );
     }
+    let table = read("columns.npz");
+    let said = Statements::new();
+    let missing = Head::new(&table, &[], &said)
+        .unwrap()
+        .missing("stress unit", "MPa");
+    // No line can be written at the top of an archive.
+    assert_eq!(missing.hint.as_deref(), Some("give --stress-unit MPa"));
     let table = read("structure.npy");
     assert_eq!(heads(&table), ["x", "ux", "frame"]);
     assert_eq!(rows(&table), [[0.0, 1.5, -2.0], [10.0, 2.5, 3.0]]);

@@ -60,7 +60,10 @@ pub struct Choice<'a> {
 
 impl<'a> Choice<'a> {
     /// Chooses the columns of a table.
-    pub fn of(head: &'a Head<'a>, test: Option<Test>) -> Self {
+    ///
+    /// # Errors
+    /// The faults of the columns that are stated: what else the table lacks would follow from them.
+    pub fn of(head: &'a Head<'a>, test: Option<Test>) -> Result<Self, Vec<Diagnostic>> {
         let columns = &head.table.columns;
         let mut choice = Self {
             head,
@@ -69,13 +72,7 @@ impl<'a> Choice<'a> {
             questions: Vec::new(),
             of_times: None,
         };
-        let chosen = match chosen(head) {
-            Ok(chosen) => chosen,
-            Err(questions) => {
-                choice.questions = questions;
-                return choice;
-            }
-        };
+        let chosen = chosen(head)?;
         for (_, quantity) in Quantity::NAMES {
             if let Some(column) = chosen.of(*quantity) {
                 choice.roles[column] = stated(head, column, *quantity);
@@ -89,7 +86,7 @@ impl<'a> Choice<'a> {
                 choice.of_names(kind);
             }
         }
-        choice
+        Ok(choice)
     }
 
     /// Whether a column of a kind has been chosen.
@@ -196,7 +193,7 @@ impl<'a> Choice<'a> {
             possible.len(),
             first.role.kind.name()
         );
-        let question = question(message, options.collect());
+        let question = question(self.head, message, options.collect());
         match first.role.kind {
             Kind::Time => self.of_times = Some(question),
             _ => self.questions.push(question),
@@ -237,7 +234,7 @@ impl<'a> Choice<'a> {
                 "{}: the columns have no names, and more than one reading is possible",
                 self.head.table.source.name
             );
-            let question = question(message, options.collect());
+            let question = question(self.head, message, options.collect());
             self.questions.push(question);
         }
     }
@@ -297,10 +294,10 @@ fn has_numbers(head: &Head, own: &Named) -> bool {
 }
 
 /// The question which of some readings is meant.
-fn question(message: String, options: Vec<String>) -> Diagnostic {
-    let hint = format!(
-        "choose one: {}; or write `# {COLUMNS}: …` with it at the top of the file",
-        options.join(", or ")
-    );
+fn question(head: &Head, message: String, options: Vec<String>) -> Diagnostic {
+    let mut hint = format!("choose one: {}", options.join(", or "));
+    if head.table.is_text {
+        hint += &format!("; or write `# {COLUMNS}: …` with it at the top of the file");
+    }
     Diagnostic::error("", message).hint(hint)
 }

@@ -1,7 +1,5 @@
 //! Measures and units of the columns that are read.
 
-use std::ops::Range;
-
 use super::record::Machine;
 use super::roles::{DISPLACEMENT, FORCE, Kind, Quantity, Role, SECOND_PIOLA_KIRCHHOFF, of_kind};
 use super::strain_column::StrainColumn;
@@ -241,10 +239,14 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
     })
 }
 
-/// The unit of a column, or the one that is stated for its kind.
+/// The unit of a column, or the one that is stated for its kind where the column has none that is known.
 pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
     let said = || head.setting(&format!("{} unit", kind.name()), None);
-    column.unit.clone().or_else(|| said().ok().flatten())
+    let own = column.unit.clone();
+    let is_known =
+        |own: &&String| units::is_known(own) || units::factor(own, Dimension::Ratio).is_ok();
+    let known = own.as_ref().filter(is_known).cloned();
+    known.or_else(|| said().ok().flatten()).or(own)
 }
 
 /// A dimension of the specimen without the rounding of its arithmetic.
@@ -254,7 +256,7 @@ fn rounded(value: f64) -> f64 {
 
 impl TableReading {
     /// What some roles say, and the rows that are fitted.
-    pub fn of(head: &Head, roles: &[Role], rows: &Range<usize>) -> Self {
+    pub fn of(head: &Head, roles: &[Role], [first, last]: [usize; 2]) -> Self {
         let mut found = Self::default();
         for kind in [
             Kind::Strain,
@@ -278,11 +280,8 @@ impl TableReading {
                 }
             }
         }
-        let line = |row: usize| {
-            let (_, place) = &head.table.rows[row.min(head.table.rows.len() - 1)];
-            head.table.source.line(place.start)
-        };
-        found.lines = [line(rows.start), line(rows.end.saturating_sub(1))];
+        let line = |row: usize| head.table.source.line(head.table.rows[row].1.start);
+        found.lines = [line(first), line(last)];
         found
     }
 }

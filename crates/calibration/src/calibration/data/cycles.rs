@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::test_data::{Observation, Test, TestData, Times};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
-use crate::statistics::{extremes, farthest};
+use crate::statistics::{extremes, farthest, median};
 use crate::units::Dimension;
 
 /// The part of a record that is fitted.
@@ -89,15 +89,39 @@ pub struct Branches {
     pub ends: Vec<f64>,
     /// Whether the strain neither turns back nor rests.
     pub is_one_pull: bool,
+    /// Whether the strain moves, but never away from rest.
+    pub only_unloads: bool,
     rows: usize,
 }
 
 impl Branches {
-    /// Splits the strains of a record; away from the first one is loading.
+    /// Splits the strains of a record that begins at rest; away from the first one is loading.
     pub fn of(strains: &[f64]) -> Self {
         let first = strains.first().copied().unwrap_or(0.0);
         let far = farthest(strains.iter().map(|x| x - first));
-        let away: Vec<f64> = strains.iter().map(|x| (x - first) * far.signum()).collect();
+        Self::along(strains, far.signum())
+    }
+
+    /// Splits a record of which any rows may be missing: where it does not begin at zero strain, loading is away from the end of the strains
+    /// at which the specimen carries less.
+    pub fn of_part(strains: &[f64], stresses: &[f64]) -> Self {
+        let first = strains.first().copied().unwrap_or(0.0);
+        let [low, high] = extremes(strains.iter().copied());
+        let near = SMALLEST_SWING * (high - low);
+        if first.abs() <= near {
+            return Self::of(strains);
+        }
+        let at = |end: f64| {
+            let rows = strains.iter().zip(stresses);
+            let own = rows.filter(|(x, _)| (*x - end).abs() <= near);
+            median(own.map(|(_, stress)| stress.abs()))
+        };
+        Self::along(strains, if at(low) <= at(high) { 1.0 } else { -1.0 })
+    }
+
+    /// Splits strains that grow in the direction of a sign under load.
+    fn along(strains: &[f64], sign: f64) -> Self {
+        let away: Vec<f64> = strains.iter().map(|x| x * sign).collect();
         let turns = turns(&away);
         let pairs = turns
             .windows(2)
@@ -108,6 +132,7 @@ impl Branches {
         let is_one_pull = turns.len() <= 2 && (away.len() - moving) as f64 <= few;
         Self {
             ends: loading.iter().map(|(_, end)| strains[*end]).collect(),
+            only_unloads: loading.is_empty() && turns.len() > 1,
             loading: loading.into_iter().map(|(rows, _)| rows).collect(),
             is_one_pull,
             rows: away.len(),
@@ -281,6 +306,24 @@ mod tests {
         assert_eq!(found.rows(Cycle::Last), Some(0..31));
         let pull = path(&[0.0, 1.0], 50);
         assert_eq!(Branches::of(&pull).rows(Cycle::Last), Some(0..51));
+    }
+
+    /// Rows that are cut from a record begin anywhere; stresses have the sign of the pull, or that of pressing.
+    #[test]
+    fn a_part_of_a_record_is_split_at_its_rest_wherever_it_begins() {
+        for (sign, pressed) in [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            let all = path(&[0.0, 1.0, 0.0, 1.0, 0.0], 40);
+            let strains: Vec<f64> = all.iter().map(|x| sign * x).collect();
+            let stresses: Vec<f64> = all.iter().map(|x| sign * pressed * x * x).collect();
+            let of =
+                |rows: Range<usize>| Branches::of_part(&strains[rows.clone()], &stresses[rows]);
+            for first in [41, 50, 70] {
+                let found = of(first..150);
+                assert_eq!(found.loading, [80 - first..121 - first], "{first}");
+            }
+            assert_eq!(of(20..150).loading, [0..21, 60..101]);
+            assert!(of(45..75).only_unloads && !of(85..115).only_unloads);
+        }
     }
 
     /// Noise of a fiftieth of the range is no cycle.

@@ -51,6 +51,47 @@ pub fn gross_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     gross
 }
 
+/// The stress of a specimen that is whole, and of one that is torn, as shares of the largest.
+const WHOLE: f64 = 0.9;
+const TORN: f64 = 0.1;
+/// A specimen tears within so many rows, or while the strain goes on by this share of its range.
+const TEARING_ROWS: usize = 5;
+const GOES_ON: f64 = 0.01;
+/// The strain of a specimen that is not unloaded goes back by no more than this share of its range.
+const STANDS: f64 = 0.02;
+
+/// The rows behind a rupture: the stress falls from its largest value to next to nothing for good, and the strain does not go back. A
+/// specimen that relaxes falls slowly at one strain.
+pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
+    if stresses.len() < FEWEST {
+        return Vec::new();
+    }
+    let at_rest = median(stresses.iter().copied().take(TEARING_ROWS));
+    let size = |stress: &f64| (stress - at_rest).abs();
+    let most = stresses.iter().map(size).fold(0.0, f64::max);
+    let Some(whole) = stresses.iter().rposition(|y| size(y) >= WHOLE * most) else {
+        return Vec::new();
+    };
+    let first = whole + 1;
+    let torn = stresses[first..]
+        .iter()
+        .position(|y| size(y) <= TORN * most);
+    let Some(torn) = torn.map(|rows| first + rows) else {
+        return Vec::new();
+    };
+    let [low, high] = extremes(strains.iter().copied());
+    let way = (strains[whole] - strains[0]).signum();
+    let further = |row: usize| way * (strains[row] - strains[whole]) / (high - low);
+    let stands = (first..strains.len()).all(|row| further(row) >= -STANDS);
+    let tears = torn - whole <= TEARING_ROWS || further(torn) > GOES_ON;
+    let is_last = stresses[torn..].iter().all(|y| size(y) <= TORN * most);
+    if stands && tears && is_last && way != 0.0 {
+        (first..stresses.len()).collect()
+    } else {
+        Vec::new()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,5 +128,29 @@ mod tests {
         let coarse: Vec<f64> = (0..16).map(|row| f64::from(row) / 15.0).collect();
         let steep: Vec<f64> = coarse.iter().map(|x| (8.0 * x).exp_m1()).collect();
         assert!(gross_rows(&coarse, &steep).is_empty());
+    }
+
+    #[test]
+    fn rows_behind_a_rupture_are_found_and_unloading_and_relaxation_are_none() {
+        for sign in [1.0, -1.0] {
+            let (pull, _) = record(1);
+            let stress = |x: &f64| 0.3 + sign * (3.0 * x).exp_m1();
+            let whole: Vec<f64> = pull.iter().map(stress).collect();
+            assert!(torn_rows(&pull, &whole).is_empty());
+            let behind: Vec<f64> = (60..75).map(|row| f64::from(row) / 60.0).collect();
+            let strains = [pull.clone(), behind.clone()].concat();
+            let stands = [pull.clone(), vec![pull[59]; 15]].concat();
+            let torn = [whole.clone(), vec![0.3 + 0.01 * sign; 15]].concat();
+            let all: Vec<usize> = (60..75).collect();
+            assert_eq!(torn_rows(&strains, &torn), all);
+            assert_eq!(torn_rows(&stands, &torn), all);
+            // Back to rest within a few rows.
+            let back = [pull.clone(), vec![0.0; 15]].concat();
+            assert!(torn_rows(&back, &torn).is_empty());
+            let decay = (0..90).map(|row| 0.3 + (whole[59] - 0.3) * (-0.1 * f64::from(row)).exp());
+            let held = [pull.clone(), vec![pull[59]; 90]].concat();
+            let relaxing = [whole.clone(), decay.collect()].concat();
+            assert!(torn_rows(&held, &relaxing).is_empty());
+        }
     }
 }

@@ -1,15 +1,14 @@
 //! The meaning of a table's columns, and the rows read accordingly.
 
-use std::ops::Range;
-
 use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
-use super::gross_rows::gross_rows;
+use super::gross_rows::{gross_rows, torn_rows};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{Kind, Role, check_columns, of_kind};
 use super::rounding::WrittenColumn;
+use super::row_choice::rows_in_range;
 use super::strain_column::StrainColumn;
 use super::table_reading::TableReading;
 use super::test_data::{Loaded, Observation, Test, TestData, Times};
@@ -57,7 +56,7 @@ impl Layout {
             questions,
             of_times,
             ..
-        } = Choice::of(head, stated.as_ref().ok().copied());
+        } = Choice::of(head, stated.as_ref().ok().copied())?;
         // Strains that are measured along two axes are those of a biaxial test, whatever its ratio.
         let is_stated = !matches!(head.setting("test", None), Ok(None));
         let strains_across = of_kind(&roles, Kind::Strain).filter(|(_, role)| role.axis() == 1);
@@ -116,23 +115,32 @@ impl Layout {
 
     /// Those of some rows at which the stress of an axis leaves the curve of its neighbours.
     pub fn gross_rows(&self, table: &Table, rows: &[usize]) -> Vec<usize> {
+        self.unlike(table, rows, gross_rows)
+    }
+
+    /// Those of some rows behind a rupture of the specimen.
+    pub fn torn_rows(&self, table: &Table, rows: &[usize]) -> Vec<usize> {
+        self.unlike(table, rows, torn_rows)
+    }
+
+    /// Those of some rows that are `found` by strains and stresses of any axis.
+    fn unlike(
+        &self,
+        table: &Table,
+        rows: &[usize],
+        found: fn(&[f64], &[f64]) -> Vec<usize>,
+    ) -> Vec<usize> {
         let row = |row: &usize| &table.rows[*row].0;
-        let strains: Vec<f64> = rows
-            .iter()
-            .map(|own| self.strain_as_written(row(own)))
-            .collect();
-        let mut gross = Vec::new();
-        for own in &self.stresses {
+        let strains = rows.iter().map(|own| self.strain_as_written(row(own)));
+        let strains: Vec<f64> = strains.collect();
+        let of_axis = |own: &StressColumn| {
             let stresses: Vec<f64> = rows.iter().map(|at| row(at)[own.column]).collect();
-            gross.extend(
-                gross_rows(&strains, &stresses)
-                    .into_iter()
-                    .map(|at| rows[at]),
-            );
-        }
-        gross.sort_unstable();
-        gross.dedup();
-        gross
+            found(&strains, &stresses)
+        };
+        let mut all: Vec<usize> = self.stresses.iter().flat_map(of_axis).collect();
+        all.sort_unstable();
+        all.dedup();
+        all.into_iter().map(|at| rows[at]).collect()
     }
 
     /// The strains of an observation along an axis: the strain across a strip is not known.
@@ -148,6 +156,9 @@ impl Layout {
     pub fn read(&self, head: &Head) -> Faulty<TestData> {
         let table = head.table;
         let part = self.part(head)?;
+        let strain = |row: usize| self.strains_of(&table.rows[row].0, &part)[0];
+        let rows = rows_in_range(head, part.rows.clone(), strain)?;
+        let ends = [rows[0], rows[rows.len() - 1]];
         let (mut kept, mut left_out) = (Vec::new(), Vec::new());
         let mut along = Vec::new();
         for (index, (row, place)) in table.rows.iter().enumerate() {
@@ -158,7 +169,7 @@ impl Layout {
                 let hint = "stretches are greater than zero; is the column a strain?";
                 return Err(head.fault(place.clone(), message, hint));
             }
-            let is_kept = part.rows.contains(&index);
+            let is_kept = rows.binary_search(&index).is_ok();
             if part.remarks.is_empty() && is_kept {
                 along.push((index, first));
             }
@@ -185,14 +196,14 @@ impl Layout {
             loaded: Loaded::of(observations.iter().flat_map(|one| one.strains)),
             observations,
             largest_stress,
-            rounding: self.rounding(table, &part.rows),
-            times: self.times(table, &part),
+            rounding: self.rounding(table, &rows),
+            times: self.times(table, &rows),
             rise: head.quantity("ramp", Dimension::Time)?.unwrap_or(0.0),
             preconditioned: preconditioned(head, self.test, farthest(widest))?,
             left_out,
             found_zero: part.found_zero,
             specimen: head.text(SPECIMEN_NAME)?,
-            table: TableReading::of(head, &self.roles, &part.rows),
+            table: TableReading::of(head, &self.roles, ends),
             remarks: part.remarks,
             head: head.written(),
             warnings: warnings.into_iter().flatten().collect(),
@@ -234,7 +245,7 @@ impl Layout {
     }
 
     /// The time of every observation.
-    fn times(&self, table: &Table, part: &Part) -> Times {
+    fn times(&self, table: &Table, rows: &[usize]) -> Times {
         let (column, factor) = match &self.time {
             None => return Times::None,
             Some(Err(fault)) => return Times::Unknown(fault.clone()),
@@ -246,14 +257,13 @@ impl Layout {
         {
             return Times::Unknown(Box::new(fault));
         }
-        let rows = &table.rows[part.rows.clone()];
-        let times = rows.iter().map(|(row, _)| row[column] * factor);
+        let times = rows.iter().map(|row| table.rows[*row].0[column] * factor);
         let each = self.stresses.len();
         Times::Known(times.flat_map(|time| vec![time; each]).collect())
     }
 
     /// The rounding of strains and stresses; zero for strains that were commanded.
-    fn rounding(&self, table: &Table, rows: &Range<usize>) -> [f64; 2] {
+    fn rounding(&self, table: &Table, rows: &[usize]) -> [f64; 2] {
         let own = |column: usize| WrittenColumn::of(table, column, rows);
         let measured = own(self.stresses[0].column);
         let of_strain = |(column, factor): &Scaled| {

@@ -66,14 +66,15 @@ impl TestData {
         if measured.is_empty() {
             table.check_numbers(layout.columns(), hint)?;
         }
-        let chosen = chosen_rows(&head, &layout, &measured).map_err(|fault| input(*fault))?;
+        let chosen = chosen_rows(&head, &measured).map_err(|fault| input(*fault))?;
         let rows_are_stated = head.text(ROWS).map_err(|fault| input(*fault))?.is_some();
-        let gross = if rows_are_stated {
-            Vec::new()
-        } else {
-            layout.gross_rows(table, &chosen)
-        };
-        let (chosen, _) = kept(&chosen, |row| !gross.contains(row));
+        let (mut gross, mut torn) = (Vec::new(), Vec::new());
+        if !rows_are_stated {
+            gross = layout.gross_rows(table, &chosen);
+            torn = layout.torn_rows(table, &kept(&chosen, |row| !gross.contains(row)).0);
+        }
+        let is_good = |row: &usize| !gross.contains(row) && !torn.contains(row);
+        let (chosen, _) = kept(&chosen, is_good);
         let fewer = (chosen.len() < all.len()).then(|| table.with_rows(&chosen));
         let head = match &fewer {
             Some(fewer) => Head::new(fewer, &KEYS, reading)?,
@@ -87,19 +88,28 @@ impl TestData {
             );
             Diagnostic::warning("", message).hint("they are left out")
         }));
-        data.warnings.extend(gross.first().map(|row| {
-            let message = format!(
-                "rows that leave the curve of their neighbours: {}",
-                gross.len()
-            );
-            let hint = "they are left out; `--rows 1..` keeps all rows";
-            let place = table.rows[*row].1.clone();
-            Diagnostic::warning("", message)
-                .hint(hint)
-                .at(&table.source, place)
-        }));
+        let gross = left_out(
+            table,
+            &gross,
+            "rows that leave the curve of their neighbours",
+        );
+        let behind = "rows behind a rupture, where the specimen carries nothing";
+        let torn = left_out(table, &torn, behind);
+        data.warnings.extend(gross.into_iter().chain(torn));
         Ok(data)
     }
+}
+
+/// The warning about rows that are left out, where there are any.
+fn left_out(table: &Table, rows: &[usize], what: &str) -> Option<Diagnostic> {
+    let message = format!("{what}: {}", rows.len());
+    let hint = "they are left out; `--rows 1..` keeps all rows";
+    let place = table.rows[*rows.first()?].1.clone();
+    Some(
+        Diagnostic::warning("", message)
+            .hint(hint)
+            .at(&table.source, place),
+    )
 }
 
 /// Those of some rows that fulfil a condition, and how many do not.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cycles::{Branches, CYCLE, Cycle};
+use super::row_choice::ROWS;
 use super::test_data::FoundZero;
 use super::zero::Beginning;
 use crate::document::{Faulty, Head};
@@ -81,9 +82,10 @@ impl Part {
             (None, None | Some(Cycle::All)) => return Ok(part),
             (machine, _) => machine,
         };
-        let branches = Branches::of(strains);
+        let branches = Branches::of_part(strains, stresses);
         part.choose(head, &branches, stated.unwrap_or(Cycle::Last), machine)?;
-        if let Some(machine) = machine {
+        // Unloading alone shows neither the zero nor the sign.
+        if let Some(machine) = machine.filter(|_| !branches.only_unloads) {
             let loading = match (&branches.loading[..], part.rows.len() < strains.len()) {
                 ([first, ..], false) if !branches.is_one_pull => first.clone(),
                 _ => part.rows.clone(),
@@ -103,6 +105,11 @@ impl Part {
         machine: Option<Machine>,
     ) -> Faulty<()> {
         let count = branches.loading.len();
+        if branches.only_unloads && cycle != Cycle::All {
+            let message = "these rows have no loading branch: the specimen is only unloaded";
+            let hint = "take rows that begin before a loading branch; `--cycle all` fits the unloading as it is in the file";
+            return Err(head.fault(head.place(ROWS), message, hint));
+        }
         if count == 0 {
             return Ok(());
         }

@@ -7,8 +7,6 @@
 //! Zeros at the end count where the file has them. A strain that a machine was told to reach is exact, however few
 //! digits it is written with: such a column is not rounded, see [`WrittenColumn::is_commanded`].
 
-use std::ops::Range;
-
 use crate::document::{Table, Written};
 
 /// A column of a table with the distance of the numbers that could have been written.
@@ -19,12 +17,11 @@ pub struct WrittenColumn {
 
 impl WrittenColumn {
     /// Some rows of a column; its digits are those of all rows.
-    pub fn of(table: &Table, column: usize, rows: &Range<usize>) -> Self {
+    pub fn of(table: &Table, column: usize, rows: &[usize]) -> Self {
         let steps = steps(&table.written(column));
-        let values = table.rows[rows.clone()].iter();
         Self {
-            values: values.map(|(row, _)| row[column]).collect(),
-            steps: steps[rows.clone()].to_vec(),
+            values: rows.iter().map(|row| table.rows[*row].0[column]).collect(),
+            steps: rows.iter().map(|row| steps[*row]).collect(),
         }
     }
 
@@ -120,7 +117,7 @@ mod tests {
     fn column(rows: &[(&str, &str)], column: usize) -> WrittenColumn {
         let rows: Vec<String> = rows.iter().map(|(x, y)| format!("{x};{y}\n")).collect();
         let table = Table::parse("a.csv", &format!("a;b\n{}", rows.concat())).unwrap();
-        WrittenColumn::of(&table, column, &(0..rows.len()))
+        WrittenColumn::of(&table, column, &(0..rows.len()).collect::<Vec<_>>())
     }
 
     fn commanded(rows: &[(&str, &str)]) -> bool {

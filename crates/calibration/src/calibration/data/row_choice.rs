@@ -1,7 +1,9 @@
 //! The rows of a table that are fitted, as the user states them.
 
-use super::layout::Layout;
+use std::ops::Range;
+
 use crate::document::{Faulty, Head, column_named};
+use crate::statistics::extremes;
 use crate::units::{self, Dimension};
 
 /// The key of the rows: lines of the file, or a column and the value that it must have.
@@ -17,32 +19,45 @@ enum Condition {
     Value(usize, String),
 }
 
-/// Those of some rows that are stated by [`ROWS`] and [`STRAIN_RANGE`]; all of them where neither is.
+/// Those of some rows that are stated by [`ROWS`]; all of them where none are.
 ///
 /// # Errors
-/// A fault where a statement cannot be read, or leaves no row.
-pub fn chosen_rows(head: &Head, layout: &Layout, rows: &[usize]) -> Faulty<Vec<usize>> {
+/// A fault where the statement cannot be read, or leaves no row.
+pub fn chosen_rows(head: &Head, rows: &[usize]) -> Faulty<Vec<usize>> {
     let mut chosen = rows.to_vec();
     for condition in conditions(head)? {
         chosen.retain(|row| condition.holds(head, *row));
     }
-    none_is_a_fault(head, ROWS, &chosen)?;
-    if let Some([low, high]) = strain_range(head)? {
-        chosen.retain(|row| {
-            let strain = layout.strain_as_written(&head.table.rows[*row].0);
-            (low..=high).contains(&strain)
-        });
-        none_is_a_fault(head, STRAIN_RANGE, &chosen)?;
+    if chosen.is_empty() {
+        let hint = "look at the values in the file";
+        return Err(head.fault(head.place(ROWS), "the rows leave no row", hint));
     }
     Ok(chosen)
 }
 
-fn none_is_a_fault(head: &Head, key: &str, chosen: &[usize]) -> Faulty<()> {
+/// Those of some rows whose strains, from the zero on, are in the stated [`STRAIN_RANGE`]; all of them where none is.
+///
+/// # Errors
+/// A fault where the statement cannot be read, or leaves no row.
+pub fn rows_in_range(
+    head: &Head,
+    rows: Range<usize>,
+    strain: impl Fn(usize) -> f64,
+) -> Faulty<Vec<usize>> {
+    let Some([low, high]) = strain_range(head)? else {
+        return Ok(rows.collect());
+    };
+    let is_within = |row: &usize| (low..=high).contains(&strain(*row));
+    let chosen: Vec<usize> = rows.clone().filter(is_within).collect();
     if chosen.is_empty() {
-        let hint = "look at the values in the file";
-        return Err(head.fault(head.place(key), format!("the {key} leave no row"), hint));
+        let [least, most] = extremes(rows.map(strain));
+        let hint = format!(
+            "the strains go from {least:.4} to {most:.4} there, counted from the zero; those of compression are negative"
+        );
+        let message = "the strain range leaves none of the rows";
+        return Err(head.fault(head.place(STRAIN_RANGE), message, &hint));
     }
-    Ok(())
+    Ok(chosen)
 }
 
 impl Condition {

@@ -92,7 +92,7 @@ pub struct Observation {
 
 impl Observation {
     /// The largest strains of some observations along both axes.
-    pub(super) fn farthest_strains(all: &[Self]) -> [f64; 2] {
+    pub(in crate::calibration) fn farthest_strains(all: &[Self]) -> [f64; 2] {
         [0, 1].map(|axis| farthest(all.iter().map(|one| one.strains[axis])))
     }
 

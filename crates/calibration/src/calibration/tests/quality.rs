@@ -1,5 +1,7 @@
 //! Figures of a fit compared with their definitions.
 
+use std::path::Path;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::calibration::*;
@@ -114,8 +116,8 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
             let unit = DVector::from_fn(2, |j, _| f64::from(u8::from(i == j)));
             let half = (estimate.interval[1] - estimate.interval[0]) / 2.0;
             assert!((half / expected.half_width(&unit) - 1.0).abs() < 1e-5);
-            let error = expected.covariance()[(i, i)].sqrt();
-            assert!((estimate.standard_error / error - 1.0).abs() < 1e-5);
+            // The standard error is that of the interval, not of the mean covariance, in which improbable noises count most.
+            assert!((estimate.standard_error * expected.reach() / half - 1.0).abs() < 1e-12);
         }
         let correlation = found.quality.correlation[(0, 1)];
         // C₀₁, whose true value is zero, has either sign and is not known to have it.
@@ -183,4 +185,60 @@ fn stress_measures_are_not_mixed() {
         refused.contains("a.csv gives nominal stress and b.csv gives cauchy"),
         "{refused}"
     );
+}
+
+/// Stresses that fall while the strain grows, as those of an unloading from whose peak forces were counted.
+#[test]
+fn a_law_that_does_not_follow_the_data_at_all_is_refused_with_what_was_read() {
+    let points: Vec<(f64, f64)> = (1..=20)
+        .map(|i| (1.0 + 0.05 * f64::from(i), 0.11 - 0.1 * f64::from(i)))
+        .collect();
+    let law = Law::named("neo-hooke").unwrap();
+    let settings = FitSettings::default();
+    let refused = fit(law, &tests(&points), &settings).unwrap_err();
+    let told = refused.to_string();
+    assert_eq!(refused.exit_code(), 2);
+    assert!(
+        told.contains("does not follow the data at all") && told.contains("lines 3 to 22"),
+        "{told}"
+    );
+    let (fits, reasons) = rank(&tests(&points), &settings);
+    assert!(fits.iter().all(|fit| fit.quality.follows_data()));
+    assert!(
+        reasons
+            .iter()
+            .any(|reason| reason.contains("does not follow"))
+    );
+}
+
+/// The protocols of the record are pulled at the ratios 1 : 1, 2 : 1 and 1 : 2.
+#[test]
+fn protocols_of_a_biaxial_test_support_the_tests_that_they_cover() {
+    let reading = [("thickness".to_owned(), "0.8 mm".to_owned())].into();
+    let path = Path::new("../../examples/biaxial_record.csv");
+    let data = [TestData::read(path, &reading).unwrap()];
+    let found = fitted("neo-hooke", &data, &FitSettings::default());
+    assert_eq!(found.quality.untested, [Mode::Uniaxial, Mode::Planar]);
+    let told = &found.quality.warnings;
+    let expected = "uniaxial and planar stresses are predictions that no data support";
+    assert!(told.iter().any(|told| told == expected), "{told:?}");
+}
+
+#[test]
+fn a_card_is_called_by_the_names_of_its_files() {
+    let found = fitted(
+        "neo-hooke",
+        &tests(&[(1.1, 0.03), (1.2, 0.05), (1.5, 0.1)]),
+        &FitSettings::default(),
+    );
+    let provenance = Provenance {
+        files: vec!["../../export.csv".to_owned()],
+        ..Provenance::default()
+    };
+    let card = card_text(&found, &tests(&[(1.1, 0.03)]), &provenance);
+    assert!(
+        card.contains("title = \"neo-hooke fitted to export.csv\""),
+        "{card}"
+    );
+    assert!(card.contains("data = [\"../../export.csv\"]"), "{card}");
 }

@@ -132,8 +132,14 @@ impl Judged {
         let is_known = |(_, index): &(usize, &usize)| !self.at_bound[**index];
         for (i, row) in free.iter().enumerate().filter(is_known) {
             let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
-            let reach = noise.half_width(&unit) / error(i);
-            estimates[*row] = Estimate::new(values[*row], error(i), reach);
+            // Of the interval: the mean of the covariances is mostly that of improbable noises whose lengths are large.
+            let reach = noise.reach();
+            // Rounding makes the variance of what the data do not determine a negative one.
+            let own = match error(i).is_finite() {
+                true => noise.half_width(&unit) / reach,
+                false => f64::NAN,
+            };
+            estimates[*row] = Estimate::new(values[*row], own, reach);
             for (j, column) in free.iter().enumerate().filter(is_known) {
                 correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
             }

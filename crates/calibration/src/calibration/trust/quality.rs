@@ -9,7 +9,7 @@ use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::statistics::{CurveNoise, Estimate};
+use crate::statistics::{CurveNoise, Estimate, extremes};
 
 /// Whether the interval of an estimate does not hold zero.
 pub fn knows_sign(estimate: &Estimate) -> bool {
@@ -109,6 +109,12 @@ impl Quality {
         self
     }
 
+    /// Whether the law is nearer to the data than their mean is, or nearer than no stress at all, whose mean deviation is 100 %.
+    pub fn follows_data(&self) -> bool {
+        const FAR_PERCENT: f64 = 90.0;
+        self.r_squared >= 0.0 || self.nmad_percent < FAR_PERCENT
+    }
+
     /// The number of independent points that tell as much of the noise.
     pub fn effective_points(&self) -> f64 {
         let own = self.verdict.map(|verdict| verdict.effective_points);
@@ -190,12 +196,30 @@ pub fn untested(tests: &[TestData]) -> Vec<Mode> {
     untested.collect()
 }
 
-/// Whether data are of one of the usual tests.
+/// Whether data are of one of the usual tests, or of a biaxial one whose protocols lie on both sides of it.
 fn is_of(data: &TestData, mode: Mode) -> bool {
     match data.test {
         Test::Uniaxial => mode == Mode::Uniaxial,
         Test::Planar => mode == Mode::Planar,
         Test::Equibiaxial => mode == Mode::Equibiaxial,
-        Test::Biaxial | Test::SimpleShear => false,
+        Test::Biaxial => covers(data, mode),
+        Test::SimpleShear => false,
     }
+}
+
+/// Whether the protocols of a biaxial test cover a mode by k = ln λ₂/ln λ₁, λ₁ the stretch that is farther from rest.
+fn covers(data: &TestData, mode: Mode) -> bool {
+    /// Grips and slack move a protocol by as much.
+    const NEAR: f64 = 0.1;
+    let wanted = match mode {
+        Mode::Uniaxial => -0.5,
+        Mode::Planar => 0.0,
+        Mode::Equibiaxial => 1.0,
+    };
+    let ratios = data.protocols().into_iter().map(|protocol| {
+        let [a, b] = Observation::farthest_strains(protocol).map(|x| x.ln_1p());
+        if a.abs() >= b.abs() { b / a } else { a / b }
+    });
+    let [low, high] = extremes(ratios.filter(|ratio| ratio.is_finite()));
+    (low - NEAR..=high + NEAR).contains(&wanted)
 }

@@ -122,7 +122,12 @@ fn predicted(quality: &Quality) -> Option<String> {
     } else {
         ""
     };
-    let untested = untested.join(" and ");
-    (!untested.is_empty())
-        .then(|| format!("{only}{untested} stresses are predictions that no data support"))
+    let untested = match &untested[..] {
+        [] => return None,
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    };
+    Some(format!(
+        "{only}{untested} stresses are predictions that no data support"
+    ))
 }

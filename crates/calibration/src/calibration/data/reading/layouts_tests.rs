@@ -238,11 +238,16 @@ fn columns_that_are_stated_are_taken_whatever_their_names_are() {
     assert_eq!(options(&question).len(), 2, "{question}");
     for (columns, message) in [
         ("strain=channel 9", "there is no column `channel 9`"),
+        (
+            "stress=channel 2 [kN]",
+            "there is no column `channel 2 [kN]`",
+        ),
         ("strain", "names no column"),
         ("force=channel 2", "`force` is not a known quantity"),
     ] {
         let refused = read(text, &[&SPECIMEN[..], &[("columns", columns)]].concat()).unwrap_err();
         assert!(refused.contains(message), "{refused}");
+        assert!(!refused.contains("there is no column of"), "{refused}");
     }
     let head = format!("# columns: strain=channel 1, stress=channel 2 [N]\n{text}");
     assert_eq!(read(&head, &SPECIMEN).unwrap().observations.len(), 3);

@@ -1,7 +1,66 @@
 //! Columns that machines name in their own way, and rows that are no measurements.
 
-use super::tests::read;
-use crate::calibration::Times;
+use super::tests::{SPECIMEN, read, record};
+use crate::calibration::{Observation, TestData, Times};
+
+const NAMES: &str = "Time [s],Displacement [mm],Force [N]";
+
+fn stresses(data: &TestData) -> Vec<f64> {
+    data.observations.iter().map(|one| one.stress).collect()
+}
+
+/// Rows of a record may begin and end anywhere in its cycles of 200 rows, the first at line 3.
+#[test]
+fn rows_that_are_cut_within_a_cycle_have_the_loading_branches_that_are_whole() {
+    let text = record(1.3, NAMES);
+    let with = |rows: &str| read(&text, &[&SPECIMEN[..], &[("rows", rows)]].concat());
+    let whole = read(&text, &[&SPECIMEN[..], &[("cycle", "2")]].concat()).unwrap();
+    for rows in ["84..380", "100..380", "120..380"] {
+        let data = with(rows).unwrap();
+        assert_eq!(stresses(&data), stresses(&whole), "{rows}");
+    }
+    let refused = with("110..180").unwrap_err();
+    assert!(
+        refused.contains("the specimen is only unloaded") && refused.contains("`--cycle all`"),
+        "{refused}"
+    );
+}
+
+/// A strain range counts from the zero of the specimen, which the rows outside of it show.
+#[test]
+fn a_range_of_strains_is_that_of_the_strains_that_are_fitted() {
+    let text = record(1.3, NAMES);
+    let with = |range: &str| read(&text, &[&SPECIMEN[..], &[("strain range", range)]].concat());
+    let whole = read(&text, &SPECIMEN).unwrap();
+    let part = with("0..0.1").unwrap();
+    assert_eq!(part.remarks, whole.remarks);
+    let within = |one: &&Observation| one.strains[0] <= 0.1;
+    let expected = whole.observations.iter().filter(within);
+    let expected: Vec<f64> = expected.map(|one| one.stress).collect();
+    assert_eq!(stresses(&part), expected);
+    let Times::Known(times) = &part.times else {
+        panic!("{:?}", part.times)
+    };
+    assert_eq!(times.len(), expected.len());
+    let refused = with("0.3..").unwrap_err();
+    assert!(refused.contains("the strains go from 0.00"), "{refused}");
+}
+
+#[test]
+fn rows_behind_a_rupture_are_left_out_and_told() {
+    let pull = (0..60).map(|i| 0.1 * f64::from(i));
+    let behind = (0..20).map(|i| format!("{},0.01\n", 6.0 + 0.1 * f64::from(i)));
+    let pull = pull.map(|u| format!("{u},{}\n", 0.1 * u));
+    let text: String = pull.chain(behind).collect();
+    let text = format!("# test: uniaxial\nextension [mm],load [N]\n{text}");
+    let data = read(&text, &SPECIMEN).unwrap();
+    assert_eq!(data.observations.len(), 60);
+    let told = data.warnings[0].to_string();
+    assert!(
+        told.contains("a.csv:63: rows behind a rupture") && told.contains(": 20"),
+        "{told}"
+    );
+}
 
 /// As laboratories write them in German, where neither displacements nor forces stand beside.
 #[test]

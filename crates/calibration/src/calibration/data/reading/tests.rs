@@ -86,7 +86,7 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
         ),
         (
             "# test: uniaxial\nstretch [-],nominal_stress [mPa]\n1,0",
-            "unknown unit `mPa`",
+            "the unknown unit `mPa` (`mPa` is a thousandth of a Pa: if MPa is meant, correct it or give --stress-unit MPa; if not, give --stress-unit mPa)",
         ),
         (
             "# test: uniaxial\nstretch [-],strss [MPa]\n1,0",
@@ -96,6 +96,34 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
         let found = read(text, &[]).unwrap_err();
         assert!(found.contains(message), "{text}\n{found}");
     }
+}
+
+/// Units whose capitals are more often wrong than meant are taken from who names them again.
+#[test]
+fn a_rare_unit_is_taken_where_it_is_stated() {
+    let stress = "# test: uniaxial\nstretch [-],nominal_stress [mPa]\n1.1,1\n1.2,2";
+    let force = "# test: uniaxial\nextension [mm],load [MN]\n0,0\n1,2\n2,4";
+    for (text, unit, expected) in [
+        (stress, "MPa", 1.0),
+        (stress, "mPa", 1e-9),
+        (force, "mN", 2e-4),
+        (force, "MN", 2e5),
+    ] {
+        let stated = [&SPECIMEN[..], &[("stress unit", unit)]].concat();
+        let data = read(text, &stated).unwrap();
+        let largest = data.observations.iter().find(|one| one.stress > 0.0);
+        assert!(
+            (largest.unwrap().stress / expected - 1.0).abs() < 1e-12,
+            "{unit}"
+        );
+        let told = data.table.sentence();
+        assert!(told.contains(&format!("` [{unit}]")), "{told}");
+    }
+    assert!(
+        read(force, &SPECIMEN)
+            .unwrap_err()
+            .contains("a million N: if mN is meant")
+    );
 }
 
 #[test]
@@ -196,7 +224,7 @@ fn force(u: f64, slack: f64) -> f64 {
 }
 
 /// Three cycles to 6 mm with a hold at each end, as a machine records them.
-fn record(slack: f64, names: &str) -> String {
+pub fn record(slack: f64, names: &str) -> String {
     let mut text = format!("# test: uniaxial\n{names}\n");
     let mut row = |time: f64, u: f64| {
         let scatter = 1e-3 * ((12.9898 * time).sin() + (78.233 * time).cos());
@@ -221,7 +249,7 @@ fn record(slack: f64, names: &str) -> String {
     text
 }
 
-const SPECIMEN: [(&str, &str); 3] = [
+pub const SPECIMEN: [(&str, &str); 3] = [
     ("length", "20 mm"),
     ("width", "5 mm"),
     ("thickness", "2 mm"),
