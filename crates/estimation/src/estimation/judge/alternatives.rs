@@ -20,6 +20,9 @@ use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 /// An alternative with the displacements of the markers due to its parameters: two rows per marker.
 pub type Column = (Alternative, DMatrix<f64>);
 
+/// Several stresses of a cell at its centre, from the kinematics at a point.
+type StressesAt<'a> = dyn Fn(usize, [f64; 2], &Kinematics) -> Vec<PlaneTensor> + 'a;
+
 /// A change that is no alternative to the equations, because it is known to be possible.
 pub struct Granted {
     /// The displacements of the markers due to its parameters: two rows per marker.
@@ -135,11 +138,7 @@ impl NearestField<'_> {
     }
 
     /// ∫ P* ∇N dV of several stresses.
-    fn stresses(
-        &self,
-        count: usize,
-        stresses: &dyn Fn(usize, [f64; 2], &Kinematics) -> Vec<PlaneTensor>,
-    ) -> Vec<Vec<f64>> {
+    fn stresses(&self, count: usize, stresses: &StressesAt) -> Vec<Vec<f64>> {
         let mesh = self.equations.task.specimen.mesh;
         let mut forces = vec![vec![0.0; self.field.len()]; count];
         for cell in 0..mesh.cell_count() {
