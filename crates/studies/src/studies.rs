@@ -128,7 +128,7 @@ impl OutputSettings {
             vtk: section.flag("vtk"),
             plots: section.flag("plots"),
             report: section.flag("report"),
-            springs: !section.has("springs") || section.flag("springs"),
+            springs: section.flag("springs"),
         };
         section.unknown_keys();
         settings
