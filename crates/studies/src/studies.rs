@@ -23,8 +23,10 @@ mod regions;
 pub mod sections;
 mod series;
 pub mod specimen;
+mod steps;
 
 pub use models::{ModelKind, OneModel};
+pub use steps::Steps;
 
 /// Reports the progress of a computation, and may keep its equilibria in a journal.
 #[derive(Clone, Copy)]
