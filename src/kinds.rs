@@ -123,6 +123,10 @@ pub fn read_as(
         let loaded = specimen::load(kind, file, text, budget)?;
         return Ok(specimen::ready(kind, name(file), text, loaded));
     }
+    if kind.name == motion::KIND {
+        let loaded = motion::load(kind, file, text, budget)?;
+        return Ok(motion::ready(kind, name(file), text, loaded));
+    }
     kind.read(reader(kind), file, text, budget)
 }
 
@@ -130,6 +134,22 @@ pub fn read_as(
 pub fn keys(kind: &Kind, text: &str) -> Vec<Key> {
     kind.keys(reader(kind), text)
 }
+
+/// Names of files for `gelbench new` and `gelbench keys` that no `kind` of a study has.
+const NO_KINDS: [(&str, &str); 3] = [
+    (
+        "moving-specimen",
+        "write kind = \"motion\": with [specimen] it is that of a specimen, with [plate] that of a plate",
+    ),
+    (
+        "markers",
+        "leave `kind` out: what is known of markers is read by `gelbench correct FIELD --study FILE`",
+    ),
+    (
+        "card",
+        "leave `kind` out: a card has none, and a study names it with `card` under [material]",
+    ),
+];
 
 /// The kind stated in a study's text; `None` for a plate study.
 ///
@@ -155,7 +175,17 @@ pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
         }
         let others = KINDS.iter().map(|kind| (kind.name, Some(kind)));
         let kinds: Vec<_> = std::iter::once(("plate", None)).chain(others).collect();
-        root.choice("kind", &kinds)
+        let stated = root.optional_text("kind");
+        match NO_KINDS.iter().find(|(name, _)| *name == stated) {
+            Some((_, hint)) => {
+                let message = format!("\"{stated}\" is no kind of study");
+                root.fault("kind", &message, hint);
+                None
+            }
+            None if faults.none() => root.choice("kind", &kinds),
+            // It is no text, which is told already.
+            None => None,
+        }
     };
     match found {
         // Other faults are reported when the whole study is read.

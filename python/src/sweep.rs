@@ -9,8 +9,8 @@ use gelbench::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Row, Run, Sampling, Setting, Shard, Share,
     SweepFolder, Values, Variable,
 };
-use gelbench_studies::studies::name;
 use gelbench_studies::studies::sections::read_text;
+use gelbench_studies::studies::{Steps, name};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -232,8 +232,8 @@ fn values<'py>(py: Python<'py>, settings: &[&Setting]) -> PyResult<Bound<'py, Py
 pub struct SweepTable {
     name: String,
     keys: Vec<String>,
-    /// What steps run along, as an axis is called.
-    along: &'static str,
+    /// What steps run along.
+    along: Steps,
     rows: Vec<Row>,
     files: Vec<PathBuf>,
     warnings: Vec<String>,
@@ -263,7 +263,7 @@ impl SweepTable {
             name,
             keys,
             // A table does not tell the kind of its study.
-            along: "step",
+            along: Steps::Unknown,
             files: Vec::new(),
             warnings: Vec::new(),
         })

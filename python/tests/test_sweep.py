@@ -284,7 +284,7 @@ def test_a_table_is_drawn(table):
     pytest.importorskip("matplotlib").use("Agg")
     axes = table.plot("corrected.force_N", "mass_spring.force_N")
     assert len(axes.lines) == 2 and axes.get_ylabel() == "force [N]"
-    assert "<img" in table._repr_html_() and set(table.pictures) >= {"band.png", "force_over_1.png"}
+    assert "<img" in table._repr_html_() and set(table.pictures) >= {"band.png", "force_over_material_c10.png"}
 
 
 def test_salib_finds_the_variance_that_is_known():

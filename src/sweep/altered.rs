@@ -8,7 +8,8 @@ use gelbench_base::budget::Budget;
 use gelbench_base::document::{EditedDocument, NewValue, with_files};
 use gelbench_base::error::{Diagnostic, Error, suggestion};
 use gelbench_mechanics::material::Card;
-use gelbench_studies::studies::{PreparedStudy, motion, specimen};
+use gelbench_studies::studies::specimen::Along;
+use gelbench_studies::studies::{PreparedStudy, Steps, motion, specimen};
 
 /// The card of a run stands beside the study's own under this name, in memory.
 const CARD: &str = "gelbench-sweep-card.toml";
@@ -33,14 +34,14 @@ pub struct BaseStudy {
 }
 
 impl BaseStudy {
-    /// What its steps run along, as an axis is called.
-    pub fn steps_run_along(&self) -> &'static str {
+    /// What its steps run along.
+    pub fn steps_run_along(&self) -> Steps {
         let case = kinds::kind_of(&self.path.display().to_string(), &self.text);
         match case.ok().flatten().map(|case| case.name) {
-            None => "stretch [–]",
-            Some(specimen::KIND) => "load factor [–]",
-            Some(motion::KIND) => "time [s]",
-            Some(_) => "step [–]",
+            None => Steps::Path(Along::Stretch),
+            Some(specimen::KIND) => Steps::Path(Along::LoadFactor),
+            Some(motion::KIND) => Steps::Time,
+            Some(_) => Steps::Unknown,
         }
     }
 

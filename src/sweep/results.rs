@@ -10,6 +10,7 @@ use gelbench_base::statistics::{quantile, rank_correlation};
 use gelbench_base::units::number;
 use gelbench_report::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
 use gelbench_report::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
+use gelbench_studies::studies::Steps;
 
 /// With fewer runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;
@@ -21,6 +22,8 @@ pub struct Statistics {
     pub name: String,
     /// The number of runs in which it exists.
     pub runs: usize,
+    /// The largest magnitude.
+    pub largest: f64,
     /// The mean.
     pub mean: f64,
     /// The standard deviation; NaN for fewer than two runs.
@@ -71,6 +74,9 @@ impl Statistics {
         Self {
             name: name.to_owned(),
             runs: values.len(),
+            largest: values
+                .iter()
+                .fold(0.0, |most: f64, value| most.max(value.abs())),
             mean,
             standard_deviation: (square / (count - 1.0)).sqrt(),
             quantiles: [0.05, 0.5, 0.95].map(|share| quantile(&sorted, share)),
@@ -82,6 +88,30 @@ impl Statistics {
 /// The quantity and the step of a figure's name.
 fn parts_of(name: &str) -> (&str, &str) {
     name.rsplit_once('@').unwrap_or((name, ""))
+}
+
+/// The figures but those that are rounding beside the largest one of their quantity, such as a force across a symmetric plate.
+fn without_rounding(all: &[Statistics]) -> impl Iterator<Item = &Statistics> {
+    const ROUNDING: f64 = 1e-9;
+    let mut largest: HashMap<&str, f64> = HashMap::new();
+    for one in all {
+        let most = largest.entry(quantity(&one.name)).or_default();
+        *most = most.max(one.largest);
+    }
+    all.iter().filter(move |one| {
+        let most = largest[quantity(&one.name)];
+        one.largest > ROUNDING * most || most == 0.0
+    })
+}
+
+/// What a figure is, whatever its model, its group and its axis: `force_N` of `corrected.right.force_N.y@1`.
+fn quantity(name: &str) -> &str {
+    let (name, _) = parts_of(name);
+    let name = name
+        .strip_suffix(".x")
+        .or(name.strip_suffix(".y"))
+        .unwrap_or(name);
+    name.rsplit('.').next().unwrap_or(name)
 }
 
 /// The figures of the last step alone. Where steps are varied, it differs between runs: the runs that reach it are taken together under one name.
@@ -141,7 +171,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
             "–".to_owned()
         }
     };
-    let lines = all.iter().map(|one| {
+    let lines = without_rounding(&all).map(|one| {
         let [low, middle, high] = one.quantiles;
         let numbers = [one.mean, one.standard_deviation, low, middle, high];
         let numbers = numbers.iter().chain(&one.rank_correlations);
@@ -236,8 +266,8 @@ pub fn json(keys: &[String], rows: &[Row]) -> Value {
 }
 
 /// Pictures: the band of every model's force over the steps, and the force of the last step over each key.
-/// `along` is the name of the axis of steps.
-pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
+/// `along` is what steps run along.
+pub fn figures(keys: &[String], rows: &[Row], along: Steps) -> Vec<Figure> {
     let (all, heads) = (statistics(rows), heads(keys, rows));
     let forces: Vec<&Statistics> = all.iter().filter(|one| is_force(&one.name)).collect();
     let band = band(&forces, along).map(|chart| {
@@ -251,7 +281,7 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
     let last = statistics(&rows);
     let last = (last.iter()).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
     let over = last.into_iter().flat_map(|one| {
-        let (_, at) = parts_of(&one.name);
+        let at = along.describe(parts_of(&one.name).1);
         let rows = &rows;
         let heads = &heads;
         let axis = |index: usize| -> Option<Figure> {
@@ -263,15 +293,15 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
             let chart = LineChart::new(
                 format!("Force over {}", keys[index]),
                 Axis::new(&heads[index], Scale::Interval),
-                Axis::new(&format!("force, corrected, at {at} [N]"), Scale::Interval),
+                Axis::new(&format!("force at {at} [N]"), Scale::Interval),
                 vec![Line::new("", points?, PALETTE[0], Stroke::Points)],
             );
-            let caption = format!("{} of every run over {}.", one.name, keys[index]);
-            Some(Figure::new(
-                format!("force_over_{}.png", index + 1),
-                caption,
-                chart,
-            ))
+            let caption = format!(
+                "The force of the corrected model at {at} over {}: a point for each run.",
+                keys[index]
+            );
+            let name = format!("force_over_{}.png", keys[index].replace('.', "_"));
+            Some(Figure::new(name, caption, chart))
         };
         (0..keys.len()).filter_map(axis).collect::<Vec<_>>()
     });
@@ -289,7 +319,7 @@ fn is_force(name: &str) -> bool {
 
 /// The medians of all models over the steps, and the band of the corrected model, or the first one; `None` where there are fewer than
 /// two steps, or too few runs.
-fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
+fn band(forces: &[&Statistics], along: Steps) -> Option<LineChart> {
     let mut lines = Vec::new();
     // The band of the corrected model is the filled one.
     for ModelStyle { name, key, colour } in [CORRECTED, MASS_SPRING, FINITE_ELEMENTS] {
@@ -299,7 +329,8 @@ fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
         // In the order of the path: a load factor may occur again, its second time as `0.3#2`.
         let at = |one: &Statistics| {
             let (_, at) = one.name.rsplit_once('@')?;
-            at.split('#').next()?.parse().ok()
+            let at = at.split('#').next()?.parse().ok()?;
+            Some(along.coordinate(at))
         };
         let steps: Vec<(f64, [f64; 3])> = own
             .filter_map(|one| Some((at(one)?, one.quantiles)))
@@ -322,7 +353,7 @@ fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
     (!lines.is_empty()).then(|| {
         LineChart::new(
             "Forces of all runs",
-            Axis::new(along, Scale::Interval),
+            Axis::new(along.head(), Scale::Interval),
             Axis::linear("force [N]"),
             lines,
         )

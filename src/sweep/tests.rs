@@ -3,6 +3,7 @@ use std::path::Path;
 
 use super::*;
 use gelbench_base::budget::Budget;
+use gelbench_report::results::Drawing;
 
 const STUDY: &str = "\
 title = \"small\"
@@ -186,6 +187,42 @@ fn a_fit_without_standard_errors_is_refused_for_its_own_reason() {
 }
 
 #[test]
+fn pictures_and_statistics_say_what_a_reader_expects() {
+    let sweep = sweep(&["plate.thickness=1..3 mm:10"], None);
+    let (rows, keys) = (rows(&sweep), sweep.keys());
+    let figures = figures(&keys, &rows, sweep.study.steps_run_along());
+    let names: Vec<&str> = figures.iter().map(|figure| &*figure.name).collect();
+    assert_eq!(names, ["band.png", "force_over_plate_thickness.png"]);
+    let axes = |index: usize| match &figures[index].drawing {
+        Drawing::Charts(charts) => [&charts[0].0.x, &charts[0].0.y].map(|axis| axis.label.clone()),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(axes(0)[0], "stretch [%]");
+    assert_eq!(
+        axes(1),
+        ["plate.thickness [mm]", "force at 20 % stretch [N]"]
+    );
+    let caption = &figures[1].caption;
+    assert!(
+        caption.contains("at 20 % stretch over plate.thickness"),
+        "{caption}"
+    );
+    // Across a symmetric plate a force is rounding: in the table of all runs, but not in their statistics.
+    let report = format!("{:?}", blocks("small", &keys, &rows, &figures));
+    let small = |row: &Row, name: &String| row.figure(name).is_some_and(|own| own.abs() < 1e-9);
+    let all = rows[0].figures.iter().map(|(name, _)| name);
+    let forces = all.filter(|name| name.contains("force_N") && name.ends_with("@0.2"));
+    for name in forces {
+        let is_rounding = rows.iter().all(|row| small(row, name));
+        assert_eq!(
+            report.contains(&format!("\"{name}\"")),
+            !is_rounding,
+            "{name}"
+        );
+    }
+}
+
+#[test]
 fn paths_and_names_are_values_too() {
     let texts = |text: &str| match Variable::parse(text).unwrap().values {
         Values::Listed(all) => all,
@@ -221,6 +258,9 @@ fn faults_name_what_to_write() {
         ("a=1 mm,2", "several units"),
         ("a=1+-0", "has to be positive"),
         ("a=x..2", "`x` is not a number"),
+        ("a=1-3 mm", "written `1..3 mm`, or `1..3 mm:3`"),
+        ("a=1 – 3", "written `1..3`"),
+        ("a=1 to 3 mm", "written `1..3 mm`"),
     ] {
         let told = Variable::parse(text).unwrap_err().to_string();
         assert!(told.contains(expected), "{text}: {told}");

@@ -147,6 +147,11 @@ impl Values {
                 Err("the standard deviation has to be positive".to_owned())
             };
         }
+        if let Some(range) = misspelt_range(text) {
+            return Err(format!(
+                "a range is written `{range}`, or `{range}:3` for three values"
+            ));
+        }
         Self::listed(text.split(','))
     }
 
@@ -227,6 +232,16 @@ fn grid([low, high]: [f64; 2], unit: &str, count: &str) -> Result<Values, String
         Setting::Number(value, unit.to_owned())
     };
     Ok(Values::Listed((0..count).map(value).collect()))
+}
+
+/// The range that is meant by `1-3 mm`, `1 – 3 mm` or `1 to 3 mm`.
+fn misspelt_range(text: &str) -> Option<String> {
+    let (low, rest) = number(text)?;
+    let high = ["-", "–", "—", "to "]
+        .iter()
+        .find_map(|dash| rest.strip_prefix(dash))?;
+    let (high, unit) = number(high.trim())?;
+    Some(format!("{low}..{high} {unit}").trim_end().to_owned())
 }
 
 /// A finite number and what stands behind it.

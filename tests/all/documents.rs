@@ -33,7 +33,6 @@ const NOT_RUN: &[(&str, &str)] = &[
 const SLOW: &[(&str, &str)] = &[
     ("gelbench sweep", "computes whole studies"),
     ("gelbench run", "computes a whole study in three models"),
-    ("gelbench correct", "inverts a field with its uncertainty"),
     ("gelbench compare", "solves the study in three models"),
     (
         "ccx",

@@ -1,6 +1,6 @@
 //! The reference of keys, the schemas and the studies of `new` are what the readers ask for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use serde_json::Value;
@@ -140,6 +140,66 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
             found.iter().any(|fault| fault.starts_with(place)),
             "{to}: {found:?}"
         );
+    }
+}
+
+/// The keys that stand in a file, those in remarks too, such as `support[].kind`.
+fn stated(text: &str) -> BTreeSet<String> {
+    let mut table = String::new();
+    let mut keys = BTreeSet::new();
+    for line in text.lines() {
+        let line = line.strip_prefix("# ").unwrap_or(line);
+        let line = line.split(" #").next().unwrap_or_default().trim();
+        let within = |begin, end| line.strip_prefix(begin)?.strip_suffix(end);
+        if let Some(name) = within("[[", "]]") {
+            table = format!("{name}[].");
+        } else if let Some(name) = within("[", "]") {
+            table = format!("{name}.");
+        } else if let Some((key, _)) = line.split_once('=') {
+            keys.insert(format!("{table}{}", key.trim()));
+        }
+    }
+    keys
+}
+
+/// What belongs to one choice, such as the measures of another shape, is explained beside the choice.
+#[test]
+fn new_studies_have_every_key_and_the_reference_explains_each() {
+    let folder = TempDir::new().unwrap();
+    for kind in KINDS.into_iter().filter(|kind| *kind != "card") {
+        gelbench(folder.path(), &["new", kind, "--kind", kind]).code(0);
+        let text = fs::read_to_string(folder.path().join(format!("{kind}.toml"))).unwrap();
+        let (stated, reference) = (stated(&text), printed(&["keys", kind]));
+        let mut table = String::new();
+        for line in reference.lines() {
+            if let Some(heading) = line.strip_prefix("## ") {
+                let name = heading.trim_matches('`');
+                let list = name
+                    .strip_prefix("[[")
+                    .and_then(|name| name.strip_suffix("]]"));
+                table = match list {
+                    Some(list) => format!("{list}[]."),
+                    None if name == "At the top" => String::new(),
+                    None => format!("{}.", name.trim_matches(['[', ']'])),
+                };
+            }
+            let Some((key, rest)) = line.strip_prefix("| `").and_then(|row| row.split_once('`'))
+            else {
+                continue;
+            };
+            if table.is_empty() && rest.contains("| units |") || rest.contains("| with `") {
+                continue;
+            }
+            assert!(
+                stated.contains(&format!("{table}{key}")),
+                "{kind}: {table}{key}"
+            );
+            let is_explained = !rest.trim_end().ends_with("|  |");
+            assert!(
+                is_explained || !["plate", "specimen"].contains(&kind),
+                "{kind}: {table}{key}"
+            );
+        }
     }
 }
 

@@ -284,8 +284,46 @@ fn misspelt_groups_are_told_at_their_place() {
     let strip = example("strip_with_hole.toml").replacen("\"right\"", "\"rihgt\"", 1);
     checked(
         &strip,
-        &["support[2].group", "a.toml:37:9", "did you mean `right`?"],
+        &["support[2].group", "a.toml:42:9", "did you mean `right`?"],
     );
+}
+
+/// The names of a shape's groups do not depend on measures that are still at fault.
+#[test]
+fn misspelt_groups_are_told_beside_misspelt_measures() {
+    let strip = example("strip_with_hole.toml").replace("\nlength", "\nlenght");
+    let strip = strip.replace("\"left\"", "\"lft\"");
+    checked(
+        &strip.replace("\"right\"", "\"rihgt\""),
+        &[
+            "specimen.lenght",
+            "the specimen has no group `lft`",
+            "did you mean `left`?",
+            "support[2].group",
+            "path.measured_group",
+            "did you mean `right`?",
+        ],
+    );
+}
+
+#[test]
+fn a_missing_key_of_a_list_is_added_as_toml_writes_it() {
+    let strip = example("strip_with_hole.toml").replacen("\ngroup", "\n# group", 1);
+    checked(&strip, &["under [[support]] number 1"]);
+}
+
+#[test]
+fn names_of_files_that_are_no_kinds_lead_to_the_right_one() {
+    for (kind, hint) in [
+        ("moving-specimen", "write kind = \"motion\""),
+        ("markers", "`gelbench correct FIELD --study FILE`"),
+        ("card", "`card` under [material]"),
+    ] {
+        checked(
+            &format!("kind = \"{kind}\"\n"),
+            &["is no kind of study", hint],
+        );
+    }
 }
 
 #[test]

@@ -52,8 +52,8 @@ pub use joint::{
 };
 pub use outcome::{
     Alternative, Answer, Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck,
-    FoundParameter, MarkerEstimate, NoiseCorrelation, RULE, RULE_WITH_MODEL_ERROR, Reason,
-    Smoothing, StressEstimate, Trial, Verdict, Worst,
+    FoundParameter, MarkerEstimate, MovedPart, NoiseCorrelation, RULE, RULE_WITH_MODEL_ERROR,
+    Reason, Smoothing, StressEstimate, Trial, Verdict, Worst,
 };
 pub use regression::Robust;
 pub use transfer::transfer;

@@ -23,8 +23,10 @@ mod regions;
 pub mod sections;
 mod series;
 pub mod specimen;
+mod steps;
 
 pub use models::{ModelKind, OneModel};
+pub use steps::Steps;
 
 /// Reports the progress of a computation, and may keep its equilibria in a journal.
 #[derive(Clone, Copy)]
@@ -128,7 +130,7 @@ impl OutputSettings {
             vtk: section.flag("vtk"),
             plots: section.flag("plots"),
             report: section.flag("report"),
-            springs: !section.has("springs") || section.flag("springs"),
+            springs: section.flag("springs"),
         };
         section.unknown_keys();
         settings

@@ -291,16 +291,29 @@ impl<'a> Section<'a> {
     fn missing(&self, key: &'static str, example: &str) {
         let hint = match (self.required.contains(&key), self.path.is_empty()) {
             (false, true) => format!("add `{key} = {example}`"),
-            (false, false) => format!("add `{key} = {example}` under [{}]", self.path),
+            (false, false) => format!("add `{key} = {example}` under {}", self.toml_heading()),
             (true, true) => {
                 format!("add `{key} = {example}`, for example; it has no default")
             }
             (true, false) => format!(
-                "add `{key} = {example}`, for example, under [{}]; it has no default",
-                self.path
+                "add `{key} = {example}`, for example, under {}; it has no default",
+                self.toml_heading()
             ),
         };
         self.fault(key, "is missing", &hint);
+    }
+
+    /// The line above its keys, as TOML writes it: `[plate]`, or `[[support]]` with its number.
+    fn toml_heading(&self) -> String {
+        let name = plain_path(&self.path).replace("[]", "");
+        let number = self
+            .path
+            .strip_suffix(']')
+            .and_then(|path| path.rsplit_once('['));
+        match number {
+            Some((_, number)) => format!("[[{name}]] number {number}"),
+            None => format!("[{name}]"),
+        }
     }
 
     fn written(&self, key: &'static str) -> Option<Value<'a>> {

@@ -1,5 +1,7 @@
 //! Which of the edges without a stated condition are free, as decided by the data.
 
+use nalgebra::DVector;
+
 use super::equations::Equations;
 use super::input::{Edge, EdgeCondition, Task, singular_corners};
 use super::outcome::EdgeForce;
@@ -136,7 +138,8 @@ fn probability(loaded: &NearestField, free: &NearestField) -> f64 {
     let more = (loaded.fit.effective - free.fit.effective).max(1.0);
     let rest = (count - loaded.fit.effective).max(1.0);
     let (before, after) = (loaded.misfit(loaded), free.misfit(loaded));
-    let ratio = (after - before).max(0.0) / more / (before / rest).max(f64::MIN_POSITIVE);
+    let noise = before.max(loaded.rounding()).max(f64::MIN_POSITIVE);
+    let ratio = (after - before).max(0.0) / more / (noise / rest);
     f_tail([more, rest], ratio)
 }
 
@@ -158,6 +161,16 @@ impl NearestField<'_> {
         };
         let most = forces.iter().map(size).fold(0.0, f64::max);
         Ok(own.is_some_and(|(_, own)| size(own) > LARGE * most && size(own) > SURE * error(own)))
+    }
+
+    /// Σ w ω r² where every marker is off by a millionth of what they move: data without noise have no more digits.
+    fn rounding(&self) -> f64 {
+        const ROUNDING: f64 = 1e-6;
+        let observations = self.observations();
+        let moved = observations.displacements.iter().flatten().copied();
+        let moved = DVector::from_iterator(2 * observations.displacements.len(), moved);
+        let trust = &self.variances.trust;
+        ROUNDING * ROUNDING * weighted_square(&moved, &observations.weights, trust)
     }
 
     /// Σ w ω r² with the trust ω of another search.

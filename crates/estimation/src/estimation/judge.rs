@@ -132,6 +132,7 @@ pub fn judge(
         worst: against.and_then(|_| rows.worst(found)),
         reasons: against.or(few).into_iter().collect(),
         trials,
+        residual_rms: Some(residual_rms).filter(|left| left.is_finite()),
     };
     Ok(Judgement {
         noises,
@@ -190,10 +191,10 @@ impl Basis<'_> {
     }
 
     /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
-    fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Trial> {
+    fn moved(&self, found: &NearestField, (part, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
         let model = self.base.with(self.rows, [&design]);
-        Some(self.try_out(found, Alternative::MovedEdge { edge, outwards }, &model))
+        Some(self.try_out(found, Alternative::MovedEdge { part, outwards }, &model))
     }
 }
 

@@ -7,4 +7,6 @@ pub use field_estimate::{
     Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, FoundParameter,
     MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing, StressEstimate,
 };
-pub use verdict::{Alternative, Answer, NoiseCorrelation, Reason, Trial, Verdict, Worst};
+pub use verdict::{
+    Alternative, Answer, MovedPart, NoiseCorrelation, Reason, Trial, Verdict, Worst,
+};

@@ -93,17 +93,29 @@ pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Opti
         .filter(|unit| !is_pixel(unit))
 }
 
+/// The names of the places' columns of a table of no other program.
+pub const PLACES: [Names; 2] = [&["x"], &["y"]];
+
+/// Those of its displacements' columns.
+pub const DISPLACEMENTS: [Names; 2] = [&["ux", "u", "u_x"], &["uy", "v", "u_y"]];
+
+/// What to do where a column is not found, and may be assigned.
+pub const ASSIGN: &str = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with your own unit, or assign them: \
+                          --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
+
 /// The first column with one of the names, and its unit.
 ///
 /// # Errors
-/// [`Error::Input`] with the existing columns where there is none.
-pub fn required(table: &Table, names: Names) -> Result<(usize, Option<String>), Error> {
+/// [`Error::Input`] with the existing columns where there is none, and what to do.
+pub fn required(table: &Table, names: Names, hint: &str) -> Result<(usize, Option<String>), Error> {
     find(table, names).ok_or_else(|| {
         let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
-        let found = if found.iter().all(|name| name.is_empty()) { "the columns have no names".to_owned() } else { format!("the file has {}", found.join(", ")) };
+        let found = if found.iter().all(|name| name.is_empty()) {
+            "the columns have no names".to_owned()
+        } else {
+            format!("the file has {}", found.join(", "))
+        };
         let message = format!("there is no column `{}`: {found}", plainly(names));
-        let hint = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with your own unit, or assign them: \
-                    `gelbench correct` takes --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
         table.refuse_columns(message, hint)
     })
 }

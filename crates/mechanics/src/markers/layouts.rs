@@ -32,7 +32,7 @@
 //! GOM: nodemaps of github.com/dlr-wf/aramis-data-exporter; GOM Correlate's tables as
 //! github.com/jaredvanblitterswyk/lce_tension_tests reads them (below five lines of preamble, places in the frame).
 
-use super::columns::{HEIGHT, LIFT, Names};
+use super::columns::{DISPLACEMENTS, HEIGHT, LIFT, Names, PLACES};
 use crate::document::{Table, is_pixel};
 
 /// The columns and conventions of a layout.
@@ -60,8 +60,8 @@ pub(super) struct Layout {
 
 const COLUMNS: Layout = Layout {
     name: "columns",
-    places: [&["x"], &["y"]],
-    displacements: [&["ux", "u", "u_x"], &["uy", "v", "u_y"]],
+    places: PLACES,
+    displacements: DISPLACEMENTS,
     deviation: &["standard_deviation", "sigma"],
     out_of_plane: [HEIGHT, LIFT],
     lost: &[],

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::columns::{self, Names, Units, length, plain, required};
+use super::columns::{self, ASSIGN, Names, Units, length, plain, required};
 use super::rows::{FileRows, ReadSettings, Row};
 use super::table::NAME;
 use super::understood::Understood;
@@ -91,7 +91,7 @@ fn points(path: &Path, settings: &ReadSettings) -> Result<(Vec<Point>, Table), E
         given: settings.unit,
         ..Units::default()
     };
-    let coordinate = |names: Names| length(&table, required(&table, names)?, units);
+    let coordinate = |names: Names| length(&table, required(&table, names, ASSIGN)?, units);
     let [x, y] = [coordinate(&["x"])?, coordinate(&["y"])?];
     let name = plain(&table, NAME);
     let read: Vec<usize> = [x.0, y.0].into_iter().chain(name).collect();

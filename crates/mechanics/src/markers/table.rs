@@ -6,7 +6,9 @@
 
 use std::path::Path;
 
-use super::columns::{self, FRAME, Length, Names, TIME, Units, find, length, plain, required};
+use super::columns::{
+    self, ASSIGN, FRAME, Length, Names, TIME, Units, find, length, plain, required,
+};
 use super::layouts::{Layout, NAMED, recognise};
 use super::role::Role;
 use super::rows::{FileRows, ReadSettings, Row};
@@ -47,7 +49,7 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
         given: unit,
         ..Units::default()
     };
-    let coordinate = |names: Names| length(&table, required(&table, names)?, units);
+    let coordinate = |names: Names| length(&table, required(&table, names, ASSIGN)?, units);
     let [x, y] = [coordinate(&["x"])?, coordinate(&["y"])?];
     let number = plain(&table, &["line"]);
     let read: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
@@ -121,7 +123,9 @@ impl<'a> Reader<'a> {
         };
         let of = |index: usize| match &heads[index] {
             Some(head) => length(table, head.clone(), units),
-            None => required(table, roles[index].1).and_then(|head| length(table, head, units)),
+            None => {
+                required(table, roles[index].1, ASSIGN).and_then(|head| length(table, head, units))
+            }
         };
         let deviation = head(Role::StandardDeviation, layout.deviation);
         let plain_column = |role, names| chosen.of(role).or_else(|| plain(table, names));

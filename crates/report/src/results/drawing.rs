@@ -1,5 +1,8 @@
 //! Drawings as data: charts, fields, fields that move, outlines.
 
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, HashSet};
+
 use serde::{Deserialize, Serialize};
 
 use super::surface::edge_lines;
@@ -48,8 +51,10 @@ pub struct MeshFigure {
 pub struct NamedLines {
     /// Its name.
     pub name: String,
-    /// Its lines in mm.
+    /// Its lines in mm; of a region its outline.
     pub lines: Vec<Vec<[f64; 2]>>,
+    /// Of a region its cells, by their numbers.
+    pub cells: Vec<usize>,
 }
 
 impl From<LineChart> for Drawing {
@@ -65,7 +70,7 @@ impl From<FieldFigure> for Drawing {
     }
 }
 
-/// A mesh with its named groups, those of the same nodes as one; curved edges are drawn through their middles.
+/// A mesh with its named groups, those of the same part as one; curved edges are drawn through their middles.
 pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
     let cells = 0..mesh.cell_count();
     // Groups of the same part share a line: one would hide the others.
@@ -79,22 +84,53 @@ pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
             None => parts.push((group, vec![name])),
         }
     }
-    let named = parts.into_iter().map(|(group, names)| NamedLines {
-        name: names.join(" = "),
-        lines: if !group.edges.is_empty() {
-            edge_lines(&group.edges, &mesh.nodes)
-        } else {
-            points(group, mesh)
-        },
-    });
-    let mut groups: Vec<NamedLines> = named.collect();
     // Later groups are drawn over earlier ones: a side must be visible on the whole boundary.
-    groups.sort_by_key(|group| std::cmp::Reverse(group.lines.len()));
+    parts.sort_by_key(|(group, _)| Reverse((group.cells.len(), group.edges.len().max(1))));
+    let first_line = parts.partition_point(|(group, _)| !group.cells.is_empty());
+    let is_hidden = |index: usize| {
+        let later = parts.iter().skip(first_line.max(index + 1));
+        let later: HashSet<&Vec<usize>> = later.flat_map(|(group, _)| &group.edges).collect();
+        let group = parts[index].0;
+        let is_side = index >= first_line && !group.edges.is_empty() && group.lines.is_empty();
+        is_side && group.edges.iter().all(|edge| later.contains(edge))
+    };
+    let shown = (0..parts.len()).filter(|index| !is_hidden(*index));
+    let groups = shown.map(|index| named(mesh, parts[index].0, &parts[index].1));
     Drawing::Mesh(MeshFigure {
         title: title.to_owned(),
         cells: cells.map(|cell| cell_outline(mesh, cell)).collect(),
-        groups,
+        groups: groups.collect(),
     })
+}
+
+fn named(mesh: &Mesh, group: &Group, names: &[&str]) -> NamedLines {
+    let lines = if !group.cells.is_empty() {
+        edge_lines(&rim(mesh, &group.cells), &mesh.nodes)
+    } else if group.edges.is_empty() && group.lines.is_empty() {
+        let nodes = group.nodes.iter();
+        nodes.map(|node| vec![mesh.nodes[*node]; 2]).collect()
+    } else {
+        edge_lines(&[&group.edges[..], &group.lines].concat(), &mesh.nodes)
+    };
+    NamedLines {
+        name: names.join(" = "),
+        lines,
+        cells: group.cells.clone(),
+    }
+}
+
+/// The edges around cells: those of one of them only.
+fn rim(mesh: &Mesh, cells: &[usize]) -> Vec<Vec<usize>> {
+    let mut found: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
+    for cell in cells {
+        for edge in mesh.shape(*cell).edges() {
+            let edge: Vec<usize> = edge.iter().map(|node| mesh.cell(*cell)[*node]).collect();
+            let ends = [edge[0].min(edge[1]), edge[0].max(edge[1])];
+            let seen = found.contains_key(&ends);
+            found.insert(ends, (!seen).then_some(edge));
+        }
+    }
+    found.into_values().flatten().collect()
 }
 
 fn cell_outline(mesh: &Mesh, cell: usize) -> Vec<[f64; 2]> {
@@ -112,7 +148,27 @@ fn cell_outline(mesh: &Mesh, cell: usize) -> Vec<[f64; 2]> {
     places
 }
 
-fn points(group: &Group, mesh: &Mesh) -> Vec<Vec<[f64; 2]>> {
-    let nodes = group.nodes.iter();
-    nodes.map(|node| vec![mesh.nodes[*node]; 2]).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{CellShape, Shape};
+
+    #[test]
+    fn only_what_is_seen_of_the_groups_is_named() {
+        let mut mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, CellShape::Quad9);
+        let nodes = (0..mesh.nodes.len()).filter(|node| mesh.nodes[*node][0] < 15.1);
+        mesh.name_nodes("region", &nodes.collect());
+        let Drawing::Mesh(figure) = mesh_outlines("", &mesh) else {
+            panic!("a mesh is drawn as one")
+        };
+        let names: Vec<&str> = figure.groups.iter().map(|group| &*group.name).collect();
+        assert!(!names.contains(&"boundary"), "{names:?}");
+        for side in ["left", "right", "bottom", "top"] {
+            assert!(names.contains(&side), "{names:?}");
+        }
+        let region = &figure.groups[0];
+        assert_eq!(region.name, "region");
+        assert_eq!(2 * region.cells.len(), mesh.cell_count());
+        assert!(region.lines.len() < region.cells.len() * 4);
+    }
 }

@@ -13,6 +13,17 @@ pub struct ModelStyle {
     pub colour: [u8; 3],
 }
 
+impl ModelStyle {
+    /// The model within a sentence: `mass-spring model`.
+    pub fn in_words(self) -> String {
+        if self == FINITE_ELEMENTS {
+            self.name.to_owned()
+        } else {
+            format!("{} model", self.name)
+        }
+    }
+}
+
 /// The mass-spring model.
 pub const MASS_SPRING: ModelStyle = ModelStyle {
     name: "mass-spring",

@@ -11,7 +11,7 @@ use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::results::Outcome;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
-use crate::studies::{Computation, Kind, Loaded, ModelKind, Progress, SOUND};
+use crate::studies::{Computation, Kind, Loaded, ModelKind, PreparedStudy, Progress, SOUND};
 use crate::units::number;
 
 mod between;
@@ -45,6 +45,23 @@ pub fn load(
     budget: Budget,
 ) -> Result<Loaded<MovingSheet>, Error> {
     case.load(file, text, budget, read::read)
+}
+
+/// A motion that was read, ready to be computed.
+pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<MovingSheet>) -> PreparedStudy {
+    let sheet = loaded.made;
+    let about = sheet.describe();
+    let read = Loaded {
+        title: loaded.title,
+        made: Box::new(move |progress: Progress| compute(&sheet, progress)) as Computation,
+        output: loaded.output,
+        defaults: loaded.defaults,
+        warnings: loaded.warnings,
+    };
+    PreparedStudy {
+        about,
+        ..PreparedStudy::new(kind, name, text, read)
+    }
 }
 
 /// Reads a study of this kind.

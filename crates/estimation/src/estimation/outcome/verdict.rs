@@ -52,6 +52,9 @@ pub struct Verdict {
     pub reasons: Vec<Reason>,
     /// Alternatives that explain the data better, the best first, where the data are not explained.
     pub trials: Vec<Trial>,
+    /// What the equations as they are leave of the same markers and weights as [`Trial::residual_rms`], in mm; `None` where nothing was
+    /// tried.
+    pub residual_rms: Option<f64>,
     /// The place with the largest misfit, where the data are not explained.
     pub worst: Option<Worst>,
 }
@@ -151,10 +154,10 @@ pub enum Alternative {
     },
     /// All edges with a stated condition move in an unknown smooth way.
     Edges,
-    /// A free edge, or all of them, lies elsewhere.
+    /// A part of the specimen's edge lies elsewhere.
     MovedEdge {
-        /// Its name; `None` where all of them move together.
-        edge: Option<String>,
+        /// The part.
+        part: MovedPart,
         /// The distance outside of the mesh's edge, in mm.
         outwards: f64,
     },
@@ -176,6 +179,27 @@ pub enum Alternative {
     Factor(f64),
 }
 
+/// A part of the specimen's edge that may lie elsewhere than that of the mesh.
+#[derive(Clone, Debug, Deserialize, Eq, PartialEq, Serialize)]
+pub enum MovedPart {
+    /// A free edge by its name.
+    FreeEdge(String),
+    /// All free edges together.
+    FreeEdges,
+    /// All edges together, free ones and grips, as where the distance of the markers from the specimen's edge is wrong.
+    Outline,
+}
+
+impl MovedPart {
+    fn words(&self) -> String {
+        match self {
+            Self::FreeEdge(name) => format!("the free edge `{name}`"),
+            Self::FreeEdges => "all free edges".to_owned(),
+            Self::Outline => "the whole outline, grips and free edges,".to_owned(),
+        }
+    }
+}
+
 impl Alternative {
     /// The alternative in words.
     pub fn words(&self) -> String {
@@ -185,15 +209,10 @@ impl Alternative {
                 format!("`{edge}` {}", condition_words(*condition))
             }
             Self::Edges => "an unknown motion of all edges with a stated condition".into(),
-            Self::MovedEdge { edge, outwards } => {
+            Self::MovedEdge { part, outwards } => {
                 let way = if *outwards > 0.0 { "out" } else { "in" };
                 let distance = roughly(outwards.abs());
-                match edge {
-                    Some(name) => {
-                        format!("the free edge `{name}` about {distance} mm farther {way}")
-                    }
-                    None => format!("all free edges about {distance} mm farther {way}"),
-                }
+                format!("{} about {distance} mm farther {way}", part.words())
             }
             Self::BodyForce => "a smooth force on the sheet (friction, weight, a fixture)".into(),
             Self::Stiffness => "a thickness or stiffness that varies over the sheet".into(),
@@ -239,7 +258,8 @@ fn roughly(value: f64) -> String {
 pub struct Trial {
     /// The alternative.
     pub alternative: Alternative,
-    /// Root mean square of each component of the markers' residuals that would remain, in mm.
+    /// Root mean square of each component that would remain of the sound markers' residuals with their weights, in mm: without outliers
+    /// it is smaller than that of all markers.
     pub residual_rms: f64,
     /// The probability that noise alone makes the misfit fall so much.
     pub probability: f64,

@@ -3,7 +3,7 @@
 //! | column | meaning |
 //! |---|---|
 //! | `x`, `y` | place at rest |
-//! | `ux`, `uy` | displacement |
+//! | `ux`, `uy` (`u`, `v`) | displacement |
 //! | `stretch`, `load_factor`, `factor` | the load factor of a row; a stretch in % is one too |
 //! | `time` | the time of a row, the load factor unless `--time` says otherwise |
 //! | `z`, `uz` | of a sheet that stays flat |
@@ -15,7 +15,12 @@ use crate::error::Error;
 use crate::markers::columns::{self, Names, Units, length, plain};
 use crate::units::{self, Dimension};
 
-const LENGTHS: [Names; 4] = [&["x"], &["y"], &["ux"], &["uy"]];
+const LENGTHS: [Names; 4] = {
+    let ([x, y], [ux, uy]) = (columns::PLACES, columns::DISPLACEMENTS);
+    [x, y, ux, uy]
+};
+const RENAME: &str =
+    "name the columns x [mm], y [mm], ux [mm] and uy [mm] (or u and v), with your own unit";
 const FACTOR: Names = &["stretch", "load_factor", "factor"];
 const TIME: Names = &["time"];
 const NAMES: Names = &["node", "node_id", "marker", "id", "point"];
@@ -75,7 +80,11 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
     };
     let mut lengths = Vec::new();
     for names in LENGTHS {
-        lengths.push(length(table, columns::required(table, names)?, units)?);
+        lengths.push(length(
+            table,
+            columns::required(table, names, RENAME)?,
+            units,
+        )?);
     }
     let choices = choices(table, settings)?;
     let read = lengths.iter().map(|(column, _)| *column);

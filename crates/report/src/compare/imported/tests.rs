@@ -147,18 +147,21 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
 
 #[test]
 fn points_of_a_table_are_compared_where_they_are() {
-    let table =
-        "stretch,X_cm,Y_cm,ux_mm,uy_mm\n0.25,1,0.5,9,9\n0.5,1,0.5,1.1,-0.25\n0.5,2,0.5,2.1,-0.45\n";
-    let imported = ExternalField::read(&written(".csv", table), &SETTINGS).unwrap();
-    let sites = imported.sites(&model([6, 2]).mesh).unwrap();
-    let difference = sites.difference(&model([6, 2])).unwrap();
-    // Off by 0.2 mm at (20, 5) mm alone.
-    assert!((difference.largest - 0.2).abs() < 1e-12 && difference.place == [20.0, 5.0]);
-    let size = (1.1_f64 * 1.1 + 0.25 * 0.25 + 2.1 * 2.1 + 0.45 * 0.45).sqrt();
-    assert!(
-        (difference.percent - 20.0 / size).abs() < 1e-10,
-        "{difference:?}"
-    );
+    for names in ["ux_mm,uy_mm", "U [mm],V [mm]"] {
+        let table = format!(
+            "stretch,X_cm,Y_cm,{names}\n0.25,1,0.5,9,9\n0.5,1,0.5,1.1,-0.25\n0.5,2,0.5,2.1,-0.45\n"
+        );
+        let imported = ExternalField::read(&written(".csv", &table), &SETTINGS).unwrap();
+        let sites = imported.sites(&model([6, 2]).mesh).unwrap();
+        let difference = sites.difference(&model([6, 2])).unwrap();
+        // Off by 0.2 mm at (20, 5) mm alone.
+        assert!((difference.largest - 0.2).abs() < 1e-12 && difference.place == [20.0, 5.0]);
+        let size = (1.1_f64 * 1.1 + 0.25 * 0.25 + 2.1 * 2.1 + 0.45 * 0.45).sqrt();
+        assert!(
+            (difference.percent - 20.0 / size).abs() < 1e-10,
+            "{difference:?}"
+        );
+    }
 }
 
 /// Files that are refused: ending, text, and what is told.

@@ -42,6 +42,12 @@ const ARROW: f64 = 14.0;
 
 const AT_REST: &str = "thin lines: at rest";
 
+/// The height of these words below the axis.
+const KEY_HEIGHT: f64 = 14.0;
+
+/// The least distance of numbers beside the colour bar.
+const APART: f64 = 15.0;
+
 /// Fields on so many triangles at most have contour lines.
 const MOST_CONTOURED: usize = 400_000;
 
@@ -56,8 +62,23 @@ impl FieldFigure {
 
     /// Width and height in points.
     pub(super) fn size(&self, layout: &Layout) -> (u32, u32) {
-        let bottom = layout.panel_top(self.panels.len());
-        (layout.width() as u32, (bottom + AXIS_HEIGHT) as u32)
+        let below = if self.says_below(layout.look) {
+            KEY_HEIGHT
+        } else {
+            0.0
+        };
+        let bottom = layout.panel_top(self.panels.len()) + AXIS_HEIGHT + below;
+        (layout.width() as u32, bottom as u32)
+    }
+
+    /// Whether what thin lines are stands below the axis, as there is no room beside the names of narrow panels.
+    fn says_below(&self, look: Look) -> bool {
+        look.is_narrow() && self.has_rest()
+    }
+
+    fn has_rest(&self) -> bool {
+        let first = self.panels.first();
+        first.is_some_and(|panel| !panel.surface.rest.is_empty())
     }
 
     fn heading(&self, look: Look) -> Heading {
@@ -93,7 +114,7 @@ impl FieldFigure {
                 &panel.label
             };
             pen.write(label, place, look.text(14), HPos::Left)?;
-            if index == 0 && !panel.surface.rest.is_empty() && !look.is_narrow() {
+            if index == 0 && self.has_rest() && !look.is_narrow() {
                 let label = [layout.right(), place[1]];
                 pen.write(AT_REST, label, look.text(12), HPos::Right)?;
             }
@@ -101,6 +122,10 @@ impl FieldFigure {
         }
         let last = self.panels.len().checked_sub(1).ok_or("it has no panels")?;
         layout.draw_length_axis(&pen, last)?;
+        if self.says_below(look) {
+            let y = layout.panel_top(last + 1) + AXIS_HEIGHT;
+            pen.write(AT_REST, [LEFT, y], look.text(12), HPos::Left)?;
+        }
         self.draw_bar(&pen, layout, range)
     }
 
@@ -177,9 +202,14 @@ impl FieldFigure {
         let [top, bottom] = self.bar(layout, range);
         let height = |share: f64| bottom + share * (top - bottom);
         let (ticks, numbers) = ticks([range.low, range.high], self.scale);
+        let mut last = f64::INFINITY;
         for (position, label) in ticks {
             let y = height(range.share(position));
             pen.line(&[[right, y], [right + 4.0, y]])?;
+            if last - y < APART {
+                continue;
+            }
+            last = y;
             pen.write(&label, [right + 8.0, y], pen.look.text(13), HPos::Left)?;
         }
         let mut frame = vec![[left, top], [left, bottom]];

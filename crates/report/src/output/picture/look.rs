@@ -190,10 +190,20 @@ impl Look {
 
     /// The colour of a line as an area has it: mixed with the paper.
     pub fn area(self, colour: [u8; 3]) -> RGBColor {
+        self.mixed(colour, 4)
+    }
+
+    /// The same for an area beside another one of this colour.
+    pub fn darker_area(self, colour: [u8; 3]) -> RGBColor {
+        self.mixed(colour, 2)
+    }
+
+    /// One part in so many of a line's colour, the others of the paper's.
+    fn mixed(self, colour: [u8; 3], parts: i32) -> RGBColor {
         let (line, paper) = (self.line(colour), self.paper());
         let mixed = |line: u8, paper: u8| {
             let (line, paper) = (i32::from(line), i32::from(paper));
-            (paper - (paper - line) / 4) as u8
+            (paper - (paper - line) / parts) as u8
         };
         RGBColor(
             mixed(line.0, paper.0),

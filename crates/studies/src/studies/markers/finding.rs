@@ -18,8 +18,7 @@ pub fn none_of(faults: Vec<Diagnostic>) -> Result<(), Error> {
 /// A finding on one frame: its number, what was found, and what to do, which is the same for all findings of one kind.
 pub type OfFrame = (usize, Found);
 
-/// One doubt of a rule for each kind of findings, in the order of their first ones; of messages that differ in their figures the last stands for
-/// all. `all` are the numbers of the frames in their order.
+/// One doubt of a rule for each kind of findings, in the order of their first ones; messages that differ in their figures become one with their ranges. `all` are the numbers of the frames in their order.
 pub fn once(
     all: &[usize],
     rule: &'static str,
@@ -37,21 +36,49 @@ pub fn once(
 }
 
 fn together(all: &[usize], kind: &[OfFrame]) -> Option<Found> {
-    let (frame, (message, remedy)) = kind.last()?;
+    let (frame, (last, remedy)) = kind.last()?;
     let numbers: Vec<usize> = kind.iter().map(|(frame, _)| *frame).collect();
-    let differs = kind.iter().any(|(_, (other, _))| other != message);
-    let example = differs.then(|| format!(", as frame {frame}"));
     let frames = if numbers.len() == 1 {
         "frame"
     } else {
         "frames"
     };
-    let message = format!(
-        "{frames} {}{}: {message}",
-        runs(all, &numbers),
-        example.unwrap_or_default()
-    );
+    let messages: Vec<&str> = kind.iter().map(|(_, (message, _))| &**message).collect();
+    let numbers = runs(all, &numbers);
+    let message = match with_ranges(&messages) {
+        Some(message) => format!("{frames} {numbers}: {message}"),
+        None => format!("{frames} {numbers}, as frame {frame}: {last}"),
+    };
     Some((message, remedy.clone()))
+}
+
+/// Messages that differ in numbers alone as one: `7 to 10 markers` of `10 markers` and `7 markers`.
+fn with_ranges(messages: &[&str]) -> Option<String> {
+    let first: Vec<&str> = messages.first()?.split(' ').collect();
+    let all = messages.iter().map(|message| message.split(' ').collect());
+    let all: Vec<Vec<&str>> = all.collect();
+    if all.iter().any(|words| words.len() != first.len()) {
+        return None;
+    }
+    let word = |place: usize| range(&all.iter().map(|words| words[place]).collect::<Vec<_>>());
+    let words: Option<Vec<String>> = (0..first.len()).map(word).collect();
+    Some(words?.join(" "))
+}
+
+/// One word for several: the same, or numbers with the same mark behind them from the smallest to the largest.
+fn range(words: &[&str]) -> Option<String> {
+    let first = words.first()?;
+    if words.iter().all(|word| word == first) {
+        return Some((*first).to_owned());
+    }
+    let mark = first.trim_start_matches(|letter: char| !",;:)".contains(letter));
+    let number = |word: &&str| {
+        let text = word.strip_suffix(mark)?.to_owned();
+        Some((text.parse::<f64>().ok()?, text))
+    };
+    let mut numbers: Vec<(f64, String)> = words.iter().map(number).collect::<Option<_>>()?;
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Some(format!("{} to {}{mark}", numbers[0].1, numbers.last()?.1))
 }
 
 /// Some of all numbers, those that follow each other in one: `4`, `4, 9`, `4 to 34`.
@@ -88,17 +115,23 @@ mod tests {
     }
 
     #[test]
-    fn kinds_keep_their_order_and_of_figures_that_differ_the_last_ones_stand_for_all() {
+    fn kinds_keep_their_order_and_figures_that_differ_become_ranges() {
         let messages = vec![
-            finding(10, "p = 1e-9", "a"),
-            finding(30, "p = 1e-7", "a"),
+            finding(10, "p = 1e-9, 8 of 9", "a"),
+            finding(30, "p = 1e-7, 10 of 9", "a"),
             finding(20, "lost", ""),
+            finding(20, "near left", "b"),
+            finding(40, "near right", "b"),
         ];
         let warnings = once(&[10, 20, 30, 40], "lost", messages.into_iter());
         let messages: Vec<&str> = warnings.iter().map(|one| one.message.as_str()).collect();
         assert_eq!(
             messages,
-            ["frames 10, 30, as frame 30: p = 1e-7", "frame 20: lost"]
+            [
+                "frames 10, 30: p = 1e-9 to 1e-7, 8 to 10 of 9",
+                "frame 20: lost",
+                "frames 20, 40, as frame 40: near right"
+            ]
         );
         assert!(warnings[1].remedy.is_empty());
     }

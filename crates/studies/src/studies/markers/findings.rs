@@ -6,7 +6,7 @@ use super::MarkerStudy;
 use super::finding::once;
 use super::gross_errors::has_many;
 use super::quantities::{outliers, used};
-use super::verdict::reasons;
+use super::verdict::{other_gap, reasons};
 use crate::estimation::{Answer, FieldEstimate, ForceCheck, RegressedLaw, Robust};
 use crate::results::{BESIDE_CORNERS, Finding, Stretches, small_strain};
 use crate::statistics::small_probability;
@@ -24,9 +24,7 @@ type Rule = (
 /// The rules by their names that each frame is checked by, the likeliest cause of others first.
 const RULES: [Rule; 9] = [
     ("unknown-edge", unknown_edge),
-    ("contradicted-edges", |_, estimate| {
-        contradicted_edges(estimate)
-    }),
+    ("contradicted-edges", contradicted_edges),
     ("contradicted-force", |_, estimate| {
         contradicted_force(estimate)
     }),
@@ -124,7 +122,7 @@ fn unknown_edge(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> 
     })
 }
 
-fn contradicted_edges(estimate: &FieldEstimate) -> Option<Doubt> {
+fn contradicted_edges(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let contradiction = estimate.contradiction.as_ref()?;
     let names = contradiction.edges.iter().map(|(name, _)| name.as_str());
     let mut names = names.collect::<Vec<_>>().join(", ");
@@ -135,10 +133,15 @@ fn contradicted_edges(estimate: &FieldEstimate) -> Option<Doubt> {
         "the data contradict the stated condition on {names}: releasing it reduces the misfit by an amount that noise alone would reach with probability {}",
         small_probability(contradiction.probability)
     );
-    Some((
-        message,
-        "give an edge that lies inside the specimen the condition \"unknown\", not rigid or free; otherwise the law or the thickness is wrong",
-    ))
+    let first = estimate.verdict.trials.first();
+    let is_misplaced = first.is_some_and(|trial| other_gap(study, &trial.alternative).is_some());
+    let remedy = if is_misplaced {
+        "check --edge-gap (edge_gap), the distance from the outermost markers to the specimen's edge: another one explains more than any other \
+         alternative, as listed below"
+    } else {
+        "give an edge that lies inside the specimen the condition \"unknown\", not rigid or free; otherwise the law or the thickness is wrong"
+    };
+    Some((message, remedy))
 }
 
 /// The measured force that is farthest from that of the field.

@@ -4,6 +4,9 @@
 //! AIC = 2 n ln r + 2 p        r of n values, p parameters: by less than this the markers would not choose
 //! ```
 //!
+//! A nearly uniform field leaves the same residual whatever it was written as: loads on all edges hold any uniform strain. There the
+//! edges tell the mistake: with it undone, some are free that the field as written refuses, as hardly one of all biaxial tests would do.
+//!
 //! Only fields whose misfit is more than their noise, or in which no edge is free where the data may choose, are tried, in the one frame
 //! that moves most: a mistake is that of a file.
 
@@ -116,12 +119,9 @@ impl MarkerStudy {
         let (mistake, meant) = self.likeliest(frame, Some(estimate))?;
         let (seems, hint) = mistake.words();
         let message = format!(
-            "frame {}: the field seems to be {seems}: with this undone it leaves a residual of {} mm with {:.1} parameters, instead of {} mm with {:.1}",
+            "frame {}: the field seems to be {seems}: with this undone {}",
             frame.number,
-            decimals(residual_rms(&meant), 4),
-            meant.effective_parameters,
-            decimals(residual_rms(estimate), 4),
-            estimate.effective_parameters,
+            evidence(&meant, estimate)
         );
         Some(Diagnostic::warning("", message).hint(hint))
     }
@@ -167,6 +167,21 @@ fn may_be_mistaken(estimate: &FieldEstimate) -> bool {
     !has_free_edge(estimate) || (!estimate.is_explained() && is_far)
 }
 
+/// What speaks for a mistake: the misfit that it explains, or the edges that become free.
+fn evidence(meant: &FieldEstimate, written: &FieldEstimate) -> String {
+    if criterion(written) - criterion(meant) <= SURE {
+        let freed = freed(meant, written).collect::<Vec<_>>().join(", ");
+        return format!("it is explained with free edges ({freed}), instead of loads on all edges");
+    }
+    format!(
+        "it leaves a residual of {} mm with {:.1} parameters, instead of {} mm with {:.1}",
+        decimals(residual_rms(meant), 4),
+        meant.effective_parameters,
+        decimals(residual_rms(written), 4),
+        written.effective_parameters,
+    )
+}
+
 /// Whether a field is explained, with a free edge where the data may choose.
 fn is_natural(estimate: &FieldEstimate) -> bool {
     estimate.is_explained() && has_free_edge(estimate)
@@ -183,17 +198,125 @@ fn has_free_edge(estimate: &FieldEstimate) -> bool {
     chosen.peek().is_none() || chosen.any(|is_free| is_free)
 }
 
+/// The edges that are free in the field that may have been meant, and that the one that was written surely refuses as free ones.
+fn freed<'a>(meant: &'a FieldEstimate, written: &FieldEstimate) -> impl Iterator<Item = &'a str> {
+    let surely = (-SURE / 2.0).exp();
+    let both = meant.edges.iter().zip(&written.edges);
+    let freed = both.filter(move |(meant, written)| {
+        let refused = written.condition != EdgeCondition::Free;
+        let is_sure = written.probability.is_some_and(|own| own < surely);
+        meant.condition == EdgeCondition::Free && refused && is_sure
+    });
+    freed.map(|(edge, _)| &*edge.edge)
+}
+
 /// Whether the field that may have been meant is far more probable than the one that was written.
 fn is_nearer(meant: &FieldEstimate, written: Option<&FieldEstimate>) -> bool {
     let Some(written) = written else {
         return is_natural(meant);
     };
     let nearer = NEARER * residual_rms(meant) < residual_rms(written);
-    criterion(written) - criterion(meant) > SURE && (nearer || is_natural(meant))
+    let is_sure = criterion(written) - criterion(meant) > SURE;
+    let frees = !has_free_edge(written) && freed(meant, written).next().is_some();
+    (is_sure && (nearer || is_natural(meant))) || (frees && is_natural(meant))
 }
 
 /// Akaike's criterion.
 fn criterion(estimate: &FieldEstimate) -> f64 {
     let values = 2.0 * used(estimate) as f64;
     2.0 * values * residual_rms(estimate).ln() + 2.0 * estimate.effective_parameters
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::budget::Budget;
+    use crate::estimation::Answer;
+    use crate::markers::ReadSettings;
+    use crate::mesh::CellShape;
+    use crate::studies::markers::{Conditions, MeshSource, Request};
+
+    /// What is said of a strip of 60 mm × 20 mm with these stretches, written with a mistake or none, and the answer.
+    fn told([x, y]: [f64; 2], noise: f64, mistake: Option<Mistake>) -> (Option<String>, Answer) {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut drawn =
+            || -> f64 { noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };
+        let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
+        for place in (0..13 * 5).map(|k| [5.0 * f64::from(k / 5), 5.0 * f64::from(k % 5)]) {
+            let [ux, uy] = [
+                (x - 1.0) * place[0] + drawn(),
+                (y - 1.0) * place[1] + drawn(),
+            ];
+            let [ux, uy] = match mistake {
+                None => [ux, uy],
+                Some(Mistake::FinalPositions) => [place[0] + ux, place[1] + uy],
+                Some(Mistake::Reversed) => [-ux, -uy],
+                Some(Mistake::Exchanged) => [uy, ux],
+                Some(Mistake::Mirrored(0)) => [-ux, uy],
+                Some(Mistake::Mirrored(_)) => [ux, -uy],
+            };
+            writeln!(table, "{},{},{ux},{uy}", place[0], place[1]).unwrap();
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("strip.csv");
+        std::fs::write(&file, table).unwrap();
+        let request = Request {
+            files: vec![file],
+            reading: ReadSettings::default(),
+            material: "neo-hooke".to_owned(),
+            thickness: 1.0,
+            mesh: MeshSource::Data,
+            cell_size: Some(5.0),
+            shape: CellShape::Quad8,
+            holes: false,
+            conditions: Conditions::default(),
+            forces: None,
+            budget: Budget::USUAL,
+        };
+        let mut study = MarkerStudy::prepare(request).unwrap();
+        match study.estimate(&|_| ()) {
+            Ok(estimates) => {
+                let doubt = study.mistake.map(|mistake| mistake.message);
+                (doubt, estimates[0].verdict.answer)
+            }
+            Err(fault) => (Some(fault.to_string()), Answer::NotExplained),
+        }
+    }
+
+    /// Loads on all edges hold any uniform strain, so that the misfit is noise whatever the file holds.
+    #[test]
+    fn a_mistake_in_a_uniform_field_is_named_by_the_edges_that_it_frees() {
+        let stretches = [1.05, 1.2, 1.6].into_par_iter();
+        stretches.for_each(|stretch: f64| {
+            for noise in [0.0, 0.005] {
+                let free = [stretch, stretch.sqrt().recip()];
+                for mistake in Mistake::ALL {
+                    let (doubt, answer) = told(free, noise, Some(mistake));
+                    let case = format!("{mistake:?} {stretch} {noise}: {doubt:?}");
+                    assert_eq!(answer, Answer::NotExplained, "{case}");
+                    assert!(doubt.unwrap().contains(&mistake.words().0), "{case}");
+                }
+                let (doubt, answer) = told(free, noise, None);
+                assert_ne!(answer, Answer::NotExplained);
+                assert_eq!(doubt, None, "{stretch} {noise}");
+            }
+        });
+    }
+
+    #[test]
+    fn a_strip_that_is_pulled_along_both_axes_holds_no_mistake() {
+        for stretches in [[1.3, 1.1], [1.2, 1.2], [1.3, 1.0], [1.1, 1.02]] {
+            for noise in [0.0, 0.02] {
+                let (doubt, answer) = told(stretches, noise, None);
+                assert_eq!(doubt, None, "{stretches:?} {noise}");
+                assert_ne!(answer, Answer::NotExplained, "{stretches:?} {noise}");
+            }
+        }
+    }
 }

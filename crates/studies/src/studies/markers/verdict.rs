@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 
 use super::MarkerStudy;
-use crate::estimation::{Answer, FieldEstimate, NoiseCorrelation, Reason, Trial, Verdict};
+use crate::estimation::{
+    Alternative, Answer, FieldEstimate, MovedPart, NoiseCorrelation, Reason, Trial, Verdict,
+};
 use crate::markers::Frame;
 use crate::results::{Block, Table};
 use crate::statistics::extremes;
@@ -73,14 +75,18 @@ pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
         lines.push(words.to_owned());
     }
     lines.extend(finer_mesh(study, &estimate.verdict));
+    let left = estimate.verdict.residual_rms.filter(|_| !trials.is_empty());
+    lines.extend(left.map(|left| {
+        format!(
+            "without outliers the residual is {} mm; in one linearised step it would be",
+            decimals(left, 5)
+        )
+    }));
     lines.extend(trials.iter().take(SHOWN).map(|trial| {
-        let words = trial.alternative.words();
-        match residual(trial) {
-            Some(residual) => {
-                format!("one linearised step with {words}: the residual would be {residual} mm")
-            }
-            None => format!("one linearised step with {words}"),
-        }
+        let words = trial_words(study, trial);
+        residual(trial.residual_rms).map_or(format!("with {words}"), |residual| {
+            format!("{residual} mm with {words}")
+        })
     }));
     lines
 }
@@ -136,12 +142,31 @@ pub(super) fn reasons(verdict: &Verdict) -> Vec<String> {
     verdict.reasons.iter().copied().map(Reason::words).collect()
 }
 
-/// The residual that an alternative would leave, in mm.
-fn residual(trial: &Trial) -> Option<String> {
-    trial
-        .residual_rms
-        .is_finite()
-        .then(|| decimals(trial.residual_rms, 5))
+/// A residual that is known, in mm.
+fn residual(left: f64) -> Option<String> {
+    left.is_finite().then(|| decimals(left, 5))
+}
+
+/// An alternative in words; an outline made from markers is moved by their distance from the edge.
+fn trial_words(study: &MarkerStudy, trial: &Trial) -> String {
+    let words = trial.alternative.words();
+    match other_gap(study, &trial.alternative) {
+        Some(gap) => format!("{words} (about --edge-gap \"{gap} mm\")"),
+        None => words,
+    }
+}
+
+/// The distance of the outermost markers from the edge to state instead, where an alternative is that of another one.
+pub(super) fn other_gap(study: &MarkerStudy, alternative: &Alternative) -> Option<String> {
+    let Alternative::MovedEdge {
+        part: MovedPart::Outline,
+        outwards,
+    } = alternative
+    else {
+        return None;
+    };
+    let stated = study.conditions.edge_gap.or(study.unknown_gap.map(|_| 0.0));
+    stated.map(|gap| format!("{:.1}", (gap + outwards).max(0.0)))
 }
 
 const EXPLANATION: &str = "Explained: the residuals of the markers are white noise. Explained with correlated noise: they correlate \
@@ -191,11 +216,24 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
              noise alone reducing the misfit by as much.",
             frame.number
         )));
-        let trials = Table::of(&estimate.verdict.trials)
-            .column("alternative", |trial| trial.alternative.words())
-            .column("residual [mm]", |trial| residual(trial).unwrap_or_default())
-            .column("probability", |trial| format!("{:.1e}", trial.probability));
-        blocks.push(trials.block());
+        let as_it_is = estimate
+            .verdict
+            .residual_rms
+            .map(|left| ["as it is".to_owned(), decimals(left, 5), String::new()]);
+        let trials = estimate.verdict.trials.iter().map(|trial| {
+            [
+                trial_words(study, trial),
+                residual(trial.residual_rms).unwrap_or_default(),
+                format!("{:.1e}", trial.probability),
+            ]
+        });
+        let table = Table::of(as_it_is.into_iter().chain(trials))
+            .column("alternative", |[words, ..]| words.clone())
+            .column("residual without outliers [mm]", |[_, left, _]| {
+                left.clone()
+            })
+            .column("probability", |[.., probability]| probability.clone());
+        blocks.push(table.block());
         blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));
     }
     blocks
@@ -220,6 +258,7 @@ pub fn json(estimate: &FieldEstimate) -> Value {
         "evidence_of_correlation": verdict.correlation.map(|one| one.evidence),
         "reasons": reasons(verdict),
         "mends": trials.collect::<Vec<_>>(),
+        "left_without_outliers_mm": verdict.residual_rms,
         "worst": worst.map(|worst| json!({ "place_mm": worst.place, "misfit_mm": worst.misfit })),
         "stated_noise_is_off_by": estimate.noise_ratio,
     })

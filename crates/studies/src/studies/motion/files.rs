@@ -210,7 +210,7 @@ fn energy(model: &ModelMotion) -> LineChart {
         let points = model.points(|now| [now.time, part(&now.energy)]);
         Line::new(*name, points, colour, Stroke::Solid)
     });
-    let title = format!("Energies of the {}", model.style().name);
+    let title = format!("Energies of the {}", model.style().in_words());
     chart(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 

@@ -87,6 +87,17 @@ pub struct MovingSheet {
 }
 
 impl MovingSheet {
+    /// The sheet, its material, the duration and the models in a line.
+    pub fn describe(&self) -> String {
+        let corrected = if self.is_corrected { "corrected, " } else { "" };
+        format!(
+            "{}; {} s, an instant every {} s; mass-spring, {corrected}finite elements",
+            self.specimen.describe_sheet(),
+            self.time.duration,
+            self.time.interval,
+        )
+    }
+
     /// The length of the first longitudinal wave over that of the sheet: a quarter of a wave where one end is released, else a half.
     pub(super) fn bar_waves(&self) -> u32 {
         match self.drive.release {

@@ -35,8 +35,8 @@ pub fn figures(
     let last = shown(models);
     let steps = specimen.pictures.shown.steps(&specimen.factors, last);
     let mut figures: Vec<Figure> = steps
-        .into_iter()
-        .flat_map(|step| fields(specimen, models, step))
+        .iter()
+        .flat_map(|step| fields(specimen, models, *step))
         .collect();
     figures.extend(displacement_over_factors(specimen, models).map(|drawing| {
         let what = models.reference.measured.describe();
@@ -66,14 +66,8 @@ pub fn figures(
     let lattice = &models.on_lattice.springs.mesh;
     let cells = mesh_outlines("Lattice", lattice);
     figures.push(figure("mesh", "The cells of the lattice.".into(), cells));
-    figures.extend(last.and_then(|step| {
-        let at = specimen.along.describe(specimen.factors[step]);
-        let drawing = estimated_error(models, step, &at)?;
-        let caption = format!(
-            "Estimated error of every finite element at {at}, in % of the solution's energy norm."
-        );
-        Some(figure("estimated_error", caption, drawing.into()))
-    }));
+    let errors = steps.iter();
+    figures.extend(errors.filter_map(|step| estimated_error(specimen, models, *step)));
     figures.push(materials(specimen, &figure));
     figures
 }
@@ -97,11 +91,7 @@ fn materials(specimen: &Specimen, figure: &dyn Fn(&str, String, Drawing) -> Figu
 
 /// The fields of all models at one load factor: displacement, stresses and strains, distance to the finite elements.
 fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
-    let number = match specimen.pictures.shown {
-        Shown::Last => String::new(),
-        Shown::All | Shown::At(_) => format!("_{:03}", step + 1),
-    };
-    let file = |field: &str| format!("{}_{field}{number}.png", specimen.name);
+    let file = |field: &str| file(specimen, field, step);
     let at = specimen.along.describe(specimen.factors[step]);
     let series = models.all_series();
     let mut figures = vec![displacement(
@@ -125,6 +115,15 @@ fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
         figures.push(Figure::new(file("error"), caption, distance));
     }
     figures
+}
+
+/// The name of the picture of a field at a load factor, which has a number where several may be shown.
+fn file(specimen: &Specimen, field: &str, step: usize) -> String {
+    let number = match specimen.pictures.shown {
+        Shown::Last => String::new(),
+        Shown::All | Shown::At(_) => format!("_{:03}", step + 1),
+    };
+    format!("{}_{field}{number}.png", specimen.name)
 }
 
 /// The displacement of all models on one colour scale; of a plate the transverse one, in which the models differ.
@@ -226,16 +225,18 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     (!charts.is_empty()).then_some(Drawing::Charts(charts))
 }
 
-fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure> {
+fn estimated_error(specimen: &Specimen, models: &Models, step: usize) -> Option<Figure> {
     let reference = &models.reference;
     let energy = &reference.estimates.get(step)?.as_ref()?.energy;
     let displacement = &reference.finest.states.get(step)?.displacement;
-    Some(FieldFigure::estimated_error(
-        at,
-        &reference.finest.mesh,
-        displacement,
-        energy,
-    ))
+    let at = specimen.along.describe(specimen.factors[step]);
+    let mesh = &reference.finest.mesh;
+    let drawing = FieldFigure::estimated_error(&at, mesh, displacement, energy);
+    let caption = format!(
+        "Estimated error of every finite element at {at}, in % of the solution's energy norm."
+    );
+    let name = file(specimen, "estimated_error", step);
+    Some(Figure::new(name, caption, drawing))
 }
 
 /// The fields of each model, as far as it goes.

@@ -179,12 +179,20 @@ impl Specimen {
     pub fn describe(&self) -> String {
         let models: Vec<&str> = self.models.iter().map(|kind| kind.style().name).collect();
         format!(
-            "{}, {} mm thick, of the {}; {}; {}",
-            self.outline.describe(),
-            self.problem.thickness,
-            self.describe_cards(),
+            "{}; {}; {}",
+            self.describe_sheet(),
             self.along.list(self.factors.iter().copied()),
             models.join(", ")
+        )
+    }
+
+    /// Its shape, thickness and material.
+    pub fn describe_sheet(&self) -> String {
+        format!(
+            "{}, {} mm thick, of the {}",
+            self.outline.describe(),
+            self.problem.thickness,
+            self.describe_cards()
         )
     }
 

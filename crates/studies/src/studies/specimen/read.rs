@@ -21,7 +21,7 @@ mod outline;
 mod supports;
 
 use materials::{Cards, Materials};
-use outline::{Import, SHAPES, read_outline};
+use outline::{Import, SHAPES, read_outline, usual_mesh};
 use supports::SupportsAndLoads;
 
 /// What a study must say of the specimen; cells and lattice have defaults.
@@ -149,10 +149,21 @@ impl<'a> StatedSheet<'a> {
             given,
             ..
         } = self;
-        let (name, mut outline) = (self.name?, self.outline?);
-        if !fits(&section, &outline) || !affords(&section, &mut outline, states, refinement) {
+        let name = self.name?;
+        let fits = |outline: &mut Outline| {
+            fits(&section, outline) && affords(&section, outline, states, refinement)
+        };
+        let outline = self
+            .outline
+            .and_then(|mut outline| fits(&mut outline).then_some(outline));
+        let Some(outline) = outline else {
+            // The groups of a shape do not depend on its measures.
+            if let Some(mesh) = usual_mesh(name) {
+                given.check_groups(&mesh);
+                check_measured(path, group, &mesh);
+            }
             return None;
-        }
+        };
         let mesh = outline.coarse();
         check_elements(root, &outline, &mesh);
         given.check_groups(&mesh);

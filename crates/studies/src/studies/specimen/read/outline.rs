@@ -101,29 +101,50 @@ fn read_mesh(section: &Section, import: &Import) -> Option<(Mesh, Exemptions)> {
     Some((mesh?, reading.allowed))
 }
 
+/// A mesh of a shape with some measures, whose groups are those of all its meshes; `None` for that of a file.
+pub fn usual_mesh(name: &str) -> Option<Mesh> {
+    let usual = |key: &'static str| match key {
+        "length" => 90.0,
+        "width" | "outer_radius" => 30.0,
+        "hole_diameter" | "narrow_width" | "shoulder_length" => 10.0,
+        "narrow_length" | "inner_radius" => 20.0,
+        "angle" => 1.0,
+        _ => 5.0,
+    };
+    let shape = (name != MESH).then(|| shape_of(name, &usual))?;
+    Some(shape.mesh(4, CellShape::Quad4))
+}
+
 fn read_shape(section: &Section, name: &str) -> Shape {
-    let length = |key| section.quantity(key, Dimension::Length, Bound::SIZE);
+    shape_of(name, &|key| match key {
+        "angle" => section.quantity(key, Dimension::Angle, Bound::Positive),
+        key => section.quantity(key, Dimension::Length, Bound::SIZE),
+    })
+}
+
+/// A shape by its measures.
+fn shape_of(name: &str, measure: &dyn Fn(&'static str) -> f64) -> Shape {
     if name == "ring-sector" {
         return Shape::RingSector {
-            radii: [length("inner_radius"), length("outer_radius")],
-            angle: section.quantity("angle", Dimension::Angle, Bound::Positive),
+            radii: [measure("inner_radius"), measure("outer_radius")],
+            angle: measure("angle"),
         };
     }
-    let size = [length("length"), length("width")];
+    let size = [measure("length"), measure("width")];
     match name {
         "strip-with-hole" => Shape::StripWithHole {
             size,
-            radius: 0.5 * length("hole_diameter"),
+            radius: 0.5 * measure("hole_diameter"),
         },
         "notched-strip" => Shape::NotchedStrip {
             size,
-            depth: length("notch_depth"),
-            half_length: 0.5 * length("notch_length"),
+            depth: measure("notch_depth"),
+            half_length: 0.5 * measure("notch_length"),
         },
         "dog-bone" => Shape::DogBone {
             size,
-            narrow: [length("narrow_length"), length("narrow_width")],
-            shoulder: length("shoulder_length"),
+            narrow: [measure("narrow_length"), measure("narrow_width")],
+            shoulder: measure("shoulder_length"),
         },
         _ => Shape::Strip { size },
     }

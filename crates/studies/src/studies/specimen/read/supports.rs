@@ -52,7 +52,9 @@ impl<'a> SupportsAndLoads<'a> {
     pub fn check_groups(&self, mesh: &Mesh) {
         let supports = self.supports.iter().map(|own| (&own.section, &own.group));
         let loads = self.loads.iter().map(|own| (&own.section, &own.group));
-        for (section, group) in supports.chain(loads) {
+        // That one is missing is told already.
+        let stated = supports.chain(loads).filter(|(_, group)| !group.is_empty());
+        for (section, group) in stated {
             let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
             if !known.contains(&group.as_str()) {
                 let message = format!("the specimen has no group `{group}`");
