@@ -10,7 +10,7 @@ use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
 use tempfile::TempDir;
 
-use crate::common::{folder_with, gelbench, machine_report, number, root, words};
+use crate::common::{folder_with, gelbench, machine_report, number, one_line, root, words};
 
 /// Gmsh's file of a strip of 8 × 4 squares of 2 mm, whose cells below and above the middle are `lower` and `upper`; `others` cells in a row are
 /// in no group.
@@ -385,7 +385,7 @@ fn a_card_for_a_region_that_the_mesh_lacks_is_refused() {
     ];
     let message = gelbench(folder.path(), &given).code(2);
     assert!(
-        words(&message.get_output().stderr)
+        one_line(&message.get_output().stderr)
             .contains("no region `uper` help: did you mean `upper`?"),
         "{message:?}"
     );

@@ -7,23 +7,20 @@
 //! ```
 
 use std::path::Path;
-use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::error::{Diagnostic, Error};
 use crate::estimation::{
-    Answer, FieldEstimate, Knowledge, Reason, RegressedLaw, Specimen, UncertainLaw, estimate,
-    name_parts, transfer,
+    Answer, FieldEstimate, Knowledge, Reason, RegressedLaw, UncertainLaw, estimate, name_parts,
+    transfer,
 };
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::softened_law::check_memory;
-use crate::material::{Card, HyperelasticLaw, PlaneState};
+use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
-use crate::problem::LawAndRegions;
-use crate::results::{Finding, locking};
-use crate::studies::card::card_in_plane;
-use crate::studies::regions::{SheetCards, divided, fault_of};
+use crate::results::Finding;
+use crate::studies::regions::SheetCards;
 
 mod alike;
 mod area;
@@ -39,6 +36,7 @@ mod headline;
 pub mod joint;
 mod json;
 mod machine;
+mod materials;
 mod mistakes;
 mod quantities;
 mod reading;
@@ -57,6 +55,8 @@ pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, measured_force};
 use finding::once;
 pub use machine::{ForceColumn, FrameForces};
+pub use materials::in_plane;
+use materials::{check_regions, of_divided, of_materials};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
 use specimen_mesh::{SpecimenMesh, mesh};
@@ -100,56 +100,6 @@ pub struct MarkerStudy {
     pub unknown_gap: Option<f64>,
 }
 
-/// The warnings about cards on a mesh, each once.
-fn of_materials(cards: SheetCards, mesh: &Mesh) -> Vec<Diagnostic> {
-    let mut all: Vec<Diagnostic> = Vec::new();
-    for card in cards.all() {
-        let left_out = card.viscosity.left_out();
-        let left_out = left_out.map(|left_out| {
-            Diagnostic::warning("", left_out)
-                .hint("use a card fitted to tests at the rate of this experiment")
-        });
-        let warnings = card.warnings().into_iter();
-        let warnings = warnings.chain(too_stiff(&*card.law, mesh)).chain(left_out);
-        for warning in warnings {
-            if !all.contains(&warning) {
-                all.push(warning);
-            }
-        }
-    }
-    all
-}
-
-/// Whether a mesh has the regions that have cards of their own.
-///
-/// # Errors
-/// [`Error::Input`] with every one that it has not.
-fn check_regions(regions: &[(String, Card)], mesh: &Mesh) -> Result<(), Error> {
-    let names: Vec<&str> = regions.iter().map(|(name, _)| &**name).collect();
-    let faults = names.iter().enumerate().filter_map(|(index, name)| {
-        let (message, hint) = fault_of(name, &names[..index], mesh)?;
-        Some(Diagnostic::error("", message).hint(hint))
-    });
-    finding::none_of(faults.collect())
-}
-
-/// The warning about parts of a mesh of which none has a card of its own.
-fn of_divided(regions: &[(String, Card)], mesh: &Mesh) -> Option<Diagnostic> {
-    let parts = divided(mesh).filter(|_| regions.is_empty())?;
-    let message =
-        format!("the cells of the mesh are divided into {parts}: all of them get the one card");
-    let hint = "give a part that has another material its own card: --region NAME=CARD, or [[material]] in the file of --study";
-    Some(Diagnostic::warning("", message).hint(hint))
-}
-
-/// The warning about a mesh whose cells lock.
-fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
-    let reason = locking::reason(law).filter(|_| locking::locks(mesh))?;
-    let message = format!("{reason}: stresses are too large");
-    let hint = "use quadratic cells, such as `--cells triangle6`";
-    Some(Diagnostic::warning("", message).hint(hint))
-}
-
 /// The doubts about an outline and about a thickness.
 fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Finding> {
     let outline = outline
@@ -160,15 +110,6 @@ fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Fi
         Finding::doubt(rule, (doubt.message, doubt.hint.unwrap_or_default()))
     };
     all.map(doubt).collect()
-}
-
-/// The card in the plane state that is stated, else in its own.
-///
-/// # Errors
-/// [`Error::Input`] where it has no stress in it.
-pub fn in_plane(card: Card, stated: Option<PlaneState>) -> Result<Card, Error> {
-    let plane = stated.unwrap_or(card.law.plane_state());
-    card_in_plane(card, plane).map_err(|fault| Error::Input(vec![fault]))
 }
 
 impl MarkerStudy {
@@ -256,40 +197,6 @@ impl MarkerStudy {
             mistake: None,
             unknown_gap,
         })
-    }
-
-    /// The cards of the cells.
-    pub fn cards(&self) -> SheetCards<'_> {
-        SheetCards {
-            card: &self.card,
-            regions: &self.regions,
-        }
-    }
-
-    /// The law that an estimate has found, else that of the card.
-    fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
-        match &self.regressed {
-            Some(regressed) if !estimate.parameters.is_empty() => {
-                let values = estimate.parameters.iter().map(|(.., found)| found.value);
-                regressed.at(&values.collect::<Vec<_>>())
-            }
-            _ => Arc::clone(&self.card.law),
-        }
-    }
-
-    /// The laws of the sheet, with that which an estimate has found.
-    pub fn laws(&self, estimate: &FieldEstimate) -> LawAndRegions {
-        let (_, regions) = self.cards().laws();
-        (self.law(estimate), regions)
-    }
-
-    /// The sheet as it is estimated.
-    pub(super) fn specimen(&self) -> Specimen<'_> {
-        Specimen {
-            mesh: &self.mesh,
-            laws: self.cards().in_cells(&self.mesh),
-            thickness: self.thickness,
-        }
     }
 
     /// The frames with their estimates.
