@@ -221,10 +221,14 @@ fn is_nearer(meant: &FieldEstimate, written: Option<&FieldEstimate>) -> bool {
     (is_sure && (nearer || is_natural(meant))) || (frees && is_natural(meant))
 }
 
-/// Akaike's criterion.
+/// Akaike's criterion. Residuals that are rounding of the displacements are alike.
 fn criterion(estimate: &FieldEstimate) -> f64 {
+    const ROUNDING: f64 = 1e-6;
+    let displacements = estimate.displacement.iter();
+    let largest = displacements.fold(0.0, |most: f64, u| most.max(u.abs()));
+    let residual = residual_rms(estimate).max(ROUNDING * largest);
     let values = 2.0 * used(estimate) as f64;
-    2.0 * values * residual_rms(estimate).ln() + 2.0 * estimate.effective_parameters
+    2.0 * values * residual.ln() + 2.0 * estimate.effective_parameters
 }
 
 #[cfg(test)]
