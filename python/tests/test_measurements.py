@@ -213,3 +213,32 @@ def test_parameters_that_are_found_with_a_field_are_told(root):
     found = one.parameters["c10"]
     assert found.unit == "MPa" and 0.01 < found.value < 1.0
     assert listed.parameters["c10"] == found
+
+
+def test_regions_have_materials_of_their_own(tmp_path):
+    mesh = tmp_path / "strip.msh"
+    mesh.write_text(strip_of_two_parts())
+    places = np.array([(x, y) for x in np.linspace(0, 16, 33) for y in np.linspace(0, 8, 17)])
+    noise = 0.001 * np.random.default_rng(1).standard_normal(places.shape)
+    moved = places * (0.4, 1.4**-0.5 - 1) + noise
+    soft, stiff = (gb.Material.from_card(name) for name in ("neo-hooke", "meunier-yeoh"))
+    found = gb.correct(
+        np.hstack([places, moved]), soft, 0.5, mesh=mesh, free=["bottom", "top"], regions={"upper": stiff}
+    )
+    expected = 0.5 * 4 * sum(one.stress(np.array([1.4]))[0] for one in (soft, stiff))
+    assert found.forces["right"][0].value == pytest.approx(expected, rel=2e-3)
+    with pytest.raises(gb.InputError, match="no region `inclusion`"):
+        gb.correct(np.hstack([places, moved]), soft, 0.5, mesh=mesh, regions={"inclusion": stiff})
+
+
+def strip_of_two_parts():
+    """Gmsh's file of 8 × 4 squares of 2 mm, whose lower and upper half are regions."""
+    nodes = [f"{5 * i + j + 1} {2 * i} {2 * j} 0" for i in range(9) for j in range(5)]
+    cells = [
+        f"{4 * i + j + 1} 3 2 {1 if j < 2 else 2} 1 {5 * i + j + 1} {5 * i + j + 6} {5 * i + j + 7} {5 * i + j + 2}"
+        for i in range(8)
+        for j in range(4)
+    ]
+    names = ["2", '2 1 "lower"', '2 2 "upper"']
+    parts = {"MeshFormat": ["2.2 0 8"], "PhysicalNames": names, "Nodes": ["45", *nodes], "Elements": ["32", *cells]}
+    return "".join("\n".join([f"${name}", *lines, f"$End{name}", ""]) for name, lines in parts.items())
