@@ -67,11 +67,11 @@ pub fn judge(
     own: Option<&MeshError>,
 ) -> Result<Judgement, Error> {
     let all = released(found, edges, &|_| true);
-    let weights = &found.observations().weights;
-    let sound = match &all {
-        Some(all) => soundness(weights, &all.fit, &all.variances),
-        None => soundness(weights, &found.fit, &found.variances),
+    let (fit, variances) = match &all {
+        Some(all) => (&all.fit, &all.variances),
+        None => (&found.fit, &found.variances),
     };
+    let sound = soundness(&found.observations().weights, fit, variances);
     let Some(rows) = Rows::new(found, &sound, own) else {
         return Ok(Judgement::default());
     };
@@ -86,12 +86,10 @@ pub fn judge(
         rows: &rows,
         base: &base,
     };
-    let mut trials: Vec<Trial> = columns
-        .iter()
-        .map(|(alternative, design)| {
-            basis.try_out(found, alternative.clone(), &base.with(&rows, [design]))
-        })
-        .collect();
+    let trials = columns.iter().map(|(alternative, design)| {
+        basis.try_out(found, alternative.clone(), &base.with(&rows, [design]))
+    });
+    let mut trials: Vec<Trial> = trials.collect();
     let together = all
         .as_ref()
         .map(|model| basis.try_out(found, Alternative::Edges, model));
@@ -101,28 +99,15 @@ pub fn judge(
     let against = improvement(trials.iter().chain(&together), level);
     let mut contradiction = None;
     if against.is_some() {
-        let each = basis.edge_by_edge(found, edges, &granted);
-        contradiction = contradicted(together.as_ref(), &each, level);
-        let first = contradiction.iter().find_map(|all| all.edges.first());
-        if let Some((name, _)) = first {
-            trials.extend(basis.other_conditions(found, edges, &granted, name));
-        }
-        trials.extend(together.filter(|_| each.len() > 1));
-        trials.extend(each);
-        let moved = found.moved_edges(edges)?.into_iter();
-        trials.extend(moved.filter_map(|edge| basis.moved(found, edge)));
+        let (of_edges, contradicted) = basis.of_edges(found, edges, &granted, (together, level))?;
+        trials.extend(of_edges);
+        contradiction = contradicted;
     }
     // An alternative that hardly changes the misfit explains nothing.
     let residual_rms = base.residual_rms(&rows, found);
     trials.retain(|trial| trial.residual_rms < EXPLAINS * residual_rms);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    // Evidence against the equations counts most, then that there can be none.
-    let answer = match (against, few, correlation) {
-        (Some(_), ..) => Answer::NotExplained,
-        (None, Some(_), _) => Answer::Undecided,
-        (None, None, Some(_)) => Answer::Correlated,
-        (None, None, None) => Answer::Explained,
-    };
+    let answer = answer(against, few, correlation);
     if answer != Answer::Undecided {
         noises.truncate(1);
     }
@@ -141,6 +126,20 @@ pub fn judge(
     })
 }
 
+/// Evidence against the equations counts most, then that there can be none.
+fn answer(
+    against: Option<Reason>,
+    few: Option<Reason>,
+    correlation: Option<NoiseCorrelation>,
+) -> Answer {
+    match (against, few, correlation) {
+        (Some(_), ..) => Answer::NotExplained,
+        (None, Some(_), _) => Answer::Undecided,
+        (None, None, Some(_)) => Answer::Correlated,
+        (None, None, None) => Answer::Explained,
+    }
+}
+
 /// The basis on which alternatives are tried.
 struct Basis<'a> {
     rows: &'a Rows,
@@ -149,6 +148,28 @@ struct Basis<'a> {
 }
 
 impl Basis<'_> {
+    /// What edges explain, released one by one, with other conditions, or elsewhere; and the stated conditions that are contradicted at a level,
+    /// beside the trial with all edges released.
+    fn of_edges(
+        &self,
+        found: &mut NearestField,
+        edges: &[Edge],
+        granted: &[Granted],
+        (together, level): (Option<Trial>, f64),
+    ) -> Result<(Vec<Trial>, Option<Contradiction>), Error> {
+        let each = self.edge_by_edge(found, edges, granted);
+        let contradiction = contradicted(together.as_ref(), &each, level);
+        let mut trials: Vec<Trial> = together.filter(|_| each.len() > 1).into_iter().collect();
+        let first = contradiction.iter().find_map(|all| all.edges.first());
+        if let Some((name, _)) = first {
+            trials.extend(self.other_conditions(found, edges, granted, name));
+        }
+        trials.extend(each);
+        let moved = found.moved_edges(edges)?.into_iter();
+        trials.extend(moved.filter_map(|edge| self.moved(found, edge)));
+        Ok((trials, contradiction))
+    }
+
     fn try_out(&self, found: &NearestField, alternative: Alternative, model: &Model) -> Trial {
         Trial {
             residual_rms: model.residual_rms(self.rows, found),

@@ -16,11 +16,9 @@ use crate::estimation::{
     transfer,
 };
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
-use crate::material::softened_law::check_memory;
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::results::Finding;
-use crate::studies::regions::SheetCards;
 
 mod alike;
 mod area;
@@ -43,6 +41,7 @@ mod reading;
 mod refined;
 mod report;
 mod request;
+mod sheet;
 mod specimen_file;
 mod specimen_mesh;
 mod stated_conditions;
@@ -100,6 +99,12 @@ pub struct MarkerStudy {
     pub unknown_gap: Option<f64>,
 }
 
+/// The warning about so many markers outside of the mesh.
+fn of_outside(markers: usize) -> Option<Diagnostic> {
+    let message = format!("markers outside the mesh: {markers}");
+    (markers > 0).then(|| Diagnostic::warning("", message).hint("they are left out"))
+}
+
 /// The doubts about an outline and about a thickness.
 fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Finding> {
     let outline = outline
@@ -127,18 +132,7 @@ impl MarkerStudy {
     /// # Errors
     /// As [`Self::prepare`].
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
-        let on = request.conditions.sheet;
-        let card = in_plane(card, on)?;
-        let regions = std::mem::take(&mut request.conditions.regions).into_iter();
-        let regions = regions.map(|(region, card)| Ok((region, in_plane(card, on)?)));
-        let regions: Vec<(String, Card)> = regions.collect::<Result<_, Error>>()?;
-        let cards = SheetCards {
-            card: &card,
-            regions: &regions,
-        };
-        for card in cards.all() {
-            check_memory(&*card.law, "a correction of measured fields")?;
-        }
+        let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
         let mut field = read(&request.files, &request.reading)?;
         let told = request
             .conditions
@@ -171,11 +165,8 @@ impl MarkerStudy {
         }
         let forces = &request.conditions.forces;
         force_signs::check(forces, &placed.series, &mesh, &*card.law)?;
-        if placed.outside > 0 {
-            let message = format!("markers outside the mesh: {}", placed.outside);
-            warnings.push(Diagnostic::warning("", message).hint("they are left out"));
-        }
-        warnings.extend(of_materials(cards, &mesh));
+        warnings.extend(of_outside(placed.outside));
+        warnings.extend(of_materials(&card, &regions, &mesh));
         warnings.extend(of_divided(&regions, &mesh));
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))

@@ -1,14 +1,11 @@
 //! The materials of a sheet whose displacements were measured.
 
-use std::sync::Arc;
-
-use super::MarkerStudy;
+use super::conditions::Conditions;
 use super::finding::none_of;
 use crate::error::{Diagnostic, Error};
-use crate::estimation::{FieldEstimate, Specimen};
+use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
-use crate::problem::LawAndRegions;
 use crate::results::locking;
 use crate::studies::card::card_in_plane;
 use crate::studies::regions::{SheetCards, divided, fault_of};
@@ -22,8 +19,33 @@ pub fn in_plane(card: Card, stated: Option<PlaneState>) -> Result<Card, Error> {
     card_in_plane(card, plane).map_err(|fault| Error::Input(vec![fault]))
 }
 
+/// The card, and those of regions that are taken from the conditions, in the plane state that is stated.
+///
+/// # Errors
+/// As [`in_plane`]; [`Error::Input`] where a material has a memory.
+pub(super) fn in_common_plane(
+    card: Card,
+    conditions: &mut Conditions,
+) -> Result<(Card, Vec<(String, Card)>), Error> {
+    let card_of = |card: Card| {
+        check_memory(&*card.law, "a correction of measured fields")?;
+        in_plane(card, conditions.sheet)
+    };
+    let card = card_of(card)?;
+    let regions = conditions.regions.iter().cloned();
+    let regions = regions.map(|(region, card)| Ok((region, card_of(card)?)));
+    let regions = regions.collect::<Result<_, Error>>()?;
+    conditions.regions.clear();
+    Ok((card, regions))
+}
+
 /// The warnings about cards on a mesh, each once.
-pub(super) fn of_materials(cards: SheetCards, mesh: &Mesh) -> Vec<Diagnostic> {
+pub(super) fn of_materials(
+    card: &Card,
+    regions: &[(String, Card)],
+    mesh: &Mesh,
+) -> Vec<Diagnostic> {
+    let cards = SheetCards { card, regions };
     let mut all: Vec<Diagnostic> = Vec::new();
     for card in cards.all() {
         let left_out = card.viscosity.left_out();
@@ -70,40 +92,4 @@ fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
     let message = format!("{reason}: stresses are too large");
     let hint = "use quadratic cells, such as `--cells triangle6`";
     Some(Diagnostic::warning("", message).hint(hint))
-}
-
-impl MarkerStudy {
-    /// The cards of the cells.
-    pub fn cards(&self) -> SheetCards<'_> {
-        SheetCards {
-            card: &self.card,
-            regions: &self.regions,
-        }
-    }
-
-    /// The law that an estimate has found, else that of the card.
-    fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
-        match &self.regressed {
-            Some(regressed) if !estimate.parameters.is_empty() => {
-                let values = estimate.parameters.iter().map(|(.., found)| found.value);
-                regressed.at(&values.collect::<Vec<_>>())
-            }
-            _ => Arc::clone(&self.card.law),
-        }
-    }
-
-    /// The laws of the sheet, with that which an estimate has found.
-    pub fn laws(&self, estimate: &FieldEstimate) -> LawAndRegions {
-        let (_, regions) = self.cards().laws();
-        (self.law(estimate), regions)
-    }
-
-    /// The sheet as it is estimated.
-    pub(super) fn specimen(&self) -> Specimen<'_> {
-        Specimen {
-            mesh: &self.mesh,
-            laws: self.cards().in_cells(&self.mesh),
-            thickness: self.thickness,
-        }
-    }
 }

@@ -9,7 +9,7 @@ use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::Error;
 use crate::estimation::{EdgeCondition, MeasuredForce, Physics, Robust, Unnamed};
-use crate::material::PlaneState;
+use crate::material::{Card, PlaneState};
 use crate::studies::card::read_card;
 use crate::studies::sections;
 use crate::units::Dimension;
@@ -70,8 +70,8 @@ fn read(root: &Section, folder: &Path) -> Conditions {
         ..Conditions::default()
     };
     if root.has("scale_error") {
-        let bound = Bound::Within(0.0, 0.5);
-        conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, bound);
+        let half = Bound::Within(0.0, 0.5);
+        conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, half);
     }
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES);
@@ -102,28 +102,37 @@ fn read(root: &Section, folder: &Path) -> Conditions {
     }
     if root.has("material") {
         for section in root.tables("material") {
-            let section = section.requiring(&["on", "card"]);
-            let card = read_card(&section, folder);
-            conditions
-                .regions
-                .extend(card.map(|card| (section.text("on"), card)));
-            section.unknown_keys();
+            conditions.regions.extend(region(section, folder));
         }
     }
     if root.has("edges") {
-        for section in root.tables("edges") {
-            let names = section.texts("names");
-            let condition = condition(&section);
-            if section.has("area") {
-                conditions.areas.extend(area(&section, &names));
-            }
-            let edges = names.into_iter().map(|name| (name, condition));
-            conditions.edges.extend(edges);
-            section.unknown_keys();
+        for section in &root.tables("edges") {
+            read_edges(section, &mut conditions);
         }
     }
     root.unknown_keys();
     conditions
+}
+
+/// A region, and its card.
+fn region(section: Section, folder: &Path) -> Option<(String, Card)> {
+    let section = section.requiring(&["on", "card"]);
+    let card = read_card(&section, folder);
+    let region = section.text("on");
+    section.unknown_keys();
+    Some((region, card?))
+}
+
+/// Adds some edges with their condition, and the area of a pad.
+fn read_edges(section: &Section, conditions: &mut Conditions) {
+    let names = section.texts("names");
+    let condition = condition(section);
+    if section.has("area") {
+        conditions.areas.extend(area(section, &names));
+    }
+    let edges = names.into_iter().map(|name| (name, condition));
+    conditions.edges.extend(edges);
+    section.unknown_keys();
 }
 
 /// The area of a pad, and the only name that it has.
