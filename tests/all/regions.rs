@@ -298,6 +298,18 @@ fn an_inclusion_has_the_force_and_the_displacement_of_another_code() {
     }
 }
 
+/// A correction of these markers with one card.
+const CORRECT: [&str; 8] = [
+    "correct",
+    "markers.csv",
+    "--material",
+    "neo-hooke",
+    "--thickness",
+    "0.5 mm",
+    "--mesh",
+    "strip.msh",
+];
+
 /// A field of markers of two strips in parallel: homogeneous, and as both cards alone make it.
 fn markers_of_parallel_strips() -> String {
     let across = 1.4_f64.powf(-0.5) - 1.0;
@@ -317,33 +329,13 @@ fn markers_of_parallel_strips() -> String {
 #[test]
 fn a_corrected_field_has_the_force_of_the_cards_of_all_regions() {
     let folder = folder(BOTH, 0);
-    fs::write(
-        folder.path().join("markers.csv"),
-        markers_of_parallel_strips(),
-    )
-    .unwrap();
+    let markers = folder.path().join("markers.csv");
+    fs::write(markers, markers_of_parallel_strips()).unwrap();
     let cards = "[[material]]\non = \"upper\"\ncard = \"meunier-yeoh\"\n";
     fs::write(folder.path().join("known.toml"), cards).unwrap();
     let force = |arguments: &[&str]| {
-        let all = [
-            &[
-                "correct",
-                "markers.csv",
-                "--material",
-                "neo-hooke",
-                "--thickness",
-                "0.5 mm",
-            ],
-            &[
-                "--mesh",
-                "strip.msh",
-                "--free",
-                "bottom,top",
-                "--output",
-                "out",
-            ],
-            arguments,
-        ];
+        let edges = ["--free", "bottom,top", "--output", "out"];
+        let all = [&CORRECT[..], &edges, arguments];
         gelbench(folder.path(), &all.concat()).code(0);
         let report = machine_report(&folder.path().join("out"));
         let forces = report["steps"][0]["corrected"]["forces"]
@@ -366,23 +358,9 @@ fn a_corrected_field_has_the_force_of_the_cards_of_all_regions() {
 #[test]
 fn a_card_for_a_region_that_the_mesh_lacks_is_refused() {
     let folder = folder(BOTH, 0);
-    fs::write(
-        folder.path().join("markers.csv"),
-        markers_of_parallel_strips(),
-    )
-    .unwrap();
-    let given = [
-        "correct",
-        "markers.csv",
-        "--material",
-        "neo-hooke",
-        "--thickness",
-        "0.5 mm",
-        "--mesh",
-        "strip.msh",
-        "--region",
-        "uper=meunier-yeoh",
-    ];
+    let markers = folder.path().join("markers.csv");
+    fs::write(markers, markers_of_parallel_strips()).unwrap();
+    let given = [&CORRECT[..], &["--region", "uper=meunier-yeoh"]].concat();
     let message = gelbench(folder.path(), &given).code(2);
     assert!(
         one_line(&message.get_output().stderr)

@@ -324,6 +324,19 @@ pub struct Loaded<T> {
     pub warnings: Vec<Diagnostic>,
 }
 
+impl<T> Loaded<T> {
+    /// The same with what is made of the reader's value.
+    fn map<U>(self, make: impl FnOnce(T) -> U) -> Loaded<U> {
+        Loaded {
+            title: self.title,
+            made: make(self.made),
+            output: self.output,
+            defaults: self.defaults,
+            warnings: self.warnings,
+        }
+    }
+}
+
 impl PreparedStudy {
     fn new(kind: &Kind, name: String, text: &str, read: Loaded<Computation>) -> Self {
         Self {

@@ -34,14 +34,8 @@ fn exceeded_by_some(mut values: Vec<(f64, f64)>) -> f64 {
     reached.map_or(0.0, |(_, value)| *value)
 }
 
-/// The reason why a field is outside of the range of a law for small strains and rotations; `None` for other laws.
-pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Option<String> {
-    let cells: Vec<usize> = (0..mesh.cell_count()).collect();
-    reason_in_cells(law, (mesh, &cells), displacement)
-}
-
-/// The same in some cells of a mesh.
-pub fn reason_in_cells(
+/// The reason why a field is in some cells of a mesh outside of the range of a law for small strains and rotations; `None` for other laws.
+pub fn reason(
     law: &dyn HyperelasticLaw,
     cells: (&Mesh, &[usize]),
     displacement: &[f64],
@@ -67,6 +61,11 @@ mod tests {
     use super::*;
     use crate::material::{LinearElastic, NeoHooke, PlaneState};
     use crate::mesh::CellShape;
+
+    fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Option<String> {
+        let cells: Vec<usize> = (0..mesh.cell_count()).collect();
+        super::reason(law, (mesh, &cells), displacement)
+    }
 
     #[test]
     fn large_strains_and_large_rotations_are_told_of_linear_elasticity_alone() {

@@ -29,17 +29,11 @@ pub struct Stretches {
 }
 
 impl Stretches {
-    /// The stretches of a displacement field beside the range of a card.
+    /// The stretches of a displacement field in some cells of a mesh beside the range of a card.
     ///
     /// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smallest and the largest of both and of those
     /// across the samples, λ₁^−½ and λ₂^−½ where the volume stays as it is.
-    pub fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
-        let cells: Vec<usize> = (0..mesh.cell_count()).collect();
-        Self::of_cells(card, (mesh, &cells), displacement)
-    }
-
-    /// The same of some cells of a mesh.
-    pub fn of_cells(card: &Card, (mesh, cells): (&Mesh, &[usize]), displacement: &[f64]) -> Self {
+    pub fn new(card: &Card, (mesh, cells): (&Mesh, &[usize]), displacement: &[f64]) -> Self {
         let [low, high] = card.stretch_range;
         let [above, below] = [low, high].map(|along| across(&*card.law, along));
         let (least, most) = (low.min(below), high.max(above));
@@ -106,13 +100,14 @@ mod tests {
     #[test]
     fn what_tests_have_seen_is_their_stretch_and_the_contraction_across() {
         let mesh = Mesh::plate([4.0, 1.0], [4, 2], CellShape::Quad4);
+        let cells: Vec<usize> = (0..mesh.cell_count()).collect();
         let card = |range| Card::of_law("gel", Arc::new(NeoHooke { c10: 0.05 }), range);
         let of = |range, [along, across]: [f64; 2]| {
             let places = mesh.nodes.iter();
             let u: Vec<f64> = places
                 .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
                 .collect();
-            Stretches::new(&card(range), &mesh, &u)
+            Stretches::new(&card(range), (&mesh, &cells), &u)
         };
         let tension = [1.0, 1.21];
         // A clamped sheet that is pulled to the limit exceeds it in its middle by this much.
@@ -144,14 +139,14 @@ mod tests {
             .iter()
             .flat_map(|[x, _]| [0.5 * x, 0.0])
             .collect();
-        assert_eq!(Stretches::new(&foam, &mesh, &pulled).share, 1.0);
+        assert_eq!(Stretches::new(&foam, (&mesh, &cells), &pulled).share, 1.0);
         // A turn stretches nothing.
         let turned: Vec<f64> = mesh
             .nodes
             .iter()
             .flat_map(|[x, y]| [-y - x, x - y])
             .collect();
-        let found = Stretches::new(&card(tension), &mesh, &turned);
+        let found = Stretches::new(&card(tension), (&mesh, &cells), &turned);
         assert!(found.share == 0.0 && (found.largest - 1.0).abs() < 1e-12);
     }
 }

@@ -257,7 +257,7 @@ fn compression(examined: Examined) -> Option<Found> {
 fn large_strains(examined: Examined) -> Option<Found> {
     examined.of_cards(|card, cells| {
         let reason = |model: &ModelSeries, state: &ModelState| {
-            small_strain::reason_in_cells(&*card.law, (model.mesh, cells), state.displacement)
+            small_strain::reason(&*card.law, (model.mesh, cells), state.displacement)
         };
         let (reason, load) = examined.first(reason)?;
         let remedy = small_strain::LARGE_STRAINS.to_owned();
@@ -271,7 +271,7 @@ fn beyond_card(examined: Examined) -> Option<Found> {
     examined.of_cards(|card, cells| {
         let states = model.states.iter();
         let stretches = states.map(|state| {
-            let stretches = Stretches::of_cells(card, (model.mesh, cells), state.displacement);
+            let stretches = Stretches::new(card, (model.mesh, cells), state.displacement);
             (state.at, stretches)
         });
         let (at, worst) = stretches.max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share))?;

@@ -49,15 +49,9 @@ pub fn load(
 
 /// A motion that was read, ready to be computed.
 pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<MovingSheet>) -> PreparedStudy {
-    let sheet = loaded.made;
-    let about = sheet.describe();
-    let read = Loaded {
-        title: loaded.title,
-        made: Box::new(move |progress: Progress| compute(&sheet, progress)) as Computation,
-        output: loaded.output,
-        defaults: loaded.defaults,
-        warnings: loaded.warnings,
-    };
+    let about = loaded.made.describe();
+    let read =
+        loaded.map(|sheet| -> Computation { Box::new(move |progress| compute(&sheet, progress)) });
     PreparedStudy {
         about,
         ..PreparedStudy::new(kind, name, text, read)

@@ -6,6 +6,7 @@ use crate::error::suggestion;
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::problem::{CellLaws, LawAndRegions, SheetLaws};
+use crate::results::Material;
 
 /// The cards of a sheet: one of all cells, or several of named groups of its cells.
 #[derive(Clone, Copy, Debug)]
@@ -40,10 +41,13 @@ impl<'a> SheetCards<'a> {
 
     /// The regions that have cells, each with its number, its name and its card; empty where all cells have one card.
     pub fn numbered(self, mesh: &Mesh) -> Vec<NumberedRegion<'a>> {
+        self.numbered_by(&self.in_cells(mesh), mesh)
+    }
+
+    fn numbered_by(self, laws: &CellLaws, mesh: &Mesh) -> Vec<NumberedRegion<'a>> {
         if self.regions.is_empty() {
             return Vec::new();
         }
-        let laws = self.in_cells(mesh);
         let has_rest = (0..mesh.cell_count()).any(|cell| laws.number(cell) == 0);
         let rest = has_rest.then_some((0, "the remaining cells", self.card));
         let regions = self.regions.iter().zip(1..);
@@ -57,12 +61,12 @@ impl<'a> SheetCards<'a> {
         mesh: &Mesh,
         rule: impl Fn(&Card, &[usize]) -> Option<(String, String)>,
     ) -> Option<(String, String)> {
-        let regions = self.numbered(mesh);
+        let laws = self.in_cells(mesh);
+        let regions = self.numbered_by(&laws, mesh);
         if regions.is_empty() {
             let cells: Vec<usize> = (0..mesh.cell_count()).collect();
             return rule(self.card, &cells);
         }
-        let laws = self.in_cells(mesh);
         let of_regions = regions.into_iter().filter_map(|(number, name, card)| {
             let cells =
                 (0..mesh.cell_count()).filter(|cell| usize::from(laws.number(*cell)) == number);
@@ -72,6 +76,14 @@ impl<'a> SheetCards<'a> {
         let (messages, remedies): (Vec<String>, Vec<String>) = of_regions.unzip();
         let remedy = remedies.into_iter().next()?;
         Some((messages.join("; "), remedy))
+    }
+
+    /// The material of the sheet, or those of its regions, for reports.
+    pub fn material(self, mesh: &Mesh) -> Material {
+        match &self.numbered(mesh)[..] {
+            [] => Material::from(self.card),
+            regions => Material::of_regions(regions),
+        }
     }
 
     /// The card, or the cards with their regions, in words.

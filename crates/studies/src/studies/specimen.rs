@@ -69,15 +69,9 @@ pub fn load_on(
 
 /// A specimen or a plate that was read, ready to be computed.
 pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<Specimen>) -> PreparedStudy {
-    let specimen = loaded.made;
-    let (about, progress_steps) = (specimen.describe(), specimen.progress_steps());
-    let read = Loaded {
-        title: loaded.title,
-        made: Box::new(move |progress: Progress| compute(&specimen, progress)) as Computation,
-        output: loaded.output,
-        defaults: loaded.defaults,
-        warnings: loaded.warnings,
-    };
+    let (about, progress_steps) = (loaded.made.describe(), loaded.made.progress_steps());
+    let read = loaded
+        .map(|specimen| -> Computation { Box::new(move |progress| compute(&specimen, progress)) });
     PreparedStudy {
         about,
         progress_steps,

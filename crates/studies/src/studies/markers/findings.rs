@@ -238,7 +238,7 @@ fn stated_noise(estimate: &FieldEstimate) -> Option<Doubt> {
 fn large_strains(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let (mesh, field) = (&study.mesh, &estimate.displacement);
     let reason = study.cards().in_turn(mesh, |card, cells| {
-        let reason = small_strain::reason_in_cells(&*card.law, (mesh, cells), field)?;
+        let reason = small_strain::reason(&*card.law, (mesh, cells), field)?;
         Some((reason, String::new()))
     });
     Some((reason?.0, small_strain::LARGE_STRAINS))
@@ -254,7 +254,7 @@ fn beyond_card(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
         if is_calibrated && std::ptr::eq(card, &study.card) {
             return None;
         }
-        let stretches = Stretches::of_cells(card, (mesh, cells), field);
+        let stretches = Stretches::new(card, (mesh, cells), field);
         let reason = stretches.reason(card, "");
         let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
         Some((reason, String::new()))

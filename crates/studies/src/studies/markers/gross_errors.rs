@@ -10,7 +10,7 @@
 //! misfit is judged: with a noise that is large enough any law fits.
 
 use super::MarkerStudy;
-use super::quantities::{outliers, used};
+use super::quantities::{outliers, rounding, used};
 use crate::error::Error;
 use crate::estimation::{Answer, FieldEstimate, Knowledge, Reason, Robust};
 use crate::markers::Marker;
@@ -93,16 +93,11 @@ fn scatter_by_median(estimate: &FieldEstimate) -> f64 {
 /// Fewer degrees of freedom tell nothing of the shape of noise.
 const FEWEST: f64 = 20.0;
 
-/// Noise below this share of the largest displacement is that of the numbers: of a computed field.
-const ROUNDING: f64 = 1e-6;
-
 /// Whether gross errors are so many that they make up the noise of an estimate that gives all markers their weight.
 fn has_hidden(estimate: &FieldEstimate) -> bool {
-    let displacement = estimate.displacement.iter();
-    let largest = displacement.fold(0.0, |most: f64, u| most.max(u.abs()));
     estimate.robust == Robust::No
         && estimate.degrees_of_freedom >= FEWEST
-        && estimate.noise > ROUNDING * largest
+        && estimate.noise > rounding(estimate)
         && scatter_by_median(estimate) < HIDDEN
 }
 

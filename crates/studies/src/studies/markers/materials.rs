@@ -27,16 +27,14 @@ pub(super) fn in_common_plane(
     card: Card,
     conditions: &mut Conditions,
 ) -> Result<(Card, Vec<(String, Card)>), Error> {
+    let regions = std::mem::take(&mut conditions.regions).into_iter();
     let card_of = |card: Card| {
         check_memory(&*card.law, "a correction of measured fields")?;
         in_plane(card, conditions.sheet)
     };
     let card = card_of(card)?;
-    let regions = conditions.regions.iter().cloned();
     let regions = regions.map(|(region, card)| Ok((region, card_of(card)?)));
-    let regions = regions.collect::<Result<_, Error>>()?;
-    conditions.regions.clear();
-    Ok((card, regions))
+    Ok((card, regions.collect::<Result<_, Error>>()?))
 }
 
 /// The warnings about cards on a mesh, each once.

@@ -14,7 +14,7 @@ use nalgebra::Matrix2;
 use rayon::prelude::*;
 
 use super::MarkerStudy;
-use super::quantities::{residual_rms, used};
+use super::quantities::{residual_rms, rounding, used};
 use crate::error::Diagnostic;
 use crate::estimation::{EdgeCondition, FieldEstimate};
 use crate::markers::{Frame, Marker};
@@ -223,10 +223,7 @@ fn is_nearer(meant: &FieldEstimate, written: Option<&FieldEstimate>) -> bool {
 
 /// Akaike's criterion. Residuals that are rounding of the displacements are alike.
 fn criterion(estimate: &FieldEstimate) -> f64 {
-    const ROUNDING: f64 = 1e-6;
-    let displacements = estimate.displacement.iter();
-    let largest = displacements.fold(0.0, |most: f64, u| most.max(u.abs()));
-    let residual = residual_rms(estimate).max(ROUNDING * largest);
+    let residual = residual_rms(estimate).max(rounding(estimate));
     let values = 2.0 * used(estimate) as f64;
     2.0 * values * residual.ln() + 2.0 * estimate.effective_parameters
 }

@@ -100,3 +100,10 @@ pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
     }
     all
 }
+
+/// Residuals up to this size in mm are those of the numbers, as of a computed field.
+pub fn rounding(estimate: &FieldEstimate) -> f64 {
+    const SHARE: f64 = 1e-6;
+    let displacement = estimate.displacement.iter();
+    SHARE * displacement.fold(0.0, |most: f64, u| most.max(u.abs()))
+}

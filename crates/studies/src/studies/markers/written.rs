@@ -13,9 +13,7 @@
 use crate::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::material::PlaneState;
-use crate::results::{
-    Array, Content, Grid, GridSeries, Material, NamedGrid, Outcome, Results, Sheet,
-};
+use crate::results::{Array, Content, Grid, GridSeries, NamedGrid, Outcome, Results, Sheet};
 use crate::statistics::larger;
 use crate::studies::markers::MarkerStudy;
 use crate::studies::pictures::Pictures;
@@ -53,10 +51,7 @@ pub fn results_with(
     let figures = last.map(|(frame, last)| figures::figures(field, frame, last, &pictures.fields));
     let outcome = Outcome {
         problem: json::problem(field, estimates),
-        material: Some(match &field.cards().numbered(&field.mesh)[..] {
-            [] => Material::from(&field.card),
-            regions => Material::of_regions(regions),
-        }),
+        material: Some(field.cards().material(&field.mesh)),
         along: "frame",
         steps: field
             .frames_with(estimates)

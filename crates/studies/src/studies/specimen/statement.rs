@@ -44,10 +44,7 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
 
 /// The material, or those of all regions.
 pub fn material(specimen: &Specimen) -> Material {
-    match &specimen.numbered_regions()[..] {
-        [] => Material::from(&specimen.card),
-        regions => Material::of_regions(regions),
-    }
+    specimen.cards().material(&specimen.outline.coarse())
 }
 
 /// The same in a sentence.
