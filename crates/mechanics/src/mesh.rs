@@ -42,4 +42,4 @@ pub use outline::corners;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
 pub use parts::Parts;
 pub use rounding::Polygon;
-pub use shapes::{Misfit, Shape};
+pub use shapes::{Misfit, Rakes, Shape};

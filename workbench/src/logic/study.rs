@@ -238,8 +238,8 @@ fn of_specimen(read: Specimen) -> Result<Scene, Error> {
             },
             size,
         ),
-        Shape::RingSector { .. } => {
-            return Err(other("a sector of a ring does not have two grips"));
+        Shape::RingSector { .. } | Shape::SquareOnRakes(_) | Shape::Cruciform { .. } => {
+            return Err(other("the specimen is not held by two grips"));
         }
     };
     let grip = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());

@@ -5,11 +5,15 @@ use super::cell_shape::CellShape;
 use super::cells::Mesh;
 use super::strips::{Part, count, lengths, strip, with_hole};
 
+mod cruciform;
 mod measures;
+mod rakes;
 #[cfg(test)]
 mod tests;
 
+use cruciform::cruciform;
 pub use measures::Misfit;
+pub use rakes::Rakes;
 
 /// A specimen by its dimensions in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +55,18 @@ pub enum Shape {
         /// Angle in rad.
         angle: f64,
     },
+    /// A rectangle that is held by tines near its sides, as in a biaxial test; groups as a strip, `left-tines`, `right-tines`,
+    /// `bottom-tines`, `top-tines`, and each tine, such as `left-tine-1`.
+    SquareOnRakes(Rakes),
+    /// A cross of four arms with fillets between them; groups `left`, `right`, `bottom`, `top` at the tips, `arms` and `fillets`.
+    Cruciform {
+        /// Length and width from tip to tip.
+        size: [f64; 2],
+        /// Width of the arms.
+        arm_width: f64,
+        /// Radius of the fillets.
+        fillet: f64,
+    },
 }
 
 /// The largest ratio of a shape's largest distance to its least: meshes distinguish nodes that are 1e-8 of the largest from each other.
@@ -74,7 +90,11 @@ impl Shape {
         for block in &mut blocks {
             block.cells = block.cells.map(|own| own << halvings);
         }
-        mesh_of_blocks(&blocks, kind)
+        let mut mesh = mesh_of_blocks(&blocks, kind);
+        if let Self::SquareOnRakes(rakes) = self {
+            rakes.name_tines(&mut mesh);
+        }
+        mesh
     }
 
     /// The blocks of its mesh, with at least so many cells beside a hole.
@@ -84,6 +104,12 @@ impl Shape {
                 strip(&self.parts(size[0]), across, move |x| self.half_width(x))
             }
             Self::StripWithHole { size, radius } => with_hole(size, radius, across, beside),
+            Self::SquareOnRakes(rakes) => rakes.blocks(across),
+            Self::Cruciform {
+                size,
+                arm_width,
+                fillet,
+            } => cruciform(size, arm_width, fillet, across),
             Self::RingSector { radii, angle } => {
                 let along = angle * (radii[0] + radii[1]) / 2.0;
                 let cells = [across, count(along / (radii[1] - radii[0]) * across as f64)];
@@ -106,6 +132,17 @@ impl Shape {
             Self::RingSector { radii, angle } => {
                 angle * (radii[0] + radii[1]) / (2.0 * (radii[1] - radii[0]))
             }
+            Self::SquareOnRakes(rakes) => {
+                // Around each tine there are as many as in a sixth of the sheet.
+                let [low, high] = [
+                    rakes.size[0].min(rakes.size[1]),
+                    rakes.size[0].max(rakes.size[1]),
+                ];
+                return across * across * high / low + 32.0 * 4.0 * rakes.tines as f64;
+            }
+            Self::Cruciform {
+                size, arm_width, ..
+            } => (size[0] + size[1]) / arm_width,
             // Around the hole there are about twice as many as in the strip.
             Self::StripWithHole { size, .. } => {
                 2.0 + size[0].max(size[1]) / size[0].min(size[1]).min(size[1])
@@ -137,6 +174,21 @@ impl Shape {
             [a + share * dx, b + share * dy]
         };
         match (self, side) {
+            (Self::SquareOnRakes(rakes), group) => rakes.on_tine(group, [x, y]),
+            (
+                Self::Cruciform {
+                    size,
+                    arm_width,
+                    fillet,
+                },
+                "fillets",
+            ) => {
+                // The centre of the arc in the quarter of the point.
+                let middle = size[0] / 2.0;
+                let away = arm_width / 2.0 + fillet;
+                let centre = [middle + away * (x - middle).signum(), away * y.signum()];
+                Some(on_circle(centre, fillet))
+            }
             (Self::StripWithHole { size, radius }, "hole") => {
                 Some(on_circle([size[0] / 2.0, 0.0], radius))
             }
@@ -212,6 +264,8 @@ impl Shape {
             }
             Self::Strip { size } | Self::StripWithHole { size, .. } => size[1] / 2.0,
             Self::RingSector { radii, .. } => (radii[1] - radii[0]) / 2.0,
+            Self::SquareOnRakes(rakes) => rakes.size[1] / 2.0,
+            Self::Cruciform { arm_width, .. } => arm_width / 2.0,
         }
     }
 
@@ -231,6 +285,21 @@ impl Shape {
                 shoulder,
             } => vec![size[0], size[1], narrow[0], narrow[1], shoulder],
             Self::RingSector { radii, angle } => vec![radii[0], radii[1], angle],
+            Self::SquareOnRakes(rakes) => {
+                let Rakes {
+                    size,
+                    spacing,
+                    inset,
+                    radius,
+                    ..
+                } = rakes;
+                vec![size[0], size[1], spacing, inset, radius]
+            }
+            Self::Cruciform {
+                size,
+                arm_width,
+                fillet,
+            } => vec![size[0], size[1], arm_width, fillet],
         }
     }
 

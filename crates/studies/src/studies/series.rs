@@ -170,6 +170,6 @@ fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
             let words = "the middle half of the narrow part";
             Some(Gauge::middle_half(mesh, narrow[0], words))
         }
-        Shape::StripWithHole { .. } | Shape::NotchedStrip { .. } | Shape::RingSector { .. } => None,
+        _ => None,
     }
 }

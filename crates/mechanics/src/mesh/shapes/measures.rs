@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::{MOST_RATIO, Shape};
+use super::rakes::LEAST_GAP;
+use super::{MOST_RATIO, Rakes, Shape};
 
 /// What a measure must be below, in mm or degrees, and why.
 type Demand = (&'static str, f64, f64, &'static str);
@@ -63,8 +64,47 @@ impl Shape {
                     ("angle", angle * 360.0 / TAU, 360.0, part),
                 ]
             }
+            Self::SquareOnRakes(rakes) => on_rakes(rakes),
+            Self::Cruciform {
+                size,
+                arm_width,
+                fillet,
+            } => {
+                let least = size[0].min(size[1]);
+                let short = "the arms with their fillets must be shorter than the specimen";
+                let wide = "the arms must be narrower than the specimen";
+                vec![
+                    ("arm_width", arm_width, 0.9 * least, wide),
+                    ("fillet", fillet, 0.5 * (0.95 * least - arm_width), short),
+                ]
+            }
         }
     }
+}
+
+fn on_rakes(rakes: Rakes) -> Vec<Demand> {
+    let Rakes {
+        size,
+        tines,
+        spacing,
+        inset,
+        radius,
+    } = rakes;
+    let outside = "the tines of a side must lie on the sheet";
+    let beyond = "the tines must be nearer to their side than to the middle";
+    let close = "rows of tines, also of neighbouring sides, and the edges beside them need 1.2 diameters between their centres";
+    let least = size[0].min(size[1]);
+    let most_spacing = (least - 2.0 * LEAST_GAP * radius) / (tines as f64 - 1.0).max(1.0);
+    vec![
+        ("tine_spacing", spacing, most_spacing, outside),
+        ("tine_inset", inset, 0.4 * least, beyond),
+        (
+            "tine_diameter",
+            2.0 * radius,
+            rakes.least_gap() / LEAST_GAP,
+            close,
+        ),
+    ]
 }
 
 fn notches(size: [f64; 2], depth: f64, half_length: f64) -> Vec<Demand> {

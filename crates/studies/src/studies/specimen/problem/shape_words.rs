@@ -1,6 +1,6 @@
 //! Shapes in words.
 
-use crate::mesh::Shape;
+use crate::mesh::{Rakes, Shape};
 use crate::units::number;
 
 /// A shape with its measures in words.
@@ -31,6 +31,23 @@ pub fn describe(shape: Shape) -> String {
         } => format!(
             "a dumb-bell of {length} × {width} mm with a narrow part of {} × {} mm and shoulders of {shoulder} mm length",
             narrow[0], narrow[1]
+        ),
+        Shape::SquareOnRakes(Rakes {
+            size: [length, width],
+            tines,
+            spacing,
+            inset,
+            radius,
+        }) => format!(
+            "a sheet of {length} × {width} mm on rakes of {tines} tines of {} mm diameter at each side, {spacing} mm apart and {inset} mm from the edge",
+            2.0 * radius
+        ),
+        Shape::Cruciform {
+            size: [length, width],
+            arm_width,
+            fillet,
+        } => format!(
+            "a cruciform of {length} × {width} mm with arms of {arm_width} mm width and fillets of {fillet} mm radius"
         ),
         Shape::RingSector {
             radii: [inner, outer],

@@ -2,21 +2,26 @@
 
 use crate::document::{Bound, Section};
 use crate::error::{Diagnostic, Severity};
-use crate::mesh::{CellShape, Exemptions, Mesh, MeshReading, Shape};
+use crate::mesh::{CellShape, Exemptions, Mesh, MeshReading, Rakes, Shape};
 use crate::studies::specimen::problem::{HALVINGS, MESH, Outline};
 use crate::units::Dimension;
 
 /// Cells across a specimen at most; how many fit into the budget depends on its measures.
 const MOST_CELLS: usize = 10_000;
 
+/// Tines at one side of a sheet at most.
+const MOST_TINES: usize = 20;
+
 /// The names of the shapes.
-pub const SHAPES: [&str; 6] = [
+pub const SHAPES: [&str; 8] = [
     MESH,
     "strip",
     "strip-with-hole",
     "notched-strip",
     "dog-bone",
     "ring-sector",
+    "square-on-rakes",
+    "cruciform",
 ];
 
 /// Reads the mesh that a study names as `file`: the mesh and what deserves attention, or its faults.
@@ -108,7 +113,8 @@ pub fn usual_mesh(name: &str) -> Option<Mesh> {
         "width" | "outer_radius" => 30.0,
         "hole_diameter" | "narrow_width" | "shoulder_length" => 10.0,
         "narrow_length" | "inner_radius" => 20.0,
-        "angle" => 1.0,
+        "angle" | "tine_diameter" | "tine_inset" => 1.0,
+        "tines" => 3.0,
         _ => 5.0,
     };
     let shape = (name != MESH).then(|| shape_of(name, &usual))?;
@@ -118,6 +124,7 @@ pub fn usual_mesh(name: &str) -> Option<Mesh> {
 fn read_shape(section: &Section, name: &str) -> Shape {
     shape_of(name, &|key| match key {
         "angle" => section.quantity(key, Dimension::Angle, Bound::Positive),
+        "tines" => section.count(key, 1, MOST_TINES) as f64,
         key => section.quantity(key, Dimension::Length, Bound::SIZE),
     })
 }
@@ -140,6 +147,18 @@ fn shape_of(name: &str, measure: &dyn Fn(&'static str) -> f64) -> Shape {
             size,
             depth: measure("notch_depth"),
             half_length: 0.5 * measure("notch_length"),
+        },
+        "square-on-rakes" => Shape::SquareOnRakes(Rakes {
+            size,
+            tines: measure("tines") as usize,
+            spacing: measure("tine_spacing"),
+            inset: measure("tine_inset"),
+            radius: 0.5 * measure("tine_diameter"),
+        }),
+        "cruciform" => Shape::Cruciform {
+            size,
+            arm_width: measure("arm_width"),
+            fillet: measure("fillet"),
         },
         "dog-bone" => Shape::DogBone {
             size,
