@@ -22,6 +22,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
             text += &format!("               {remark}\n");
         }
     }
+    text += &mounted(fit);
     text += &relaxation(fit);
     text += &softening(fit);
     text += &parameters(fit);
@@ -40,6 +41,30 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         text += &format!("  warning: {warning}\n");
     }
     text
+}
+
+/// What the homogeneous reading of a mounted sheet says, and by how much it is wrong.
+fn mounted(fit: &Fit) -> String {
+    let Some(mounted) = &fit.mounted else {
+        return String::new();
+    };
+    let read = mounted.homogeneous.iter().map(|parameter| {
+        format!(
+            "{} {} {}",
+            parameter.key,
+            digits(parameter.value, 4),
+            parameter.unit()
+        )
+    });
+    let [first, second] = mounted.bias_percent;
+    format!(
+        "  mounting     solved {} times by finite elements, whose forces are within {:.2} % of those on half the cell size
+  homogeneous  {}:          stresses {first:+.1} % and {second:+.1} % off along both axes at the largest equibiaxial stretch
+",
+        mounted.rounds,
+        mounted.discretisation_percent,
+        read.collect::<Vec<_>>().join(", "),
+    )
 }
 
 /// How many terms, and what the data cover.

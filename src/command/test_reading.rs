@@ -10,6 +10,8 @@ use gelbench_base::document::{Statements, read_text};
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_calibration::calibration;
 
+const MOUNTING: &str = "Planar biaxial tests";
+
 /// What the files of test data do not say themselves.
 #[derive(Args)]
 #[command(next_help_heading = "What the files do not state")]
@@ -75,6 +77,41 @@ pub struct ReadingArguments {
     /// Columns whose sign is reversed: strain, stress or both
     #[arg(long, value_name = "COLUMNS")]
     flip: Option<String>,
+    /// What holds the sheet of a biaxial test: rakes or cruciform. It is then solved with the law by finite elements, instead of taken as
+    /// homogeneous; `length` and `width` are the distances of the bars or grips, and the thickness is that of the mounted sheet
+    #[arg(long, help_heading = MOUNTING)]
+    mounting: Option<String>,
+    /// Tines at each side
+    #[arg(long, value_name = "NUMBER", help_heading = MOUNTING)]
+    tines: Option<String>,
+    /// Distance between neighbouring tines
+    #[arg(long, value_name = "LENGTH", help_heading = MOUNTING)]
+    tine_spacing: Option<String>,
+    /// Distance of the tines from the edge of the sheet
+    #[arg(long, value_name = "LENGTH", help_heading = MOUNTING)]
+    tine_inset: Option<String>,
+    /// Diameter of a tine
+    #[arg(long, value_name = "LENGTH", help_heading = MOUNTING)]
+    tine_diameter: Option<String>,
+    /// fixed, or sliding where tines or threads move along their bar; fixed if omitted
+    #[arg(long, value_name = "HOW", help_heading = MOUNTING)]
+    tine_bars: Option<String>,
+    /// Width of the arms of a cruciform
+    #[arg(long, value_name = "LENGTH", help_heading = MOUNTING)]
+    arm_width: Option<String>,
+    /// Radius of the fillets between the arms of a cruciform
+    #[arg(long, value_name = "LENGTH", help_heading = MOUNTING)]
+    fillet: Option<String>,
+    /// The stretches are those of markers at the corners of a square of this side in the middle; of the bars if omitted
+    #[arg(long, value_name = "LENGTH", help_heading = MOUNTING)]
+    markers: Option<String>,
+    /// The state without stress: as-mounted (if omitted), estimated with the law, or the stretches along both axes as mounted, such as
+    /// 1.05,1.03
+    #[arg(long, value_name = "STATE", help_heading = MOUNTING)]
+    rest_state: Option<String>,
+    /// The zeros of both forces: as-measured (if omitted), or estimated with the law
+    #[arg(long, value_name = "ZERO", help_heading = MOUNTING)]
+    force_zero: Option<String>,
     /// Statements remembered under a name: written to presets/NAME.txt from the options if there is none, and taken from it otherwise;
     /// options take precedence
     #[arg(long, value_name = "NAME")]
@@ -122,6 +159,17 @@ impl ReadingArguments {
             self.rows,
             self.strain_range,
             self.flip,
+            self.mounting,
+            self.tines,
+            self.tine_spacing,
+            self.tine_inset,
+            self.tine_diameter,
+            self.tine_bars,
+            self.arm_width,
+            self.fillet,
+            self.markers,
+            self.rest_state,
+            self.force_zero,
         ];
         let pairs = calibration::KEYS.into_iter().zip(given);
         pairs

@@ -12,6 +12,7 @@ mod fit;
 mod fitted;
 mod least_squares;
 mod memory;
+mod mounted;
 mod ranking;
 mod regression;
 mod relaxation;
@@ -25,14 +26,15 @@ mod trust;
 
 pub use card_text::{Provenance, card_text};
 pub use data::{
-    ColumnReading, Conversion, FoundZero, KEYS, Observation, PRECONDITIONED, StrainColumn,
-    TableReading, Test, TestData, Times,
+    ColumnReading, Conversion, FoundZero, KEYS, Mounted, Mounting, Observation, PRECONDITIONED,
+    RestState, StrainColumn, TableReading, Test, TestData, Times,
 };
 pub use fit::fit;
 pub use fitted::{Fit, Relaxed};
 pub use memory::Memory;
+pub use mounted::MountedFit;
 pub use ranking::{best, rank};
-pub use regression::MovedZero;
+pub use regression::{MovedZero, Zero};
 pub use relaxation::{Terms, fit_relaxation};
 pub use settings::{Bounds, FitSettings, Weighting};
 pub use softened::{Softened, SofteningCycle};

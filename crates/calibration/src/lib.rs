@@ -7,4 +7,4 @@ pub mod identification;
 
 use gelbench_base::{document, error, statistics, units};
 use gelbench_estimation::estimation;
-use gelbench_mechanics::{material, solve};
+use gelbench_mechanics::{material, mesh, problem, solve};

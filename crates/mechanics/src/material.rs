@@ -30,6 +30,7 @@ mod ogden;
 mod ogden_hill;
 pub mod parameters;
 mod polynomial;
+pub mod prestretched;
 pub mod registry;
 mod saint_venant_kirchhoff;
 pub mod samples;

@@ -6,6 +6,7 @@ mod conversion;
 mod cycles;
 mod gross_rows;
 mod layout;
+mod mounting;
 mod plausible;
 mod reading;
 mod readings;
@@ -20,6 +21,7 @@ mod zero;
 
 pub use conversion::Conversion;
 pub use cycles::{Branches, PRECONDITIONED};
+pub use mounting::{Mounted, Mounting, RestState};
 pub use reading::KEYS;
 pub use strain_column::StrainColumn;
 pub use table_reading::{ColumnReading, TableReading};

@@ -17,13 +17,15 @@ use std::sync::Arc;
 
 use super::data::{Observation, Test, TestData};
 use super::fitted::Fit;
-use super::regression::{Elastic, Misfit, Response, Search, ordered};
+use super::least_squares::descend;
+use super::mounted::{mounting, nearest_mounted};
+use super::regression::{Elastic, Misfit, Response, Rival, Search, ordered};
 use super::settings::{FitSettings, limits};
 use super::solution::Solution;
 use super::trust::noise_warnings;
 use crate::error::Error;
 use crate::material::marlow::{Marlow, TableCurve};
-use crate::material::parameters::StressMeasure;
+use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 
 /// Fits a law to some tests together.
@@ -32,7 +34,11 @@ use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all; [`Error::Solve`] when the search ends at no minimum.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
-    nearest(law, tests, settings)?.that_follows(tests)
+    let fit = match mounting(tests)? {
+        Some(mounting) => nearest_mounted(law, tests, mounting, settings),
+        None => nearest(law, tests, settings),
+    };
+    fit?.that_follows(tests)
 }
 
 /// The fit of a law, however far it is from the data.
@@ -83,14 +89,60 @@ pub fn nearest(
         values: minimum.values,
         bounds,
     };
-    let mut solution = begun.checked(law, &parameters)?.settled().with_zeros();
-    solution.values = ordered(&parameters, &solution.bounds, solution.values);
-    let mut fit = solution.fit(law, &parameters, settings, minimum.rival.as_ref());
+    let solution = begun.checked(law, &parameters)?.settled().with_zeros();
+    Ok(finished(
+        law,
+        &parameters,
+        solution,
+        settings,
+        minimum.rival.as_ref(),
+    ))
+}
+
+/// The fit of a law with what is linear in its values, [`Elastic::with_linear`], about `start`: the law's values, and behind them those of
+/// the zeros that are sought.
+pub fn nearest_about(
+    law: &'static Law,
+    tests: &[TestData],
+    start: &[f64],
+    derivatives: impl Fn(&Observation) -> Vec<f64>,
+    settings: &FitSettings,
+) -> Result<Fit, Error> {
+    let response = Elastic::new(law, tests).with_zeros();
+    let parameters = response.build(&[]).1.parameters;
+    let mut bounds = limits(law, &parameters, &settings.bounds, response.stiffness)?;
+    bounds.extend(response.zeros().iter().map(|zero| zero.bounds()));
+    let response = response.with_linear(start.to_vec(), derivatives);
+    let misfit = Misfit::new(response, settings.weighting);
+    let solution = Solution {
+        values: descend(&misfit, start, &bounds).unwrap_or_else(|| start.to_vec()),
+        misfit,
+        bounds,
+    };
+    Ok(finished(
+        law,
+        &parameters,
+        solution.settled(),
+        settings,
+        None,
+    ))
+}
+
+/// The fit of a solution, with all warnings.
+fn finished(
+    law: &'static Law,
+    parameters: &[Parameter],
+    mut solution: Solution<Elastic>,
+    settings: &FitSettings,
+    rival: Option<&Rival>,
+) -> Fit {
+    solution.values = ordered(parameters, &solution.bounds, solution.values);
+    let mut fit = solution.fit(law, parameters, settings, rival);
     let tests = solution.misfit.response.moved_tests(&solution.values);
     let of_noise = noise_warnings(&fit.quality, &*fit.fitted, &tests, settings.weighting);
     fit.quality.warnings.extend(of_noise);
     fit.choices = solution.misfit.response.build(&solution.values).1.choices;
-    Ok(fit)
+    fit
 }
 
 /// Parameters need more points than there are of them.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::data::{Observation, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
+use super::mounted::MountedFit;
 use super::settings::{FitSettings, MEASURE};
 use super::softened::Softened;
 use super::trust::Quality;
@@ -39,6 +40,8 @@ pub struct Fit {
     pub relaxed: Option<Relaxed>,
     /// The softening of a fit to loading and unloading.
     pub softened: Option<Softened>,
+    /// The mounting of a sheet that was solved with the law.
+    pub mounted: Option<MountedFit>,
 }
 
 /// The relaxation of a fit.
@@ -90,11 +93,15 @@ impl Fit {
         Err(Error::input(message, hint))
     }
 
-    /// The tests as they were fitted: with the zeros that were found together with the law.
+    /// The tests as they were fitted: those of the sheet's middle where it was solved on its mounting, with the zeros that were found
+    /// together with the law.
     pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
-        let mut moved = tests.to_vec();
+        let own = self.mounted.as_ref().map_or(tests, |own| &own.tests);
+        let mut moved = own.to_vec();
         for zero in &self.quality.zeros {
-            moved[zero.test] = zero.applied(&tests[zero.test]);
+            for (number, test) in moved.iter_mut().enumerate() {
+                *test = zero.applied(number, test);
+            }
         }
         moved
     }

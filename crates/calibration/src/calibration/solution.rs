@@ -16,7 +16,7 @@
 use super::data::TestData;
 use super::fitted::Fit;
 use super::least_squares::{Precision, descend, lower, minimise, sum_of_squares};
-use super::regression::{Elastic, Misfit, Response, Rival};
+use super::regression::{Elastic, Misfit, Response, Rival, Zero, improved};
 use super::settings::{FitSettings, Weighting};
 use super::trust::{Judged, Quality, warnings};
 use crate::error::{Error, SolveFault};
@@ -143,6 +143,7 @@ impl<R: Response> Solution<R> {
             quality,
             relaxed: None,
             softened: None,
+            mounted: None,
         }
     }
 }
@@ -159,40 +160,56 @@ fn weighted_square(weighting: Weighting, tests: &[TestData], predicted: &[Vec<f6
     tests.iter().zip(predicted).map(of_test).sum()
 }
 
-/// Zeros are moved by less than this share of the largest strain or stress.
-const FARTHEST: f64 = 0.25;
-
-/// Zeros of strain or stress that were found at the beginning of a record, found again with the law.
+/// Zeros of strain or stress that were found at the beginning of a record, and the state at rest of a mounted sheet, found with the law.
 ///
 /// The parabola that follows a beginning back to rest, [`super::data`], sees a few rows; the law sees all of them. Taken as known, the
 /// zero that the parabola finds makes the law's parameters wrong by many of their standard errors. So the zero is one more
 /// value of the fit, r(p, δ) = σᵢ − σ(p; λᵢ + δ) or σᵢ + δ − σ(p; λᵢ), and its uncertainty is part of the intervals. Where what
-/// is left then is no noise, the law would take its own misfit for a zero: the zero stays.
+/// is left then is no noise, the law would take its own misfit for a zero: the zero of a record stays.
 impl<'a> Solution<Elastic<'a>> {
-    /// With the zeros among the values, where the records had any and what is left is noise then.
+    /// With the zeros among the values, where the records had any and what is left is noise then, and the state at rest where it is sought.
     pub fn with_zeros(self) -> Self {
         self.wider().unwrap_or(self)
     }
 
     fn wider(&self) -> Option<Self> {
+        /// Stretches as mounted from which the search begins.
+        const STRETCHES: [f64; 4] = [1.0, 1.02, 1.06, 1.15];
         let misfit = Misfit {
             response: self.misfit.response.with_zeros(),
             ..self.misfit.clone()
         };
-        let count = misfit.response.zeros().len();
-        if count == 0 {
-            return None;
+        let zeros = misfit.response.zeros().to_vec();
+        let is_stretch = |zero: &Zero| matches!(zero, Zero::Stretch { .. });
+        let of_record = |zero: &Zero| matches!(zero, Zero::Record { .. });
+        let stretches = if zeros.iter().any(is_stretch) {
+            &STRETCHES[..]
+        } else {
+            &STRETCHES[..1]
+        };
+        let start = |stretch: &f64| {
+            let begin = |zero: &Zero| if is_stretch(zero) { *stretch } else { 1.0 };
+            [
+                &self.values[..],
+                &zeros.iter().map(begin).collect::<Vec<_>>(),
+            ]
+            .concat()
+        };
+        let bounds = self.bounds.iter().copied();
+        let bounds: Vec<[f64; 2]> = bounds
+            .chain(zeros.iter().map(|zero| zero.bounds()))
+            .collect();
+        let mut values = start(zeros.first().map(|_| &STRETCHES[0])?);
+        if stretches.len() > 1 {
+            let rough = improved(&misfit, stretches.iter().map(start).collect(), &bounds);
+            values = rough.into_iter().next()?.1;
         }
-        let mut values = self.values.clone();
-        values.resize(values.len() + count, 1.0);
-        let mut bounds = self.bounds.clone();
-        bounds.resize(values.len(), [1.0 - FARTHEST, 1.0 + FARTHEST]);
         let wider = Solution {
             values: descend(&misfit, &values, &bounds)?,
             misfit,
             bounds,
         };
         let settled = wider.settled();
-        settled.judged().is_noise().then_some(settled)
+        (!zeros.iter().any(of_record) || settled.judged().is_noise()).then_some(settled)
     }
 }

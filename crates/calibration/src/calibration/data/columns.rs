@@ -166,6 +166,9 @@ pub fn area(head: &Head, roles: &[Role], axis: Option<usize>) -> Faulty<f64> {
     let stated = head.quantity("area", Dimension::Area)?;
     let thickness = head.quantity("thickness", Dimension::Length)?;
     let across = match axis {
+        Some(_) if head.text("arm width")?.is_some() => {
+            head.quantity("arm width", Dimension::Length)?
+        }
         Some(axis) => head.quantity(["width", "length"][axis], Dimension::Length)?,
         None => head.quantity("width", Dimension::Length)?,
     };

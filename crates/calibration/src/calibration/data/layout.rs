@@ -4,6 +4,7 @@ use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
 use super::gross_rows::{gross_rows, torn_rows};
+use super::mounting::{Mounted, refuse_cauchy};
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{Kind, Role, check_columns, of_kind};
@@ -42,6 +43,8 @@ pub struct Layout {
     machine: Option<Machine>,
     /// Column and factor to s; a fault where the unit is unknown.
     time: Option<Faulty<Scaled>>,
+    /// How the sheet is held.
+    mounted: Mounted,
     /// What each column is read as.
     roles: Vec<Role>,
 }
@@ -83,6 +86,12 @@ impl Layout {
         let stresses = stresses.into_iter().map(turned).collect();
         let ratio = (test == Test::Biaxial && strains[1].is_none()).then(|| strain_ratio(head));
         let strain_ratio = ratio.and_then(|ratio| faults.of(ratio));
+        let mounted = faults
+            .of(Mounted::stated(head, &roles, test))
+            .unwrap_or_default();
+        if mounted.mounting.is_some() && stress_measure == StressMeasure::Cauchy {
+            faults.of::<()>(Err(refuse_cauchy(head)));
+        }
         if !faults.0.is_empty() {
             return Err(faults.0);
         }
@@ -98,6 +107,7 @@ impl Layout {
                 Some(question) => Some(Err(Box::new(question))),
                 None => time(head, &roles),
             },
+            mounted,
             roles,
         })
     }
@@ -187,7 +197,7 @@ impl Layout {
             implausible(head, self.strain, &observations),
             at_rest,
         ];
-        Ok(TestData {
+        let data = TestData {
             name: table.source.name.clone(),
             test: self.test,
             stress_measure: self.stress_measure,
@@ -202,11 +212,16 @@ impl Layout {
             preconditioned: preconditioned(head, self.test, farthest(widest))?,
             left_out,
             found_zero: part.found_zero,
+            mounted: self.mounted,
             specimen: head.text(SPECIMEN_NAME)?,
             table: TableReading::of(head, &self.roles, ends),
             remarks: part.remarks,
             head: head.written(),
             warnings: warnings.into_iter().flatten().collect(),
+        };
+        Ok(match self.mounted.stated_stretches() {
+            [1.0, 1.0] => data,
+            stated => data.stretched(stated),
         })
     }
 

@@ -11,7 +11,7 @@ use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// The statements about test data that a file or the command line must make.
-pub const KEYS: [&str; 21] = [
+pub const KEYS: [&str; 32] = [
     "test",
     "stress measure",
     "strain measure",
@@ -33,8 +33,18 @@ pub const KEYS: [&str; 21] = [
     ROWS,
     STRAIN_RANGE,
     FLIP,
+    "mounting",
+    "tines",
+    "tine spacing",
+    "tine inset",
+    "tine diameter",
+    "tine bars",
+    "arm width",
+    "fillet",
+    "markers",
+    "rest state",
+    "force zero",
 ];
-
 impl TestData {
     /// Reads a file; `reading` supplements the file's own statements, by [`KEYS`].
     ///

@@ -1,5 +1,6 @@
 //! Test data: the strains of a specimen, and the stresses that were measured.
 
+use super::mounting::Mounted;
 use super::table_reading::TableReading;
 use crate::document::{Statements, name_of};
 use crate::error::{Diagnostic, Error};
@@ -175,6 +176,8 @@ pub struct TestData {
     pub left_out: Vec<Observation>,
     /// The zero that was found in the record, if one was.
     pub found_zero: Option<FoundZero>,
+    /// How the sheet of a biaxial test is held.
+    pub mounted: Mounted,
     /// The name of the specimen, where it is stated: tests of one name are one specimen.
     pub specimen: Option<String>,
     /// The columns and rows of the file that were read.
@@ -291,18 +294,6 @@ impl TestData {
             }
         }
         moved
-    }
-
-    /// The test with the zero that was found moved, as [`Self::moved`].
-    #[must_use]
-    pub fn with_zero_moved(&self, by: f64) -> Self {
-        let mut all = self.clone();
-        for one in all.observations.iter_mut().chain(&mut all.left_out) {
-            *one = self.moved(one, by);
-        }
-        let stresses = all.observations.iter().map(|one| one.stress.abs());
-        all.largest_stress = stresses.fold(0.0, f64::max);
-        all
     }
 
     /// λ − 1 along the axis over which the data are drawn: the one of the stress in a uniaxial test, otherwise the one that is stretched further.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::misfit::{Estimated, Misfit, Response, Row, at_bound};
 use super::zero::Zero;
-use crate::calibration::data::{FoundZero, Observation, TestData};
+use crate::calibration::data::{Observation, TestData};
 use crate::calibration::least_squares::{self, LEAST_SIZE};
 use crate::calibration::settings::MEASURE;
 use crate::material::HyperelasticLaw;
@@ -32,10 +32,21 @@ pub struct Elastic<'a> {
     law_values: usize,
     /// Zeros whose values stand behind those of the law.
     zeros: Vec<Zero>,
+    /// What the stresses have beside those of the law.
+    linear: Option<Arc<Linear>>,
     /// A stress to draw from: the secant of the data, Σ |σ| |x| / Σ x², in MPa.
     pub stiffness: f64,
     /// The least size of each parameter that counts.
     least: Vec<f64>,
+}
+
+/// A part of the stresses that is linear in the values: Σ ∂σᵢ/∂pⱼ (pⱼ − pⱼ₀).
+#[derive(Debug)]
+pub struct Linear {
+    /// p₀.
+    pub at: Vec<f64>,
+    /// The derivatives of each row in MPa.
+    rows: Vec<Vec<f64>>,
 }
 
 impl<'a> Elastic<'a> {
@@ -81,6 +92,7 @@ impl<'a> Elastic<'a> {
             observations,
             law_values: entries.len(),
             zeros: Vec::new(),
+            linear: None,
             stiffness,
             least: entries
                 .iter()
@@ -101,19 +113,20 @@ impl<'a> Elastic<'a> {
         }
     }
 
-    /// The same with the zeros as values that were found in the records.
+    /// The same with the zeros as values that are found with the law.
     pub fn with_zeros(&self) -> Self {
-        let zero = |(test, data): (usize, &TestData)| {
-            let strains = data.observations.iter().map(|one| data.drawn_strain(one));
-            let scale = match data.found_zero? {
-                FoundZero::Strain { .. } => strains.fold(0.0, |most: f64, x| most.max(x.abs())),
-                FoundZero::Stress { .. } => data.largest_stress,
-            };
-            Some(Zero { test, scale })
-        };
         Self {
-            zeros: self.tests.iter().enumerate().filter_map(zero).collect(),
+            zeros: Zero::of(self.tests),
             ..self.clone()
+        }
+    }
+
+    /// The same with a part that is linear in the values about some of them; `derivatives` are those at an observation of a test.
+    pub fn with_linear(self, at: Vec<f64>, derivatives: impl Fn(&Observation) -> Vec<f64>) -> Self {
+        let rows = self.observations.iter().map(derivatives).collect();
+        Self {
+            linear: Some(Arc::new(Linear { at, rows })),
+            ..self
         }
     }
 
@@ -132,11 +145,12 @@ impl<'a> Elastic<'a> {
         self.law.with_values(of_law, measure, MEASURE)
     }
 
-    /// By how much some values move the zero of a test.
-    fn moved(&self, values: &[f64], test: usize) -> f64 {
-        let index = self.zeros.iter().position(|zero| zero.test == test);
-        index.map_or(0.0, |index| {
-            self.zeros[index].by(values[self.law_values + index])
+    /// An observation of a test with the zeros of some values.
+    fn moved(&self, values: &[f64], test: usize, observation: &Observation) -> Observation {
+        let of_zeros = values.iter().skip(self.law_values);
+        let pairs = self.zeros.iter().zip(of_zeros);
+        pairs.fold(*observation, |one, (zero, value)| {
+            zero.moved(*value, (test, &self.tests[test]), &one)
         })
     }
 }
@@ -176,9 +190,20 @@ impl Response for Elastic<'_> {
         let pairs = self.points.iter().zip(&self.observations);
         let stress = |(row, one): (&Row, &Observation)| {
             let data = &self.tests[row.test];
-            data.stress_of(&*law, &data.moved(one, self.moved(values, row.test)))
+            data.stress_of(&*law, &self.moved(values, row.test, one))
         };
-        pairs.map(stress).collect()
+        let mut stresses: Vec<f64> = pairs.map(stress).collect();
+        if let Some(linear) = &self.linear {
+            for (stress, row) in stresses.iter_mut().zip(&linear.rows) {
+                let changes = values.iter().zip(&linear.at).map(|(now, at)| now - at);
+                *stress += row
+                    .iter()
+                    .zip(changes)
+                    .map(|(slope, by)| slope * by)
+                    .sum::<f64>();
+            }
+        }
+        stresses
     }
 
     fn predicted(&self, values: &[f64]) -> Vec<Vec<f64>> {
@@ -196,7 +221,8 @@ impl Response for Elastic<'_> {
             return Cow::Borrowed(self.tests);
         }
         let tests = self.tests.iter().enumerate();
-        let moved = tests.map(|(test, data)| data.with_zero_moved(self.moved(values, test)));
+        let moved =
+            tests.map(|(test, data)| data.with_observations(|one| self.moved(values, test, one)));
         Cow::Owned(moved.collect())
     }
 
@@ -204,10 +230,11 @@ impl Response for Elastic<'_> {
         &self.zeros
     }
 
-    fn stress_moved(&self, values: &[f64], test: usize) -> f64 {
-        match self.tests[test].found_zero {
-            Some(FoundZero::Stress { .. }) => self.moved(values, test),
-            _ => 0.0,
+    fn measured(&self, values: &[f64], row: usize) -> f64 {
+        let (point, observation) = (&self.points[row], &self.observations[row]);
+        match self.zeros[..] {
+            [] => point.stress,
+            _ => self.moved(values, point.test, observation).stress,
         }
     }
 

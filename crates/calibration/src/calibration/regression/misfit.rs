@@ -85,9 +85,9 @@ pub trait Response: Clone + Sync {
         &[]
     }
 
-    /// By how much the measured stresses of a test are larger then, in MPa.
-    fn stress_moved(&self, _values: &[f64], _test: usize) -> f64 {
-        0.0
+    /// The measured stress of a row with the zeros that the values give it, in MPa; asked for where there are zeros.
+    fn measured(&self, _values: &[f64], _row: usize) -> f64 {
+        f64::NAN
     }
 
     /// Whether a value is the logarithm of a parameter.
@@ -165,9 +165,14 @@ impl<R: Response> Residuals for Misfit<R> {
 
     fn evaluate(&self, values: &[f64], residuals: &mut [f64]) -> bool {
         let stresses = self.response.stresses(values);
-        let rows = self.rows.iter().zip(stresses);
-        for (residual, (row, stress)) in residuals.iter_mut().zip(rows) {
-            let measured = row.stress + self.response.stress_moved(values, row.test);
+        let has_zeros = !self.response.zeros().is_empty();
+        let rows = self.rows.iter().zip(stresses).enumerate();
+        for (residual, (index, (row, stress))) in residuals.iter_mut().zip(rows) {
+            let measured = if has_zeros {
+                self.response.measured(values, index)
+            } else {
+                row.stress
+            };
             *residual = row.weight * (measured - stress);
         }
         residuals.iter().all(|residual| residual.is_finite())
