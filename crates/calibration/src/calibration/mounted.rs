@@ -92,7 +92,7 @@ pub fn nearest_mounted(
 ) -> Result<Fit, Error> {
     let homogeneous = nearest(law, tests, settings)?;
     let mut solved = Solved::new(law, tests, mounting, &homogeneous);
-    let mut values = values_of(&homogeneous);
+    let mut values = values_of(&solved.begin(settings)?);
     let mut last = values.clone();
     let (mut best, mut change, mut rounds) = (f64::INFINITY, f64::INFINITY, 0);
     let mut reached: Option<Middle> = None;
@@ -243,6 +243,38 @@ impl Solved {
             .stretched(1, second, nominal)
     }
 
+    /// The law that is nearest to the middle that a neo-Hookean sheet has: what it carries of the forces is nearer to that of any law than
+    /// the homogeneous reading, whose strains are too large.
+    fn begin(&mut self, settings: &FitSettings) -> Result<Fit, Error> {
+        let neo_hooke = Law::named("neo-hooke").expect("a law of the registry");
+        let read: Vec<TestData> = self
+            .tests
+            .iter()
+            .map(|test| test.stretched(self.stated))
+            .collect();
+        let modulus = nearest(neo_hooke, &read, &FitSettings::default())?.parameters[0].value;
+        let (law, _) = neo_hooke.with_values(&[modulus], StressMeasure::Nominal, MEASURE);
+        let laws = [SheetLaw {
+            law: law.into(),
+            stretches: [1.0; 2],
+        }];
+        let knots = self.interpolation.knots();
+        let states = self.sheet.states(&laws, knots, &[])?;
+        let scale = ([0.0; 2], self.largest_stress());
+        let middle = Middle::new(&self.interpolation, &laws, &[], &states, scale);
+        self.states = states.into_iter().flatten().collect();
+        nearest(self.law, &self.of_middle(&middle), settings)
+    }
+
+    /// The tests as they would be of a middle.
+    fn of_middle(&self, middle: &Middle) -> Vec<TestData> {
+        let of_test = |test: &TestData| {
+            let own = test.with_observations(|one| middle.of(one));
+            own.stretched(self.stated)
+        };
+        self.tests.iter().map(of_test).collect()
+    }
+
     /// The fit to the middle of the sheet about some values, and the tests as they would be of this middle.
     fn fit(
         &self,
@@ -250,11 +282,7 @@ impl Solved {
         values: &[f64],
         settings: &FitSettings,
     ) -> Result<(Fit, Vec<TestData>), Error> {
-        let of_middle = |test: &TestData| {
-            let own = test.with_observations(|one| middle.of(one));
-            own.stretched(self.stated)
-        };
-        let tests: Vec<TestData> = self.tests.iter().map(of_middle).collect();
+        let tests = self.of_middle(middle);
         let derivatives = |one: &Observation| middle.derivatives(&self.as_mounted(one));
         let fit = nearest_about(self.law, &tests, values, derivatives, settings)?;
         Ok((fit, tests))

@@ -181,7 +181,15 @@ impl Layout {
             }
             let is_kept = rows.binary_search(&index).is_ok();
             if part.remarks.is_empty() && is_kept {
-                along.push((index, first));
+                // The size of a biaxial strain: protocols begin where both are small.
+                along.push((
+                    index,
+                    if second.abs() > first.abs() {
+                        second
+                    } else {
+                        first
+                    },
+                ));
             }
             let observations = if is_kept { &mut kept } else { &mut left_out };
             observations.extend(self.observations(row, [first, second], &part));
