@@ -1,6 +1,7 @@
 //! The parameters of a material card, as a law reads them.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::f64::consts::FRAC_PI_2;
 
 use super::volume::POISSON_RATIO;
 use crate::document::{Bound, Section, name_of};
@@ -169,6 +170,8 @@ pub struct CardEntries {
     pub parameters: Vec<Parameter>,
     /// Its choices: key and name.
     pub choices: Vec<(&'static str, String)>,
+    /// Parameters that only tests with shear determine, with the values at which fits to others hold them.
+    pub of_shear: &'static [(&'static str, f64)],
 }
 
 /// The source of the values.
@@ -189,6 +192,7 @@ pub struct Parameters<'a> {
     pub strain_measure: StrainMeasure,
     asked: RefCell<Vec<Parameter>>,
     choices: RefCell<Vec<(&'static str, String)>>,
+    of_shear: Cell<&'static [(&'static str, f64)]>,
 }
 
 impl<'a> Parameters<'a> {
@@ -221,6 +225,7 @@ impl<'a> Parameters<'a> {
             strain_measure,
             asked: RefCell::default(),
             choices: RefCell::default(),
+            of_shear: Cell::default(),
         }
     }
 
@@ -254,6 +259,16 @@ impl<'a> Parameters<'a> {
     /// An angle in rad. Every angle gives the law that one within `period` gives, and the law does not change to first order at its ends.
     pub fn angle(&self, key: &'static str, period: [f64; 2]) -> f64 {
         self.ask(key, Dimension::Angle, Bound::Any, period)
+    }
+
+    /// The angle in rad between one family of fibres and the first axis.
+    pub fn fibre_angle(&self) -> f64 {
+        self.angle("angle", [-FRAC_PI_2, FRAC_PI_2])
+    }
+
+    /// Parameters that only tests with shear determine, with the values at which fits to others hold them.
+    pub fn hold_without_shear(&self, held: &'static [(&'static str, f64)]) {
+        self.of_shear.set(held);
     }
 
     /// A choice that a card states; the first one where there is no card.
@@ -349,6 +364,7 @@ impl<'a> Parameters<'a> {
         CardEntries {
             parameters: self.asked.into_inner(),
             choices: self.choices.into_inner(),
+            of_shear: self.of_shear.get(),
         }
     }
 
