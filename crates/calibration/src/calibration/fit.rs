@@ -18,7 +18,7 @@ use std::sync::Arc;
 use super::data::{Observation, Test, TestData};
 use super::fitted::Fit;
 use super::regression::{Elastic, Misfit, Response, Search, ordered};
-use super::settings::{FitSettings, limits};
+use super::settings::{FitSettings, held, limits};
 use super::solution::Solution;
 use super::trust::noise_warnings;
 use crate::error::Error;
@@ -63,9 +63,16 @@ pub fn nearest(
         return Err(Error::input(message, hint));
     }
     let parameters = entries.parameters;
-    let bounds = limits(law, &parameters, &settings.bounds, response.stiffness)?;
+    let bounds = limits(
+        law,
+        tests,
+        &parameters,
+        &settings.bounds,
+        response.stiffness,
+    )?;
     let misfit = Misfit::new(response, settings.weighting);
-    check_points(law, tests, parameters.len())?;
+    let fitted = bounds.iter().filter(|[low, high]| low < high).count();
+    check_points(law, tests, fitted)?;
     let search = Search {
         misfit: &misfit,
         parameters: &parameters,
@@ -89,8 +96,25 @@ pub fn nearest(
     let tests = solution.misfit.response.moved_tests(&solution.values);
     let of_noise = noise_warnings(&fit.quality, &*fit.fitted, &tests, settings.weighting);
     fit.quality.warnings.extend(of_noise);
+    fit.quality
+        .warnings
+        .extend(held_warning(&held(law, &tests, &settings.bounds)));
     fit.choices = solution.misfit.response.build(&solution.values).1.choices;
     Ok(fit)
+}
+
+/// The warning about parameters that only shear determines.
+fn held_warning(held: &[(&str, f64)]) -> Option<String> {
+    let values: Vec<String> = held
+        .iter()
+        .map(|(key, value)| format!("{key} = {value}"))
+        .collect();
+    (!held.is_empty()).then(|| {
+        format!(
+            "no test shears the sheet, which would determine {}: held, not fitted; state what is known, or add a test in simple shear",
+            values.join(", ")
+        )
+    })
 }
 
 /// Parameters need more points than there are of them.

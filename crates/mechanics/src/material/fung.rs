@@ -34,7 +34,7 @@ use crate::document::Bound;
 /// Am. J. Physiol. 237, H620 (1979), doi:10.1152/ajpheart.1979.237.5.H620
 #[derive(Clone, Copy, Debug)]
 pub struct Fung {
-    /// c in MPa; not a number where Q is not positive definite.
+    /// c in MPa.
     pub c: f64,
     /// a₁, a₂, a₃, a₄.
     pub a: [f64; 4],
@@ -43,20 +43,19 @@ pub struct Fung {
 impl Fung {
     /// Reads the parameters of a card.
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
-        let mut c = parameters.stress("c", Bound::Positive);
+        let c = parameters.stress("c", Bound::Positive);
         let number = |key, bound| parameters.number(key, bound, [0.1, 500.0]);
         let [a1, a2] = ["a1", "a2"].map(|key| number(key, Bound::Positive));
-        let (a3, a4) = (number("a3", Bound::Any), number("a4", Bound::Positive));
+        number("a3", Bound::Any);
+        let a4 = number("a4", Bound::Positive);
         let angle = parameters.angle(
             "angle",
             [-0.25, 0.25].map(|turn| turn * std::f64::consts::PI),
         );
         parameters.hold_without_shear(&[("a4", 10.0), ("angle", 0.0)]);
-        if a3 * a3 >= a1 * a2 {
-            let hint = "a3² must be less than a1 a2, or some strain lowers the energy";
-            parameters.fault("a3", "makes the energy not convex", hint);
-            c = f64::NAN;
-        }
+        let most = (1.0 - 1e-9) * (a1 * a2).sqrt();
+        let hint = "a3² must be less than a1 a2, or some strain lowers the energy";
+        let a3 = parameters.limited("a3", most, hint);
         let a = [a1, a2, a3, a4];
         Box::new(AnisotropicSheet::turned_by(Self { c, a }, angle))
     }

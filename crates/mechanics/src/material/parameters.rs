@@ -150,11 +150,12 @@ impl Parameter {
             }
     }
 
-    /// Whether a value is an angle about which the law is symmetric.
+    /// Whether a value is an angle about which the stresses of a sheet that is stretched along its axes are symmetric.
     pub fn is_symmetric_at(&self, value: f64) -> bool {
         const SAME: f64 = 1e-9;
-        let is_end = |end: &f64| (value - end).abs() < SAME;
-        self.dimension == Dimension::Angle && self.usual.iter().any(is_end)
+        let quarters = value / FRAC_PI_2;
+        let off = (quarters - quarters.round()).abs() * FRAC_PI_2;
+        self.dimension == Dimension::Angle && off < SAME
     }
 
     /// Whether energy and stress are proportional to it, as they are to every parameter that is a stress.
@@ -256,7 +257,7 @@ impl<'a> Parameters<'a> {
         exponent
     }
 
-    /// An angle in rad. Every angle gives the law that one within `period` gives, and the law does not change to first order at its ends.
+    /// An angle in rad. Every angle gives the law that one within `period` gives, if need be with other parameters exchanged.
     pub fn angle(&self, key: &'static str, period: [f64; 2]) -> f64 {
         self.ask(key, Dimension::Angle, Bound::Any, period)
     }
@@ -269,6 +270,22 @@ impl<'a> Parameters<'a> {
     /// Parameters that only tests with shear determine, with the values at which fits to others hold them.
     pub fn hold_without_shear(&self, held: &'static [(&'static str, f64)]) {
         self.of_shear.set(held);
+    }
+
+    /// A parameter that was asked for before, within ± `most`, which depends on others: a larger one is a fault of a card, and in
+    /// a fit the law is that of the limit.
+    pub fn limited(&self, key: &'static str, most: f64, hint: &str) -> f64 {
+        let mut asked = self.asked.borrow_mut();
+        let mut same = asked.iter_mut().filter(|one| one.key == key);
+        let Some(parameter) = same.next() else {
+            return f64::NAN;
+        };
+        if parameter.value.abs() > most {
+            let message = format!("is larger than the other parameters allow, {most:.4}");
+            self.fault(key, &message, hint);
+            parameter.value = parameter.value.clamp(-most, most);
+        }
+        parameter.value
     }
 
     /// A choice that a card states; the first one where there is no card.
