@@ -6,6 +6,7 @@ import base64
 import json
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -185,6 +186,7 @@ def fit(
     strain_unit: str | Sequence[str] | None = None,
     weighting: str = "absolute",
     bounds: Mapping[str, tuple[Quantity, Quantity]] | None = None,
+    fixed: Mapping[str, Quantity] | None = None,
     starts: int = 8,
     relaxation: bool | int = False,
     softening: bool = False,
@@ -216,7 +218,9 @@ def fit(
     weighting : {"absolute", "relative"}
         Weighting of the residuals.
     bounds : mapping, optional
-        Lower and upper limits of parameters by key [MPa, or dimensionless]: ``{"c10": ("20 kPa", 0.06)}``.
+        Lower and upper limits of parameters by key [MPa, rad, or dimensionless]: ``{"c10": ("20 kPa", 0.06)}``.
+    fixed : mapping, optional
+        Parameters that are stated instead of fitted, in the same units: ``{"angle": "30 deg"}``.
     starts : int
         Number of starts that are optimised, 1 or more.
     relaxation : bool or int
@@ -263,6 +267,7 @@ def fit(
     tables = [(own, head + table) for (own, table), head in zip(named, of_each, strict=True)]
     history = _history(law, relaxation, softening)
     limits = [(key, _limits(key, pair)) for key, pair in (bounds or {}).items()]
+    limits += [(key, [_limit(value, f"fixed.{key}")] * 2) for key, value in (fixed or {}).items()]
     least = whole(starts, "starts", 1)
     return Fit(_core.fit(tables, law, name, said, weighting, limits, least, history, callback(progress)))
 
@@ -307,7 +312,7 @@ def _statements(given: Mapping[str, Any], count: int) -> tuple[dict[str, str], l
 
 
 def _limits(key: str, pair: Any) -> list[float]:
-    """The limits of a parameter, which is a stress or a plain number."""
+    """The limits of a parameter, which is a stress, an angle or a plain number."""
     argument = f"bounds.{key}"
     if isinstance(pair, str) or np.shape(np.asarray(pair, dtype=object)) != (2,):
         raise fault(argument, f"is {pair!r}", 'give the lower and the upper limit, such as (0.01, 0.1) or ("20 kPa", "60 kPa")')
@@ -320,10 +325,10 @@ def _limits(key: str, pair: Any) -> list[float]:
 def _limit(value: Any, argument: str) -> float:
     if not isinstance(value, (str, SupportsUnits)):
         return float(array_of(value, argument))
-    try:
-        return number(value, "MPa", argument)
-    except InputError:
-        return number(value, "", argument)
+    for unit in ("MPa", "rad"):
+        with suppress(InputError):
+            return number(value, unit, argument)
+    return number(value, "", argument)
 
 
 def _are_tests(data: Any) -> bool:

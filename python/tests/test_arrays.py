@@ -147,6 +147,13 @@ def test_bounds_have_units_and_are_checked(curve):
         gb.fit(curve, "neo-hooke", starts=-1, **SAID)
 
 
+def test_fixed_parameters_are_stated(curve):
+    found = gb.fit(curve, "mooney-rivlin", fixed={"c01": "2 kPa"}, **SAID)
+    assert found.parameters["c01"].value == 0.002
+    with pytest.raises(gb.InputError, match="fixed.c01"):
+        gb.fit(curve, "mooney-rivlin", fixed={"c01": "2 mm"}, **SAID)
+
+
 def test_plain_numbers_say_what_data_do_not(root, curve):
     pytest.importorskip("pint")
     forces = {"extension [mm]": 10 * (curve[:, 0] - 1), "force [N]": 8 * curve[:, 1]}

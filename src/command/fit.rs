@@ -7,12 +7,14 @@ use clap::{ArgGroup, Args};
 use serde_json::Value;
 
 use super::choice::one_of;
+use super::new_card::pair;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use gelbench_base::document::Statements;
 use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::units::{self, Dimension};
 use gelbench_calibration::calibration::{
     self, Base, Bounds, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData,
     Weighting,
@@ -53,6 +55,9 @@ pub struct FitArguments {
     /// Keep a parameter within limits, in MPa, rad or as a ratio
     #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
     bounds: Vec<String>,
+    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio
+    #[arg(long = "fix", value_name = "KEY=VALUE", value_parser = pair)]
+    fixed: Vec<(String, String)>,
     /// Number of starts that are optimised
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
@@ -110,7 +115,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     tests.iter().for_each(|test| warn(&test.warnings));
     let settings = FitSettings {
         weighting: arguments.weighting,
-        bounds: bounds(&arguments.bounds)?,
+        bounds: [bounds(&arguments.bounds)?, fixed(&arguments.fixed)?].concat(),
         starts: arguments.starts.into(),
     };
     let base = arguments.card.as_deref().map(load).transpose()?;
@@ -346,6 +351,22 @@ fn bounds(texts: &[String]) -> Result<Bounds, Error> {
                 "write it as key=low..high, such as jm=5..200",
             )
         })
+    });
+    together(each)
+}
+
+/// Stated values as bounds that are equal.
+fn fixed(stated: &[(String, String)]) -> Result<Bounds, Error> {
+    let dimensions = [Dimension::Ratio, Dimension::Stress, Dimension::Angle];
+    let each = stated.iter().map(|(key, text)| {
+        let value = dimensions
+            .iter()
+            .find_map(|dimension| units::parse(text, *dimension).ok());
+        let value = value.ok_or_else(|| {
+            let hint = "such as angle=\"30 deg\", mu=\"2 kPa\" or k2=0.8";
+            Error::input(format!("the value `{text}` of {key} cannot be read"), hint)
+        })?;
+        Ok((key.clone(), [value; 2]))
     });
     together(each)
 }

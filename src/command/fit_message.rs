@@ -134,12 +134,15 @@ fn parameters(fit: &Fit) -> String {
     }
     let keys = fit.parameters.iter().map(|parameter| parameter.key.len());
     let width = keys.max().unwrap_or(0).max(12);
-    let estimates = fit.quality.estimates.iter().zip(&fit.quality.at_bound);
-    for (parameter, (estimate, at_bound)) in fit.parameters.iter().zip(estimates) {
+    for (index, (parameter, estimate)) in fit.parameters.iter().zip(&quality.estimates).enumerate()
+    {
         let (key, unit, value) = (parameter.key, parameter.unit(), digits(parameter.value, 6));
         let [low, high] = estimate.interval.map(|end| digits(end, 5));
         let error = digits(estimate.standard_error, 2);
-        text += &match (at_bound, quality.has_intervals()) {
+        text += &match (quality.at_bound[index], quality.has_intervals()) {
+            _ if quality.held[index] => {
+                format!("  {key:<width$} {value} {unit}   held, not fitted\n")
+            }
             (true, _) => format!("  {key:<width$} {value} {unit}   at a bound\n"),
             (_, false) => format!("  {key:<width$} {value} {unit}   no interval\n"),
             _ => format!("  {key:<width$} {value} ± {error} {unit}   95 % {low} … {high}\n"),

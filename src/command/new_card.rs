@@ -279,7 +279,7 @@ fn quantity(text: &str, dimension: Dimension) -> Result<f64, Diagnostic> {
     })
 }
 
-fn pair(text: &str) -> Result<(String, String), Diagnostic> {
+pub fn pair(text: &str) -> Result<(String, String), Diagnostic> {
     let parts = text.split_once('=');
     let parts = parts.map(|(key, value)| (key.trim(), value.trim()));
     match parts {

@@ -65,6 +65,12 @@ impl FittedParameters {
         let fit: Value = serde_json::from_str(text).map_err(|_| wrong("is not JSON"))?;
         let parameters = fit["parameters"].as_array();
         let parameters = parameters.ok_or_else(|| wrong("contains no `parameters`"))?;
+        // What was held and not fitted has no uncertainty.
+        let fitted = parameters.iter().enumerate();
+        let fitted = fitted.filter(|(_, one)| one["held"] != true);
+        let (indices, parameters): (Vec<usize>, Vec<Value>) =
+            fitted.map(|(index, one)| (index, one.clone())).unzip();
+        let parameters = &parameters[..];
         let texts = |key: &str| -> Option<Vec<String>> {
             let all = parameters
                 .iter()
@@ -81,7 +87,7 @@ impl FittedParameters {
         let errors =
             numbers("standard_error").ok_or_else(|| without_errors(file, &fit, parameters))?;
         let errors = widened(&errors, parameters);
-        let correlation = |i: usize, j: usize| fit["correlation"][i][j].as_f64();
+        let correlation = |i: usize, j: usize| fit["correlation"][indices[i]][indices[j]].as_f64();
         let count = keys.len();
         let mut covariance = DMatrix::zeros(count, count);
         for i in 0..count {

@@ -201,3 +201,38 @@ fn test_data_are_converted() {
     let expected = "# test: uniaxial\nstretch [-],cauchy_stress [MPa]\n1.5,0.30000000000000004\n";
     assert_eq!(words(&done.get_output().stdout), expected);
 }
+
+/// `--fix` takes units, and a card with a stated angle is made again.
+#[test]
+fn a_stated_parameter_is_held_and_stands_on_the_card() {
+    let folder = TempDir::new().unwrap();
+    let data = root().join("validation/measured/tissue_biaxial/protocols.csv");
+    let data = data.to_str().unwrap();
+    let fit = |fixed: &'static str| {
+        let fixed = [
+            "--law",
+            "lee-sacks",
+            "--name",
+            "a",
+            "--output",
+            ".",
+            "--fix",
+            fixed,
+        ];
+        let arguments = [&["materials", "fit", data, "--one-specimen"][..], &fixed].concat();
+        gelbench(folder.path(), &arguments)
+    };
+    let done = fit("angle=3 deg").code(0);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("rad   held, not fitted"), "{printed}");
+    let figures = fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let figures: Value = serde_json::from_str(&figures).unwrap();
+    let angle = &figures["parameters"][5];
+    assert_eq!([&angle["held"], &angle["at_bound"]], [true, false]);
+    assert!((angle["value"].as_f64().unwrap() - 3_f64.to_radians()).abs() < 1e-12);
+    gelbench(folder.path(), &["materials", "refit", "a.toml"]).code(0);
+    for (wrong, why) in [("angle=3 mm", "cannot be read"), ("kappa=1", "`kappa`")] {
+        let told = words(&fit(wrong).code(2).get_output().stderr);
+        assert!(told.contains(why), "{told}");
+    }
+}

@@ -1,8 +1,9 @@
 //! Hyperelastic laws, the cards with their parameters, and the thin sheet made of them.
 //!
-//! A new law is one file and one entry in [`registry`]. The file implements [`InvariantLaw`], [`BodyLaw`] for a body
-//! that changes its volume, or [`HyperelasticLaw`] for any other law.
+//! A new law is one file and one entry in [`registry`]. The file implements [`InvariantLaw`], [`AnisotropicLaw`] for
+//! a sheet with directions, [`BodyLaw`] for a body that changes its volume, or [`HyperelasticLaw`] for any other law.
 
+mod anisotropic_law;
 mod arruda_boyce;
 pub mod body;
 pub mod card;
@@ -11,16 +12,21 @@ mod compressible_neo_hooke;
 pub mod curve;
 mod exponential;
 mod flory;
+mod fung;
 mod fung_demiray;
 mod gent;
 mod holzapfel_gasser_ogden;
+mod holzapfel_ogden;
 mod invariant_law;
 pub mod invariants;
+mod jet;
 pub mod known;
 pub mod law;
+mod lee_sacks;
 mod linear_elastic;
 mod logarithm;
 pub mod marlow;
+mod may_newman;
 mod measures;
 mod monotone_cubic;
 mod mooney_rivlin;
@@ -47,19 +53,25 @@ mod yeoh;
 #[cfg(test)]
 mod battery;
 
+pub use anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 pub use arruda_boyce::ArrudaBoyce;
 pub use body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 pub use card::{Card, ParameterUncertainty};
 pub use code::{Code, CodeLaw};
 pub use compressible_neo_hooke::CompressibleNeoHooke;
+pub use fung::Fung;
 pub use fung_demiray::FungDemiray;
 pub use gent::Gent;
 pub use holzapfel_gasser_ogden::HolzapfelGasserOgden;
+pub use holzapfel_ogden::HolzapfelOgden;
 pub use invariant_law::InvariantLaw;
 pub use invariants::{EnergyDerivatives, Invariants};
+pub use jet::Jet;
 pub use known::{Known, Moduli};
 pub use law::HyperelasticLaw;
+pub use lee_sacks::LeeSacks;
 pub use linear_elastic::LinearElastic;
+pub use may_newman::MayNewman;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;
 pub use network::Network;

@@ -137,6 +137,7 @@ fn fitted(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Fitted {
         let value = format!("{} {}", figures(parameter.value, 6), parameter.unit());
         let [low, high] = estimate.interval;
         let uncertainty = match (quality.at_bound[index], quality.has_intervals()) {
+            _ if quality.held[index] => "held, not fitted".to_owned(),
             (true, _) => "at a bound".to_owned(),
             (_, false) => "no interval".to_owned(),
             _ => format!("95 % {} … {}", figures(low, 5), figures(high, 5)),

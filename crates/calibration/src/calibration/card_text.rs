@@ -194,6 +194,7 @@ fn parameters(text: &mut String, fit: &Fit) {
 /// The standard error of a parameter in words.
 fn error(fit: &Fit, index: usize) -> String {
     match fit.quality.estimates[index].standard_error {
+        _ if fit.quality.held[index] => "held, not fitted".to_owned(),
         error if !error.is_finite() => "at a bound".to_owned(),
         _ if !fit.quality.has_intervals() => "no interval".to_owned(),
         error => format!("standard error {error:.2e}"),

@@ -20,7 +20,7 @@ use super::fitted::Fit;
 use super::least_squares::descend;
 use super::mounted::{mounting, nearest_mounted};
 use super::regression::{Elastic, Misfit, Response, Rival, Search, ordered};
-use super::settings::{FitSettings, limits};
+use super::settings::{FitSettings, held, limits};
 use super::solution::Solution;
 use super::trust::noise_warnings;
 use crate::error::Error;
@@ -69,9 +69,16 @@ pub fn nearest(
         return Err(Error::input(message, hint));
     }
     let parameters = entries.parameters;
-    let bounds = limits(law, &parameters, &settings.bounds, response.stiffness)?;
+    let bounds = limits(
+        law,
+        tests,
+        &parameters,
+        &settings.bounds,
+        response.stiffness,
+    )?;
     let misfit = Misfit::new(response, settings.weighting);
-    check_points(law, tests, parameters.len())?;
+    let fitted = bounds.iter().filter(|[low, high]| low < high).count();
+    check_points(law, tests, fitted)?;
     let search = Search {
         misfit: &misfit,
         parameters: &parameters,
@@ -110,7 +117,8 @@ pub fn nearest_about(
 ) -> Result<Fit, Error> {
     let response = Elastic::new(law, tests).with_zeros();
     let parameters = response.build(&[]).1.parameters;
-    let mut bounds = limits(law, &parameters, &settings.bounds, response.stiffness)?;
+    let stiffness = response.stiffness;
+    let mut bounds = limits(law, tests, &parameters, &settings.bounds, stiffness)?;
     bounds.extend(response.zeros().iter().map(|zero| zero.bounds()));
     let response = response.with_linear(start.to_vec(), derivatives);
     let misfit = Misfit::new(response, settings.weighting);
@@ -141,8 +149,25 @@ fn finished(
     let tests = solution.misfit.response.moved_tests(&solution.values);
     let of_noise = noise_warnings(&fit.quality, &*fit.fitted, &tests, settings.weighting);
     fit.quality.warnings.extend(of_noise);
+    fit.quality
+        .warnings
+        .extend(held_warning(&held(law, &tests, &settings.bounds)));
     fit.choices = solution.misfit.response.build(&solution.values).1.choices;
     fit
+}
+
+/// The warning about parameters that only shear determines.
+fn held_warning(held: &[(&str, f64)]) -> Option<String> {
+    let values: Vec<String> = held
+        .iter()
+        .map(|(key, value)| format!("{key} = {value}"))
+        .collect();
+    (!held.is_empty()).then(|| {
+        format!(
+            "no test shears the sheet, which would determine {}: held, not fitted; state what is known, or add a test in simple shear",
+            values.join(", ")
+        )
+    })
 }
 
 /// Parameters need more points than there are of them.

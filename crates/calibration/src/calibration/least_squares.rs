@@ -80,6 +80,7 @@ pub fn minimise(
         return None;
     }
     let parameter = |[low, high]: &[f64; 2]| MPPar {
+        fixed: low == high,
         limited_low: low.is_finite(),
         limited_up: high.is_finite(),
         limit_low: *low,
@@ -166,8 +167,9 @@ impl<'a> Tangent<'a> {
         let pairs = values.iter().zip(bounds);
         let held = pairs.map(|(value, [low, high])| value <= low || value >= high);
         let held: Vec<bool> = held.collect();
-        let free: Vec<usize> = (0..values.len()).filter(|index| !held[*index]).collect();
         let jacobian = jacobian(model, values, &held, &vec![LEAST_SIZE; values.len()])?;
+        let has_effect = |index: &usize| jacobian.column(*index).iter().any(|entry| *entry != 0.0);
+        let free: Vec<usize> = (0..values.len()).filter(has_effect).collect();
         Some(Self {
             values,
             bounds,

@@ -105,7 +105,13 @@ fn best_series<'a>(
             break;
         }
         let scale = elastic.fitted.youngs_modulus();
-        let bounds = limits(elastic.law, &parameters, &settings.bounds, scale)?;
+        let bounds = limits(
+            elastic.law,
+            misfit.response.tests,
+            &parameters,
+            &settings.bounds,
+            scale,
+        )?;
         let bounds = transformed(bounds, of_law);
         let Some(values) = misfit.minimum(&laws, &parameters, &bounds) else {
             continue;

@@ -1,9 +1,9 @@
 //! The settings of a fit: weights, bounds, starts.
 
-use super::data::{Observation, TestData};
+use super::data::{Observation, Test, TestData};
 use crate::document::{Bound, name_of};
 use crate::error::{Error, suggestion};
-use crate::material::parameters::{Parameter, StrainMeasure};
+use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
 use crate::units::Dimension;
 
@@ -57,7 +57,7 @@ impl Weighting {
     }
 }
 
-/// Limits of parameters by key, in internal units.
+/// Limits of parameters by key, in internal units; a parameter whose limits are equal has this value and is not fitted.
 pub type Bounds = Vec<(String, [f64; 2])>;
 
 /// The settings of a fit.
@@ -99,18 +99,42 @@ pub const SMALLEST_SHARE: f64 = 0.01;
 /// The strain measure that laws of a curve take in a fit.
 pub const MEASURE: StrainMeasure = StrainMeasure::Nominal;
 
+/// Parameters that the tests do not determine because none of them shears the sheet, with the values that they are held at.
+pub fn held(law: &Law, tests: &[TestData], bounds: &Bounds) -> Vec<(&'static str, f64)> {
+    let (_, entries) = law.with_values(&[], StressMeasure::Nominal, MEASURE);
+    let is_held = |(key, _): &&(&str, f64)| {
+        !has_shear(tests) && bounds.iter().all(|(stated, _)| stated != key)
+    };
+    entries.of_shear.iter().filter(is_held).copied().collect()
+}
+
+/// Whether the sign of an angle shows in some tests: stretched along its axes, a sheet and its mirror image are the same.
+fn has_shear(tests: &[TestData]) -> bool {
+    tests.iter().any(|data| data.test == Test::SimpleShear)
+}
+
 /// Lower and upper limit of each parameter; `scale` is a typical stress of the data.
 pub fn limits(
     law: &Law,
+    tests: &[TestData],
     parameters: &[Parameter],
     bounds: &Bounds,
     scale: f64,
 ) -> Result<Vec<[f64; 2]>, Error> {
     check_bounds(law, parameters, bounds)?;
+    let held = held(law, tests, bounds);
     let limit = |parameter: &Parameter| {
+        let given = bounds.iter().find(|(key, _)| key == parameter.key);
+        let is_stated = given.is_some_and(|(_, [low, high])| low == high);
+        if let Some((_, value)) = held.iter().find(|(key, _)| *key == parameter.key) {
+            return Ok([*value; 2]);
+        }
         let [low, high] = match parameter.bound {
             // The law is the same at every other angle.
-            Bound::Any if parameter.dimension == Dimension::Angle => parameter.usual,
+            Bound::Any if parameter.dimension == Dimension::Angle && !is_stated => {
+                let [low, high] = parameter.usual;
+                [if has_shear(tests) { low } else { low.max(0.0) }, high]
+            }
             Bound::Any => [f64::NEG_INFINITY, f64::INFINITY],
             // Next to nothing beside what the data speak of.
             Bound::Positive if parameter.is_stress() => [1e-9 * scale, f64::INFINITY],
@@ -118,9 +142,8 @@ pub fn limits(
             Bound::NonNegative => [0.0, f64::INFINITY],
             Bound::Within(low, high) | Bound::Range(low, high, _) => [low, high],
         };
-        let given = bounds.iter().find(|(key, _)| key == parameter.key);
         let [from, to] = given.map_or([low, high], |(_, [l, h])| [low.max(*l), high.min(*h)]);
-        if from < to {
+        if from < to || (from == to && is_stated) {
             return Ok([from, to]);
         }
         let message = format!("the bounds of {} allow no value of the law", parameter.key);
@@ -141,7 +164,7 @@ fn check_bounds(law: &Law, parameters: &[Parameter], bounds: &Bounds) -> Result<
         if bounds.iter().filter(|(other, _)| other == key).count() > 1 {
             return Err(Error::input(format!("{key} has two bounds"), "give one"));
         }
-        if low >= high {
+        if low > high {
             let message = format!("the bounds {low} … {high} of {key} are not in order");
             return Err(Error::input(message, "write the lower one first"));
         }

@@ -55,7 +55,7 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         return Err(Error::input(message, "measure more points"));
     }
     let scale = first.fitted.youngs_modulus();
-    let bounds = limits(first.law, &parameters, &settings.bounds, scale)?;
+    let bounds = limits(first.law, tests, &parameters, &settings.bounds, scale)?;
     let start: Vec<f64> = parameters.iter().map(|one| one.value).collect();
     let starts = starts(&start[..of_law], &bounds, largest);
     let minima = improved(&misfit, starts, &bounds);

@@ -17,10 +17,10 @@ use super::data::TestData;
 use super::fitted::Fit;
 use super::least_squares::{Precision, descend, lower, minimise, sum_of_squares};
 use super::regression::{Elastic, Misfit, Response, Rival, Zero, improved};
-use super::settings::{FitSettings, Weighting};
+use super::settings::{FitSettings, MEASURE, Weighting};
 use super::trust::{Judged, Quality, warnings};
 use crate::error::{Error, SolveFault};
-use crate::material::parameters::Parameter;
+use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::Law;
 use crate::statistics::Estimate;
 
@@ -126,7 +126,13 @@ impl<R: Response> Solution<R> {
             ..parameter.clone()
         };
         let pairs = parameters.iter().zip(&self.values).enumerate();
-        let parameters: Vec<Parameter> = pairs.map(with_value).collect();
+        let mut parameters: Vec<Parameter> = pairs.map(with_value).collect();
+        let (_, entries) = law.with_values(&self.values, StressMeasure::Nominal, MEASURE);
+        for (parameter, of_law) in parameters.iter_mut().zip(&entries.parameters) {
+            if parameter.key == of_law.key {
+                parameter.value = of_law.value;
+            }
+        }
         let predicted = response.predicted(&self.values);
         let mut quality = self.quality(&predicted);
         quality.warnings = warnings(&quality, &parameters, rival);

@@ -12,6 +12,7 @@ use super::registry::LAWS;
 use super::samples;
 use super::sheet::{COMPONENTS, Kinematics, PlaneTensor};
 
+mod anisotropic;
 mod changing_volume;
 mod particular;
 

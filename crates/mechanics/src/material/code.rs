@@ -47,7 +47,7 @@ impl Code {
     pub fn laws(self) -> &'static str {
         match self {
             Self::Abaqus => {
-                "neo-Hooke, Mooney-Rivlin, polynomials, Yeoh, Ogden, Arruda-Boyce, Holzapfel-Gasser-Ogden, and Marlow for laws of the first invariant"
+                "neo-Hooke, Mooney-Rivlin, polynomials, Yeoh, Ogden, Arruda-Boyce, Holzapfel-Gasser-Ogden, Fung, and Marlow for laws of the first invariant"
             }
             Self::CalculiX => {
                 "neo-Hooke, Mooney-Rivlin, polynomials, Yeoh, Ogden to three terms and Arruda-Boyce"
@@ -68,8 +68,8 @@ pub enum CodeLaw {
         keyword: String,
         /// Parameters by name, in the order in which the code reads them.
         parameters: Vec<(String, f64)>,
-        /// Unit vectors along the fibres (Abaqus), or along the first material axis where it is not that of the sheet
-        /// (FEBio).
+        /// Unit vectors along the fibres (Abaqus), or along the first material axis (Fung's law; FEBio where it is not
+        /// that of the sheet).
         directions: Vec<[f64; 2]>,
     },
     /// Marlow's law by points of the tension curve: exact where the energy depends on I₁ alone, wrong otherwise.

@@ -1,10 +1,10 @@
 //! The law of Holzapfel, Gasser and Ogden for sheets with fibres.
 
+use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 use super::code::{Code, CodeLaw};
-use super::curve;
-use super::law::{HyperelasticLaw, TensionResponse};
+use super::jet::Jet;
+use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
-use super::sheet::{Kinematics, PlaneTensor, SheetResponse};
 use crate::document::Bound;
 
 /// The law of Holzapfel, Gasser and Ogden: a neo-Hookean matrix with one or two families of fibres in the
@@ -26,9 +26,6 @@ use crate::document::Bound;
 ///
 /// Fibres carry load only where ⟨E⟩ is positive; the stress is continuous there, the tangent is not. At rest the
 /// tangent is that of stretched fibres.
-///
-/// The contraction and the shear of a strip cut from the sheet follow from equilibrium: its curve has no closed form
-/// and is found by Newton's method.
 ///
 /// **Limits.** k₁ → 0: neo-Hooke. κ = ⅓: isotropic.
 /// **Not covered.** Fibres out of the plane, and buckling of compressed fibres.
@@ -64,97 +61,38 @@ impl HolzapfelGasserOgden {
             .angle("angle", [0.0, std::f64::consts::FRAC_PI_2])
             .sin_cos();
         let fibres = [[cosine, sine], [cosine, -sine]];
-        Box::new(Self {
-            mu,
-            k1,
-            k2,
-            kappa,
-            fibres: fibres[..families].to_vec(),
-        })
-    }
-
-    /// The law in axes of which the first is `direction`.
-    fn turned(&self, [c, s]: [f64; 2]) -> Self {
-        let turn = |[x, y]: &[f64; 2]| [c * x + s * y, c * y - s * x];
-        Self {
-            fibres: self.fibres.iter().map(turn).collect(),
-            ..*self
-        }
-    }
-
-    /// Eₐ, ∂Eₐ/∂F, and Ψ, Ψ′, Ψ″ of one family; `None` for compressed fibres.
-    fn family(&self, kinematics: &Kinematics, [x, y]: [f64; 2]) -> Option<Family> {
-        let [e11, e12, e22] = kinematics.twice_green_lagrange;
-        let stretched = x * x * e11 + 2.0 * x * y * e12 + y * y * e22; // I₄ − 1
-        let aligned = 1.0 - 3.0 * self.kappa;
-        let e = self.kappa * kinematics.invariants.i1_minus_3 + aligned * stretched;
-        if e < 0.0 {
-            return None;
-        }
-        let f = &kinematics.deformation_gradient;
-        let along = [f[0] * x + f[1] * y, f[2] * x + f[3] * y]; // F a
-        let direction = PlaneTensor::new(along[0] * x, along[0] * y, along[1] * x, along[1] * y);
-        let exponent = self.k2 * e * e;
-        let growth = self.k1 * exponent.exp();
-        Some(Family {
-            de: 2.0 * (self.kappa * kinematics.half_d1 + aligned * direction),
-            energy: self.k1 / (2.0 * self.k2) * exponent.exp_m1(),
-            d: growth * e,
-            dd: growth * (1.0 + 2.0 * exponent),
-        })
-    }
-}
-
-struct Family {
-    de: PlaneTensor,
-    energy: f64,
-    d: f64,
-    dd: f64,
-}
-
-impl HyperelasticLaw for HolzapfelGasserOgden {
-    fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
-        let mut energy = 0.5 * self.mu * kinematics.invariants.i1_minus_3;
-        let mut stress = self.mu * kinematics.half_d1;
-        for family in self
-            .fibres
-            .iter()
-            .filter_map(|a| self.family(kinematics, *a))
-        {
-            energy += family.energy;
-            stress += family.d * family.de;
-        }
-        (energy, stress)
-    }
-
-    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
-        let (energy, stress) = self.stress(kinematics);
-        let isotropic = kinematics.second_derivative_1(); // ½ ∂²I₁/∂F²
-        let mut tangent = self.mu * isotropic;
-        for [x, y] in &self.fibres {
-            let Some(family) = self.family(kinematics, [*x, *y]) else {
-                continue;
-            };
-            tangent += family.dd * family.de * family.de.transpose();
-            tangent += 2.0 * family.d * self.kappa * isotropic;
-            let aligned = 2.0 * family.d * (1.0 - 3.0 * self.kappa);
-            for (row, column, factor) in
-                [(0, 0, x * x), (0, 1, x * y), (1, 0, x * y), (1, 1, y * y)]
-            {
-                tangent[(row, column)] += aligned * factor;
-                tangent[(2 + row, 2 + column)] += aligned * factor;
+        Box::new(
+            Self {
+                mu,
+                k1,
+                k2,
+                kappa,
+                fibres: fibres[..families].to_vec(),
             }
-        }
-        SheetResponse {
-            energy,
-            first_piola_kirchhoff_stress: stress,
-            tangent,
-        }
+            .sheet(),
+        )
     }
 
-    fn tension(&self, direction: [f64; 2], strain: f64) -> TensionResponse {
-        let turned = self.turned(direction);
-        curve::tension(&|kinematics| turned.response(kinematics), strain)
+    /// The sheet made of it, in whose axes the fibres are stated.
+    pub fn sheet(self) -> AnisotropicSheet<Self> {
+        AnisotropicSheet::turned_by(self, 0.0)
+    }
+}
+
+impl AnisotropicLaw for HolzapfelGasserOgden {
+    #[inline(always)]
+    fn energy(&self, [i1, c11, c12, c22]: [Jet; 4]) -> Jet {
+        let family = |[x, y]: &[f64; 2]| {
+            let stretched = (x * x) * c11 + (2.0 * x * y) * c12 + (y * y) * c22; // I₄ − 1
+            let strain = self.kappa * i1 + (1.0 - 3.0 * self.kappa) * stretched;
+            let exponent = self.k2 * strain.positive().squared();
+            self.k1 / (2.0 * self.k2) * exponent.exponential_less_one()
+        };
+        let matrix = 0.5 * self.mu * i1;
+        self.fibres
+            .iter()
+            .map(family)
+            .fold(matrix, |sum, one| sum + one)
     }
 
     fn is_isotropic(&self) -> bool {
@@ -162,7 +100,7 @@ impl HyperelasticLaw for HolzapfelGasserOgden {
     }
 
     /// FEBio always has two families at ±γ: a single family is written as two of half the stiffness at γ = 0 in turned axes.
-    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+    fn in_code(&self, code: Code, bulk: f64, _: [f64; 2]) -> Option<CodeLaw> {
         let febio = |k1: f64, gamma: f64, axis: &[[f64; 2]]| {
             let matrix = [
                 ("c", self.mu),

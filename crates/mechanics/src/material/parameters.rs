@@ -1,6 +1,7 @@
 //! The parameters of a material card, as a law reads them.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::f64::consts::FRAC_PI_2;
 
 use super::volume::POISSON_RATIO;
 use crate::document::{Bound, Section, name_of};
@@ -149,11 +150,12 @@ impl Parameter {
             }
     }
 
-    /// Whether a value is an angle about which the law is symmetric.
+    /// Whether a value is an angle about which the stresses of a sheet that is stretched along its axes are symmetric.
     pub fn is_symmetric_at(&self, value: f64) -> bool {
         const SAME: f64 = 1e-9;
-        let is_end = |end: &f64| (value - end).abs() < SAME;
-        self.dimension == Dimension::Angle && self.usual.iter().any(is_end)
+        let quarters = value / FRAC_PI_2;
+        let off = (quarters - quarters.round()).abs() * FRAC_PI_2;
+        self.dimension == Dimension::Angle && off < SAME
     }
 
     /// Whether energy and stress are proportional to it, as they are to every parameter that is a stress.
@@ -169,6 +171,8 @@ pub struct CardEntries {
     pub parameters: Vec<Parameter>,
     /// Its choices: key and name.
     pub choices: Vec<(&'static str, String)>,
+    /// Parameters that only tests with shear determine, with the values at which fits to others hold them.
+    pub of_shear: &'static [(&'static str, f64)],
 }
 
 /// The source of the values.
@@ -189,6 +193,7 @@ pub struct Parameters<'a> {
     pub strain_measure: StrainMeasure,
     asked: RefCell<Vec<Parameter>>,
     choices: RefCell<Vec<(&'static str, String)>>,
+    of_shear: Cell<&'static [(&'static str, f64)]>,
 }
 
 impl<'a> Parameters<'a> {
@@ -221,6 +226,7 @@ impl<'a> Parameters<'a> {
             strain_measure,
             asked: RefCell::default(),
             choices: RefCell::default(),
+            of_shear: Cell::default(),
         }
     }
 
@@ -251,9 +257,35 @@ impl<'a> Parameters<'a> {
         exponent
     }
 
-    /// An angle in rad. Every angle gives the law that one within `period` gives, and the law does not change to first order at its ends.
+    /// An angle in rad. Every angle gives the law that one within `period` gives, if need be with other parameters exchanged.
     pub fn angle(&self, key: &'static str, period: [f64; 2]) -> f64 {
         self.ask(key, Dimension::Angle, Bound::Any, period)
+    }
+
+    /// The angle in rad between one family of fibres and the first axis.
+    pub fn fibre_angle(&self) -> f64 {
+        self.angle("angle", [-FRAC_PI_2, FRAC_PI_2])
+    }
+
+    /// Parameters that only tests with shear determine, with the values at which fits to others hold them.
+    pub fn hold_without_shear(&self, held: &'static [(&'static str, f64)]) {
+        self.of_shear.set(held);
+    }
+
+    /// A parameter that was asked for before, within ± `most`, which depends on others: a larger one is a fault of a card, and in
+    /// a fit the law is that of the limit.
+    pub fn limited(&self, key: &'static str, most: f64, hint: &str) -> f64 {
+        let mut asked = self.asked.borrow_mut();
+        let mut same = asked.iter_mut().filter(|one| one.key == key);
+        let Some(parameter) = same.next() else {
+            return f64::NAN;
+        };
+        if parameter.value.abs() > most {
+            let message = format!("is larger than the other parameters allow, {most:.4}");
+            self.fault(key, &message, hint);
+            parameter.value = parameter.value.clamp(-most, most);
+        }
+        parameter.value
     }
 
     /// A choice that a card states; the first one where there is no card.
@@ -349,6 +381,7 @@ impl<'a> Parameters<'a> {
         CardEntries {
             parameters: self.asked.into_inner(),
             choices: self.choices.into_inner(),
+            of_shear: self.of_shear.get(),
         }
     }
 

@@ -5,9 +5,9 @@ use super::marlow::{ExponentialCurve, TableCurve};
 use super::ogden::Convention;
 use super::parameters::{CardEntries, Parameters, StrainMeasure, StressMeasure};
 use super::{
-    ArrudaBoyce, CompressibleNeoHooke, FungDemiray, Gent, HolzapfelGasserOgden, LinearElastic,
-    MooneyRivlin, NeoHooke, Network, Ogden, OgdenHill, Polynomial, SaintVenantKirchhoff,
-    VerondaWestmann, Yeoh,
+    ArrudaBoyce, CompressibleNeoHooke, Fung, FungDemiray, Gent, HolzapfelGasserOgden,
+    HolzapfelOgden, LeeSacks, LinearElastic, MayNewman, MooneyRivlin, NeoHooke, Network, Ogden,
+    OgdenHill, Polynomial, SaintVenantKirchhoff, VerondaWestmann, Yeoh,
 };
 
 /// A file of test data by its stem.
@@ -156,6 +156,26 @@ pub const LAWS: &[Law] = &[
         name: "holzapfel-gasser-ogden",
         formula: "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
         read: HolzapfelGasserOgden::from_card,
+    },
+    Law {
+        name: "fung",
+        formula: "Ψ = c/2 (e^Q − 1), Q = a₁ E₁₁² + a₂ E₂₂² + 2 a₃ E₁₁ E₂₂ + a₄ (2 E₁₂)²",
+        read: Fung::from_card,
+    },
+    Law {
+        name: "may-newman",
+        formula: "Ψ = μ/2 (I₁ − 3) + c₀ (e^(c₁ (I₁ − 3)² + c₂ (√I₄ − 1)⁴) − 1)",
+        read: MayNewman::from_card,
+    },
+    Law {
+        name: "lee-sacks",
+        formula: "Ψ = c₁₀/2 (I₁ − 3) + c₀/2 (δ e^(c₁ (I₁ − 3)²) + (1 − δ) e^(c₂ ⟨I₄ − 1⟩²) − 1)",
+        read: LeeSacks::from_card,
+    },
+    Law {
+        name: "holzapfel-ogden",
+        formula: "Ψ = a/(2b) (e^(b (I₁ − 3)) − 1) + Σ aᵢ/(2bᵢ) (e^(bᵢ ⟨I₄ᵢ − 1⟩²) − 1) + a_fs/(2b_fs) (e^(b_fs I₈²) − 1), i = f, s",
+        read: HolzapfelOgden::from_card,
     },
     Law {
         name: "neo-hooke-simo-pister",

@@ -51,6 +51,22 @@ pub const SAMPLES: &[(&str, &str)] = &[
         "holzapfel-gasser-ogden",
         "mu = \"0.02 MPa\"\nk1 = \"0.03 MPa\"\nk2 = 0.3\nkappa = 0.1\nangle = \"35 deg\"\nfamilies = \"two\"",
     ),
+    (
+        "fung",
+        "c = \"0.02 MPa\"\na1 = 0.9\na2 = 0.5\na3 = 0.3\na4 = 0.4\nangle = \"25 deg\"",
+    ),
+    (
+        "may-newman",
+        "mu = \"0.02 MPa\"\nc0 = \"0.01 MPa\"\nc1 = 0.05\nc2 = 0.8\nangle = \"-50 deg\"",
+    ),
+    (
+        "lee-sacks",
+        "c10 = \"0.02 MPa\"\nc0 = \"0.03 MPa\"\nc1 = 0.05\nc2 = 0.2\ndelta = 0.4\nangle = \"25 deg\"",
+    ),
+    (
+        "holzapfel-ogden",
+        "a = \"0.02 MPa\"\nb = 0.3\na_f = \"0.03 MPa\"\nb_f = 0.2\na_s = \"0.01 MPa\"\nb_s = 0.3\na_fs = \"5 kPa\"\nb_fs = 0.4\nangle = \"35 deg\"",
+    ),
 ];
 
 /// Laws of bodies that change their volume, as [`SAMPLES`].

@@ -11,7 +11,8 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
     let parameters = fit
         .parameters
         .iter()
-        .zip(quality.estimates.iter().zip(&quality.at_bound));
+        .zip(quality.estimates.iter().zip(&quality.at_bound))
+        .zip(&quality.held);
     let rows = quality.correlation.row_iter();
     let told = quality.has_intervals();
     json!({
@@ -46,13 +47,14 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "effective_points": verdict.effective_points,
             "noise_ratio": verdict.noise_ratio,
         })),
-        "parameters": parameters.map(|(parameter, (estimate, at_bound))| json!({
+        "parameters": parameters.map(|((parameter, (estimate, at_bound)), held)| json!({
             "key": parameter.key,
             "value": parameter.value,
             "unit": parameter.unit(),
             "standard_error": told.then_some(estimate.standard_error),
             "interval_95_percent": told.then_some(estimate.interval),
             "at_bound": at_bound,
+            "held": held,
         })).collect::<Vec<_>>(),
         "relaxation": fit.relaxed.as_ref().map(|relaxed| json!({
             "shares": relaxed.material.relaxation.iter().map(|term| term.share).collect::<Vec<_>>(),

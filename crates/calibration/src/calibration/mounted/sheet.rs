@@ -155,8 +155,8 @@ impl MountedSheet {
                 };
                 let known = solved.iter().map(|(_, states)| &states[0]);
                 let nearest = known.min_by(|a, b| far(a).total_cmp(&far(b)));
-                let near = starts.get(*number).or(nearest).cloned();
-                let states = search.states(target, near.as_ref());
+                let starts = [starts.get(*number), nearest, None];
+                let states = search.first(target, &starts.map(|own| own.cloned()));
                 let states = states.map_err(|fault| fault_at(target, fault))?;
                 solved.push((*number, states));
             }
@@ -236,6 +236,22 @@ impl<'a> Search<'a> {
             bodies,
             newton: newton.map_err(|fault| fault_at([0.0; 2], fault))?,
         })
+    }
+
+    /// The states of all laws at some strains from the first of some starts that leads there; `None` is the mounted sheet.
+    fn first(
+        &mut self,
+        strains: [f64; 2],
+        starts: &[Option<SheetState>],
+    ) -> Result<Vec<SheetState>, SolveFault> {
+        let mut found = self.states(strains, starts[0].as_ref());
+        for start in &starts[1..] {
+            if found.is_ok() {
+                break;
+            }
+            found = self.states(strains, start.as_ref());
+        }
+        found
     }
 
     /// The states of all laws at some strains: those of the others begin at that of the first one.

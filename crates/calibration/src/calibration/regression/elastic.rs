@@ -242,13 +242,19 @@ impl Response for Elastic<'_> {
     /// bounds leave no room is known, and what nothing depends on to first order.
     fn estimated(&self, values: &[f64], bounds: &[[f64; 2]]) -> Estimated {
         let mut fixed: Vec<bool> = bounds.iter().map(|[low, high]| low == high).collect();
-        for (fixed, parameter) in fixed.iter_mut().zip(self.build(values).1.parameters) {
-            *fixed |= parameter.is_symmetric_at(parameter.value);
+        let mut at_bound = at_bound(values, bounds, [1e-9, 1e-300]);
+        for (index, parameter) in self.build(values).1.parameters.iter().enumerate() {
+            // Beyond a limit that depends on others, nothing changes.
+            let mut beyond = values.to_vec();
+            beyond[index] *= 1.0 + 1e-6;
+            let is_limited = self.build(&beyond).1.parameters[index].value != beyond[index];
+            at_bound[index] |= is_limited;
+            fixed[index] |= is_limited || parameter.is_symmetric_at(parameter.value);
         }
         let mut least = self.least.clone();
         least.resize(values.len(), LEAST_SIZE);
         Estimated {
-            at_bound: at_bound(values, bounds, [1e-9, 1e-300]),
+            at_bound,
             fixed,
             least,
         }
@@ -261,19 +267,24 @@ impl Misfit<Elastic<'_>> {
         Self::new(self.response.thinned(count), self.weighting)
     }
 
-    /// The values of the parameters that are stresses, by linear least squares.
+    /// The values of some parameters that are stresses beside all others, by linear least squares.
     pub fn complete(&self, values: &mut [f64], stresses: &[usize]) -> Option<()> {
-        let target = self.rows.iter().map(|row| row.weight * row.stress);
-        let target = DVector::from_iterator(self.rows.len(), target);
+        let weighed = |stresses: Vec<f64>| {
+            let pairs = self.rows.iter().zip(stresses);
+            let weighed = pairs.map(|(row, stress)| row.weight * stress);
+            DVector::from_iterator(self.rows.len(), weighed)
+        };
+        let mut others = values.to_vec();
+        stresses.iter().for_each(|index| others[*index] = 0.0);
+        let constant = weighed(self.response.stresses(&others));
+        let measured = self.rows.iter().map(|row| row.stress).collect();
+        let target = weighed(measured) - &constant;
         let mut columns = DMatrix::zeros(self.rows.len(), stresses.len());
         for (column, parameter) in stresses.iter().enumerate() {
-            let mut unit = values.to_vec();
-            stresses.iter().for_each(|other| unit[*other] = 0.0);
+            let mut unit = others.clone();
             unit[*parameter] = 1.0;
-            let modelled = self.response.stresses(&unit);
-            for (index, (row, stress)) in self.rows.iter().zip(modelled).enumerate() {
-                columns[(index, column)] = row.weight * stress;
-            }
+            let modelled = weighed(self.response.stresses(&unit)) - &constant;
+            columns.set_column(column, &modelled);
         }
         let completed = least_squares::linear(&columns, &target)?;
         for (index, value) in stresses.iter().zip(completed.iter()) {

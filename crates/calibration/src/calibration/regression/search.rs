@@ -7,6 +7,7 @@ use super::elastic::Elastic;
 use super::misfit::Misfit;
 use crate::calibration::least_squares::{Precision, Residuals, descend, minimise, sum_of_squares};
 use crate::material::parameters::Parameter;
+use crate::units::Dimension;
 
 /// Points above this number are thinned while starts are compared; the last improvement uses all of them.
 const THINNED: usize = 400;
@@ -60,9 +61,8 @@ impl Search<'_> {
     /// The parameters of the smallest sum of squares from so many starts; `None` where none describe the data at all.
     pub fn minimum(&self, starts: usize) -> Option<Minimum> {
         let thinned = self.misfit.thinned(THINNED);
-        let best_starts = self.starts(&thinned).into_iter().take(starts);
-        let best_starts = best_starts.map(|(_, start)| start).collect();
-        let minima = improved(&thinned, best_starts, self.bounds);
+        let starts = self.spread(self.starts(&thinned), starts);
+        let minima = improved(&thinned, starts, self.bounds);
         let refined: Vec<Vec<f64>> = self
             .apart(&minima)
             .into_iter()
@@ -77,15 +77,13 @@ impl Search<'_> {
         );
         // Another minimum counts as one when it is still elsewhere after the same care.
         let least = sum_of_squares(&thinned, &values);
-        let elsewhere = |found: &Vec<f64>| self.differs(found, &values);
+        let of_law = self.of_law(values.clone());
+        let elsewhere = |found: &Vec<f64>| self.differs(found, &of_law);
         let rival = minima
             .iter()
-            .find(|(sum, found)| {
-                *sum <= FAR * least
-                    && elsewhere(&ordered(self.parameters, self.bounds, found.clone()))
-            })
+            .find(|(sum, found)| *sum <= FAR * least && elsewhere(&self.of_law(found.clone())))
             .and_then(|(_, found)| descend(&thinned, found, self.bounds))
-            .map(|found| ordered(self.parameters, self.bounds, found))
+            .map(|found| self.of_law(found))
             .filter(elsewhere);
         let rival = rival.map(|other| Rival {
             worse: (sum(&other) / sum(&values) - 1.0).max(0.0),
@@ -94,12 +92,36 @@ impl Search<'_> {
         Some(Minimum { values, rival })
     }
 
+    /// The best starts, and of a law with an angle the best of the others in as many equal parts of its range: valleys of a sum of
+    /// squares lie at different angles.
+    fn spread(&self, starts: Vec<Candidate>, count: usize) -> Vec<Vec<f64>> {
+        let pairs = self.parameters.iter().zip(self.bounds);
+        let angle = pairs
+            .enumerate()
+            .find(|(_, (one, [low, high]))| one.dimension == Dimension::Angle && low < high);
+        let (best, others) = starts.split_at(count.min(starts.len()));
+        let of_parts = angle.into_iter().flat_map(|(index, (_, [low, high]))| {
+            let part =
+                move |start: &[f64]| ((start[index] - low) / (high - low) * count as f64) as usize;
+            (0..count).filter_map(move |wanted| others.iter().find(|(_, one)| part(one) == wanted))
+        });
+        let chosen = best.iter().chain(of_parts);
+        chosen.map(|(_, start)| start.clone()).collect()
+    }
+
+    /// Values as the law takes them: within limits that depend on others, and in order.
+    fn of_law(&self, values: Vec<f64>) -> Vec<f64> {
+        let (_, entries) = self.misfit.response.build(&values);
+        let values = entries.parameters.iter().map(|one| one.value).collect();
+        ordered(self.parameters, self.bounds, values)
+    }
+
     /// The best of some minima that lie apart from each other; one that is far above the best cannot become it.
     fn apart(&self, minima: &[Candidate]) -> Vec<Vec<f64>> {
         const ABOVE: f64 = 1.2;
         let mut chosen: Vec<Vec<f64>> = Vec::new();
         for (sum, found) in minima {
-            let found = ordered(self.parameters, self.bounds, found.clone());
+            let found = self.of_law(found.clone());
             if *sum <= ABOVE * minima[0].0 && chosen.iter().all(|own| self.differs(&found, own)) {
                 chosen.push(found);
             }
@@ -111,7 +133,8 @@ impl Search<'_> {
     /// Starts within the bounds, the best first.
     fn starts(&self, misfit: &Misfit<Elastic>) -> Vec<Candidate> {
         let stresses = self.stresses();
-        let free = self.parameters.len() - stresses.len();
+        let fitted = self.bounds.iter().filter(|[low, high]| low < high).count();
+        let free = fitted - stresses.len();
         let scale = misfit.response.stiffness;
         let mut starts = Vec::new();
         for number in 0..(DRAWS * free).max(1) {
@@ -137,7 +160,10 @@ impl Search<'_> {
     fn draw(&self, scale: f64, number: usize) -> Vec<f64> {
         let draw = |(dimension, (parameter, [low, high])): (usize, (&Parameter, &[f64; 2]))| {
             let share = f64::from(sobol_burley::sample(number as u32, dimension as u32, 1));
-            let [from, to] = parameter.usual;
+            let [from, to] = match parameter.usual {
+                [from, to] if from.max(*low) < to.min(*high) => [from.max(*low), to.min(*high)],
+                usual => usual,
+            };
             let drawn = match from > 0.0 {
                 _ if parameter.is_stress() => scale * 0.01_f64.powf(share),
                 true => from * (to / from).powf(share),
@@ -160,10 +186,11 @@ impl Search<'_> {
         descend(self.misfit, &start, self.bounds).or(Some(start))
     }
 
-    /// The parameters that are stresses.
+    /// The fitted parameters that are stresses.
     fn stresses(&self) -> Vec<usize> {
         let all = 0..self.parameters.len();
-        all.filter(|index| self.parameters[*index].is_stress())
+        let is_fitted = |index: &usize| self.bounds[*index][0] < self.bounds[*index][1];
+        all.filter(|index| self.parameters[*index].is_stress() && is_fitted(index))
             .collect()
     }
 

@@ -30,6 +30,8 @@ pub struct Judged {
     pub at_bound: Vec<bool>,
     /// Which values are not estimated at all.
     pub fixed: Vec<bool>,
+    /// Which values are stated, and no result of the fit.
+    held: Vec<bool>,
     /// `None` where nothing is estimated, or no freedom is left.
     pub verdict: Option<Verdict>,
     /// What the values are worth that are estimated; `None` likewise.
@@ -46,10 +48,15 @@ impl Judged {
     pub fn of<R: Response>(misfit: &Misfit<R>, values: &[f64], bounds: &[[f64; 2]]) -> Self {
         let response = &misfit.response;
         let Estimated {
-            at_bound,
-            fixed,
+            mut at_bound,
+            mut fixed,
             least,
         } = response.estimated(values, bounds);
+        let held: Vec<bool> = bounds.iter().map(|[low, high]| low == high).collect();
+        for (index, held) in held.iter().enumerate() {
+            at_bound[index] &= !held;
+            fixed[index] |= held;
+        }
         let mut residual = DVector::zeros(misfit.count());
         misfit.evaluate(values, residual.as_mut_slice());
         let (rows, sum_of_squares) = (residual.len() as f64, residual.norm_squared());
@@ -75,6 +82,7 @@ impl Judged {
         Self {
             at_bound,
             fixed,
+            held,
             verdict,
             noise,
             sum_of_squares,
@@ -98,9 +106,10 @@ impl Judged {
         }
     }
 
-    /// AICc of −2 ln L, n rows, and k values and the variance; infinite where there are too few rows.
+    /// AICc of −2 ln L, n rows, and k fitted values and the variance; infinite where there are too few rows.
     pub fn aicc(&self) -> f64 {
-        let [n, k] = [self.rows, self.fixed.len() + 1].map(|count| count as f64);
+        let fitted = self.held.iter().filter(|held| !**held).count();
+        let [n, k] = [self.rows, fitted + 1].map(|count| count as f64);
         let freedom = n - k - 1.0;
         if freedom > 0.0 {
             self.surprise + 2.0 * k + 2.0 * k * (k + 1.0) / freedom
@@ -186,6 +195,7 @@ impl Judged {
             estimates,
             correlation,
             at_bound: self.at_bound,
+            held: self.held,
             fixed: self.fixed,
             zeros: Vec::new(),
             noise: self.noise,

@@ -71,6 +71,8 @@ pub struct Quality {
     pub estimates: Vec<Estimate>,
     /// Whether a bound holds it, for each parameter.
     pub at_bound: Vec<bool>,
+    /// Whether it is held at a value that was stated or that no test determines, for each parameter.
+    pub held: Vec<bool>,
     /// Whether a value is not estimated at all, for each parameter and zero.
     pub(in crate::calibration) fixed: Vec<bool>,
     /// Zeros of the tests that were found again with the law.
@@ -105,6 +107,7 @@ impl Quality {
             .map(|(zero, value)| MovedZero::new(*zero, &value))
             .collect();
         self.at_bound.truncate(parameters);
+        self.held.truncate(parameters);
         self.correlation = self.correlation.resize(parameters, parameters, f64::NAN);
         self
     }
@@ -121,9 +124,10 @@ impl Quality {
         own.unwrap_or(self.points as f64)
     }
 
-    /// Whether no parameter is held by a bound or has an interval that holds zero.
+    /// Whether no fitted parameter is held by a bound or has an interval that holds zero.
     pub fn is_identifiable(&self) -> bool {
-        self.estimates.iter().all(knows_sign)
+        let mut pairs = self.estimates.iter().zip(&self.held);
+        pairs.all(|(estimate, held)| *held || knows_sign(estimate))
     }
 
     /// Whether the law is stable in the uniaxial, planar and equibiaxial tests as far as the data go.

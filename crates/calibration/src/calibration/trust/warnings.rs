@@ -70,7 +70,7 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
                 false => "",
             };
             warnings.push(format!("{key} = {value:.4e} is at a bound{others}"));
-        } else if !knows_sign(estimate) {
+        } else if !quality.held[index] && !knows_sign(estimate) {
             vague.push(key);
         }
     }

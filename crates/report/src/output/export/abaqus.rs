@@ -251,23 +251,33 @@ fn output(model: &Model, deck: &mut Deck) {
     }
 }
 
-/// Names the directions of a material's fibres and returns what the section says about them.
+/// Names the directions of a material's fibres, or the axes of Fung's law, and returns what the section says about them.
 fn orientation(material: &PartMaterial, deck: &mut Deck) -> String {
-    let CodeLaw::Named { directions, .. } = &material.law else {
+    let CodeLaw::Named {
+        keyword,
+        directions,
+        ..
+    } = &material.law
+    else {
         return String::new();
     };
-    if directions.is_empty() {
-        return String::new();
-    }
-    deck.line(&format!(
-        "*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={}",
-        material.axes,
-        directions.len()
-    ));
-    deck.line("1., 0., 0., 0., 1., 0.");
-    deck.line("3, 0.");
-    for [x, y] in directions {
-        deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
+    let head = format!("*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR", material.axes);
+    match (&directions[..], keyword.starts_with("FUNG")) {
+        ([], _) => return String::new(),
+        ([[x, y], ..], true) => {
+            deck.line(&head);
+            let axes = [*x, *y, 0.0, -*y, *x, 0.0].map(number);
+            deck.line(&axes.join(", "));
+            deck.line("3, 0.");
+        }
+        (fibres, false) => {
+            deck.line(&format!("{head}, LOCAL DIRECTIONS={}", fibres.len()));
+            deck.line("1., 0., 0., 0., 1., 0.");
+            deck.line("3, 0.");
+            for [x, y] in fibres {
+                deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
+            }
+        }
     }
     format!(", ORIENTATION={}", material.axes)
 }
@@ -283,6 +293,9 @@ fn material(material: &PartMaterial, deck: &mut Deck) {
         } => {
             match directions.len() {
                 0 => deck.line(&format!("*HYPERELASTIC, {keyword}")),
+                _ if keyword.starts_with("FUNG") => {
+                    deck.line(&format!("*ANISOTROPIC HYPERELASTIC, {keyword}"));
+                }
                 count => deck.line(&format!(
                     "*ANISOTROPIC HYPERELASTIC, {keyword}, LOCAL DIRECTIONS={count}"
                 )),

@@ -22,7 +22,11 @@ impl Exported {
         let (keyword, _) = after.split_once('\n').unwrap();
         let keyword = keyword.split(", LOCAL").next().unwrap();
         let directions = if text.contains("*ORIENTATION") {
-            numbers(text, "*ORIENTATION").split_off(2)
+            let mut lines = numbers(text, "*ORIENTATION");
+            match keyword.starts_with("FUNG") {
+                true => vec![lines.remove(0)],
+                false => lines.split_off(2),
+            }
         } else {
             Vec::new()
         };
@@ -145,6 +149,22 @@ pub(super) fn published(law: &Exported, sheet: &Sheet) -> f64 {
         ("HOLZAPFEL", [c10, _, k1, k2, kappa]) => {
             let fibre = |along: &[f64; 2]| sheet.fibre([*k1, *k2, *kappa], *along);
             c10 * x + law.directions.iter().map(fibre).sum::<f64>()
+        }
+        // c/2 (e^Q − 1), Q = Σ bᵢⱼₖₗ Eᵢⱼ Eₖₗ over all indices, in material axes.
+        ("FUNG-ORTHOTROPIC", [b1111, b1122, b2222, _, _, _, b1212, _, _, c, _]) => {
+            let [c11, c12, c22] = sheet.c;
+            let [x, y] = law.directions[0];
+            let (e11, e22, e12) = ((c11 - 1.0) / 2.0, (c22 - 1.0) / 2.0, c12 / 2.0);
+            let along = |[a, b]: [f64; 2], [p, q]: [f64; 2]| {
+                a * p * e11 + (a * q + b * p) * e12 + b * q * e22
+            };
+            let (f, s) = ([x, y], [-y, x]);
+            let [normal, shear, across] = [along(f, f), along(f, s), along(s, s)];
+            let exponent = b1111 * normal * normal
+                + 2.0 * b1122 * normal * across
+                + b2222 * across * across
+                + 4.0 * b1212 * shear * shear;
+            c / 2.0 * (exponent.exp() - 1.0)
         }
         // Two families at ±γ from the first material axis.
         ("Holzapfel-Gasser-Ogden", [c, k1, k2, kappa, gamma, _]) => {

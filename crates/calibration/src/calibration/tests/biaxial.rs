@@ -1,0 +1,205 @@
+//! Laws of sheets with directions in planar biaxial tests.
+
+use std::path::Path;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::*;
+
+/// Laws with parameters of a soft tissue.
+const TISSUES: [(&str, &[f64]); 5] = [
+    ("holzapfel-gasser-ogden", &[0.02, 0.05, 8.0, 0.1, 0.5]),
+    ("fung", &[0.02, 9.0, 5.0, 3.0, 10.0, 0.0]),
+    ("may-newman", &[0.01, 0.004, 3.0, 120.0, 0.35]),
+    ("lee-sacks", &[0.02, 0.01, 2.0, 5.0, 0.4, 0.35]),
+    (
+        "holzapfel-ogden",
+        &[0.02, 4.0, 0.03, 6.0, 0.01, 4.0, 0.0, 1.0, 0.3],
+    ),
+];
+
+/// Five protocols of a law with a noise of `share` of the largest stress.
+fn made(law: &str, values: &[f64], share: f64, seed: u64) -> TestData {
+    let law = Law::named(law).unwrap();
+    let (law, _) = law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.2], [0.2, 1.0]];
+    let states = ratios.iter().flat_map(|ratio| {
+        (1..=30).map(move |row| ratio.map(|one| 0.3 * one * f64::from(row) / 30.0))
+    });
+    let states: Vec<[f64; 2]> = states.collect();
+    let stresses: Vec<[f64; 2]> = states.iter().map(|state| law.biaxial(*state)).collect();
+    let largest = stresses
+        .iter()
+        .flatten()
+        .fold(0.0, |most: f64, one| most.max(*one));
+    let mut noisy = |stress: f64| {
+        let z: f64 = StandardNormal.sample(&mut random);
+        stress + share * largest * z
+    };
+    let rows = states
+        .iter()
+        .zip(&stresses)
+        .map(|([x, y], [p, q])| format!("{},{},{},{}\n", 1.0 + x, 1.0 + y, noisy(*p), noisy(*q)));
+    let head = "# test: biaxial; one specimen: yes\nstretch_1,stretch_2,nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n";
+    let text = head.to_owned() + &rows.collect::<String>();
+    TestData::parse("sheet.csv", &text, &Statements::new()).unwrap()
+}
+
+fn of(law: &str, data: &TestData, settings: &FitSettings) -> Fit {
+    let data = std::slice::from_ref(data);
+    fit(Law::named(law).unwrap(), data, settings).unwrap()
+}
+
+fn starts(starts: usize) -> FitSettings {
+    FitSettings {
+        starts,
+        ..FitSettings::default()
+    }
+}
+
+fn stated(key: &str, value: f64) -> FitSettings {
+    FitSettings {
+        bounds: vec![(key.into(), [value; 2])],
+        ..FitSettings::default()
+    }
+}
+
+/// The optima of 400 starts in a real tissue, from those of one usual run.
+#[test]
+fn one_run_ends_at_the_optimum_of_many_starts() {
+    let path = Path::new("../../validation/measured/tissue_biaxial/protocols.csv");
+    let data = TestData::read(path, &Statements::new()).unwrap();
+    for (law, sum) in [
+        ("fung", 0.004_724_383),
+        ("may-newman", 0.004_782_514),
+        ("lee-sacks", 0.003_994_555),
+        ("holzapfel-ogden", 0.002_532_484),
+    ] {
+        let found = of(law, &data, &starts(8)).quality.sum_of_squares;
+        assert!((found / sum - 1.0).abs() < 1e-6, "{law}: {found}");
+    }
+}
+
+#[test]
+fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explain_it() {
+    for (law, truth) in TISSUES {
+        let found = of(law, &made(law, truth, 0.01, 0), &starts(8));
+        let held: Vec<&str> = found
+            .parameters
+            .iter()
+            .zip(&found.quality.held)
+            .filter_map(|(parameter, held)| held.then_some(parameter.key))
+            .collect();
+        match law {
+            "fung" => assert_eq!(held, ["a4", "angle"]),
+            "holzapfel-ogden" => assert_eq!(held, ["a_fs", "b_fs"]),
+            _ => assert!(held.is_empty(), "{law}: {held:?}"),
+        }
+        for (index, (estimate, truth)) in found.quality.estimates.iter().zip(truth).enumerate() {
+            let [low, high] = estimate.interval;
+            let is_inside = (low..=high).contains(truth) || found.quality.held[index];
+            assert!(is_inside, "{law} {index}: {low} … {high}");
+        }
+        let precise = made(law, truth, 5e-4, 1);
+        for (other, _) in TISSUES {
+            let verdict = of(other, &precise, &starts(8)).quality.verdict.unwrap();
+            let explains = verdict.answer != Answer::Systematic;
+            assert_eq!(explains, other == law, "{other} of {law}");
+        }
+    }
+}
+
+/// Biaxial protocols, simple shear and a strip of a sheet whose axes are turned to the other side. Without the strip, two sets of
+/// parameters have the same stresses.
+#[test]
+fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
+    let truth = [0.02, 9.0, 5.0, 3.0, 4.0, -0.3];
+    let law = Law::named("fung").unwrap();
+    let (sheet, _) = law.with_values(&truth, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let test = |head: &str, stress: &dyn Fn(f64) -> f64| {
+        let row = |x: f64| format!("{x},{}\n", stress(x));
+        let rows: String = (1..=30).map(|row| 0.01 * f64::from(row)).map(row).collect();
+        TestData::parse("a.csv", &(head.to_owned() + &rows), &Statements::new()).unwrap()
+    };
+    let data = [
+        made("fung", &truth, 1e-6, 0),
+        test(
+            "# test: simple-shear\nshear_strain [-],shear_stress [MPa]\n",
+            &|amount| crate::material::curve::simple_shear(&*sheet, amount),
+        ),
+        test(
+            "# test: uniaxial; direction: 1\nnominal_strain [-],nominal_stress [MPa]\n",
+            &|strain| sheet.tension([1.0, 0.0], strain).nominal_stress,
+        ),
+    ];
+    let found = fit(law, &data, &FitSettings::default()).unwrap();
+    for (parameter, truth) in found.parameters.iter().zip(truth) {
+        let off = (parameter.value / truth - 1.0).abs();
+        assert!(off < 1e-3, "{} {}", parameter.key, parameter.value);
+    }
+    assert!(!found.quality.held.contains(&true));
+}
+
+/// Fibres at 45° couple both axes more than a convex energy of Fung can: a₃ ends at its limit √(a₁ a₂).
+#[test]
+fn a_convex_energy_is_the_best_one_within_its_limit() {
+    let law = "holzapfel-gasser-ogden";
+    let data = made(law, &[0.02, 0.05, 8.0, 0.0, 0.6], 0.01, 1);
+    let [few, many] = [8, 60].map(|count| of("fung", &data, &starts(count)));
+    let ratio = few.quality.sum_of_squares / many.quality.sum_of_squares;
+    assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+    for found in [few, many] {
+        let [_, a1, a2, a3, ..] = &found.parameters[..] else {
+            panic!()
+        };
+        let share = a3.value / (a1.value * a2.value).sqrt();
+        assert!(share < 1.0 && share > 1.0 - 1e-8, "{share}");
+        assert!(found.quality.at_bound[3]);
+    }
+}
+
+/// AICc grows by 2 and a little more for each parameter that is fitted, and a stated one is not counted.
+#[test]
+fn a_stated_parameter_is_not_fitted() {
+    let (law, truth) = TISSUES[3];
+    let data = made(law, truth, 0.01, 0);
+    let free = of(law, &data, &starts(8));
+    for (index, key) in [(0, "c10"), (5, "angle")] {
+        let value = free.parameters[index].value;
+        let found = of(law, &data, &stated(key, value));
+        assert_eq!(found.parameters[index].value, value);
+        let (quality, free) = (&found.quality, &free.quality);
+        assert!((quality.sum_of_squares / free.sum_of_squares - 1.0).abs() < 1e-9);
+        assert!(
+            (free.aicc - quality.aicc - 2.1).abs() < 0.1,
+            "{}",
+            quality.aicc
+        );
+        assert!(quality.held[index] && !quality.at_bound[index]);
+        assert!(quality.estimates[index].standard_error.is_nan());
+        let tests = std::slice::from_ref(&data);
+        let text = card_text(&found, tests, &Provenance::default());
+        assert!(text.contains("# held, not fitted"), "{text}");
+        let again = Card::parse("card", "card", &text).unwrap();
+        assert_eq!(
+            again.fit.unwrap().bounds,
+            [format!("{key}={value}..{value}")]
+        );
+    }
+    // Stresses are completed beside what is stated.
+    let found = of(law, &data, &stated("c10", 0.05));
+    assert_eq!(found.parameters[0].value, 0.05);
+    assert!(found.quality.sum_of_squares > free.quality.sum_of_squares);
+    // An angle beyond the period is what it says.
+    let found = of(law, &data, &stated("angle", -0.35));
+    assert_eq!(found.parameters[5].value, -0.35);
+    let refused = fit(
+        Law::named(law).unwrap(),
+        std::slice::from_ref(&data),
+        &stated("delta", 1.5),
+    );
+    assert!(refused.unwrap_err().to_string().contains("delta"));
+}

@@ -1,0 +1,98 @@
+//! The exponential law of Fung for orthotropic sheets.
+
+use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
+use super::code::{Code, CodeLaw};
+use super::jet::Jet;
+use super::law::HyperelasticLaw;
+use super::parameters::Parameters;
+use crate::document::Bound;
+
+/// The generalised law of Fung in the plane: the exponential of a quadratic form of Green and Lagrange's strain in material
+/// axes.
+///
+/// ```text
+/// Ψ = c/2 (e^Q − 1),   Q = a₁ E₁₁² + a₂ E₂₂² + 2 a₃ E₁₁ E₂₂ + a₄ (2 E₁₂)²    [MPa = N·mm/mm³]
+/// ```
+///
+/// | symbol | card key | unit | admissible | meaning |
+/// |---|---|---|---|---|
+/// | c | `c` | MPa | > 0 | scale of the stress |
+/// | a₁, a₂ | `a1`, `a2` | – | > 0 | stiffness along the first and the second material axis |
+/// | a₃ | `a3` | – | a₃² < a₁ a₂ | coupling of both |
+/// | a₄ | `a4` | – | > 0 | shear, with the amount of shear 2 E₁₂; with E₁₂ alone, a₄ is a quarter of the coefficient |
+/// | θ | `angle` | angle | any | between the first material axis and that of the sheet |
+///
+/// Q is positive definite, which makes Ψ convex in E. Turned by 90° and with a₁ and a₂ exchanged, the law is the same.
+/// Normal stresses of a sheet that is stretched along its axes depend on θ and a₄ through three coefficients of E₁₁² and
+/// E₂₂² alone: fits to tests without shear hold θ = 0 and a₄ unless a bound or a value is stated for them.
+///
+/// **Limits.** Small strain: an orthotropic sheet with C₁₁₁₁ = c a₁, C₂₂₂₂ = c a₂, C₁₁₂₂ = c a₃, C₁₂₁₂ = c a₄.
+/// **Not covered.** Terms of shear beside normal strain. The thickness follows from the constant volume and has no energy.
+///
+/// # References
+/// P. Tong, Y. C. Fung, J. Biomech. 9, 649 (1976), doi:10.1016/0021-9290(76)90107-X; Y. C. Fung, K. Fronek, P. Patitucci,
+/// Am. J. Physiol. 237, H620 (1979), doi:10.1152/ajpheart.1979.237.5.H620
+#[derive(Clone, Copy, Debug)]
+pub struct Fung {
+    /// c in MPa.
+    pub c: f64,
+    /// a₁, a₂, a₃, a₄.
+    pub a: [f64; 4],
+}
+
+impl Fung {
+    /// Reads the parameters of a card.
+    pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        let c = parameters.stress("c", Bound::Positive);
+        let number = |key, bound| parameters.number(key, bound, [0.1, 500.0]);
+        let [a1, a2] = ["a1", "a2"].map(|key| number(key, Bound::Positive));
+        number("a3", Bound::Any);
+        let a4 = number("a4", Bound::Positive);
+        let angle = parameters.angle(
+            "angle",
+            [-0.25, 0.25].map(|turn| turn * std::f64::consts::PI),
+        );
+        parameters.hold_without_shear(&[("a4", 10.0), ("angle", 0.0)]);
+        let most = (1.0 - 1e-9) * (a1 * a2).sqrt();
+        let hint = "a3² must be less than a1 a2, or some strain lowers the energy";
+        let a3 = parameters.limited("a3", most, hint);
+        let a = [a1, a2, a3, a4];
+        Box::new(AnisotropicSheet::turned_by(Self { c, a }, angle))
+    }
+}
+
+impl AnisotropicLaw for Fung {
+    #[inline(always)]
+    fn energy(&self, [_, c11, c12, c22]: [Jet; 4]) -> Jet {
+        let ([a1, a2, a3, a4], e11, e22) = (self.a, 0.5 * c11, 0.5 * c22);
+        let normal = a1 * e11.squared() + a2 * e22.squared() + 2.0 * a3 * (e11 * e22);
+        0.5 * self.c * (normal + a4 * c12.squared()).exponential_less_one()
+    }
+
+    fn is_isotropic(&self) -> bool {
+        let [a1, a2, a3, a4] = self.a;
+        a1 == a2 && a1 == a3 + 2.0 * a4
+    }
+
+    /// Abaqus: b₁₁₁₁, b₁₁₂₂, b₂₂₂₂, b₁₁₃₃, b₂₂₃₃, b₃₃₃₃, b₁₂₁₂, b₁₃₁₃, b₂₃₂₃, c, D in material axes. FEBio's form needs a stiffness
+    /// across the sheet.
+    fn in_code(&self, code: Code, bulk: f64, axis: [f64; 2]) -> Option<CodeLaw> {
+        let [a1, a2, a3, a4] = self.a;
+        let values = [
+            ("b1111", a1),
+            ("b1122", a3),
+            ("b2222", a2),
+            ("b1133", 0.0),
+            ("b2233", 0.0),
+            ("b3333", 0.0),
+            ("b1212", a4),
+            ("b1313", 0.0),
+            ("b2323", 0.0),
+            ("c", self.c),
+            ("D", 2.0 / bulk),
+        ];
+        (code == Code::Abaqus)
+            .then(|| CodeLaw::directed("FUNG-ORTHOTROPIC", values, &[axis]))
+            .flatten()
+    }
+}
