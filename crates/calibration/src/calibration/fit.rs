@@ -106,34 +106,110 @@ pub fn nearest(
     ))
 }
 
-/// The fit of a law with what is linear in its values, [`Elastic::with_linear`], about `start`: the law's values, and behind them those of
-/// the zeros that are sought.
-pub fn nearest_about(
-    law: &'static Law,
-    tests: &[TestData],
-    start: &[f64],
-    derivatives: impl Fn(&Observation) -> Vec<f64>,
-    settings: &FitSettings,
-) -> Result<Fit, Error> {
-    let response = Elastic::new(law, tests).with_zeros();
-    let parameters = response.build(&[]).1.parameters;
-    let stiffness = response.stiffness;
-    let mut bounds = limits(law, tests, &parameters, &settings.bounds, stiffness)?;
-    bounds.extend(response.zeros().iter().map(|zero| zero.bounds()));
-    let response = response.with_linear(start.to_vec(), derivatives);
-    let misfit = Misfit::new(response, settings.weighting);
-    let solution = Solution {
-        values: descend(&misfit, start, &bounds).unwrap_or_else(|| start.to_vec()),
-        misfit,
-        bounds,
+/// A law with what is linear in its values, [`Elastic::with_linear`], about `start`: the law's values, and behind them those of the zeros
+/// that are sought.
+pub struct About<'a, D> {
+    pub law: &'static Law,
+    pub tests: &'a [TestData],
+    pub start: &'a [f64],
+    /// The derivatives of what is linear at an observation.
+    pub derivatives: D,
+    /// Other values, and the tests that would have been measured by them.
+    pub other: Option<(&'a [f64], &'a [TestData])>,
+    pub settings: &'a FitSettings,
+}
+
+/// A model with the parameters of its law, and the bounds and sizes of its values.
+struct Model<'a> {
+    misfit: Misfit<Elastic<'a>>,
+    parameters: Vec<Parameter>,
+    bounds: Vec<[f64; 2]>,
+    sizes: Vec<f64>,
+}
+
+impl<D: Fn(&Observation) -> Vec<f64>> About<'_, D> {
+    fn model(&self) -> Result<Model<'_>, Error> {
+        let response = Elastic::new(self.law, self.tests).with_zeros();
+        let parameters = response.build(&[]).1.parameters;
+        let (bounds, stiffness) = (&self.settings.bounds, response.stiffness);
+        let mut bounds = limits(self.law, self.tests, &parameters, bounds, stiffness)?;
+        bounds.extend(response.zeros().iter().map(|zero| zero.bounds()));
+        let pairs = parameters.iter().zip(self.start);
+        let mut sizes: Vec<f64> = pairs
+            .map(|(own, value)| size(own, *value, stiffness))
+            .collect();
+        sizes.resize(bounds.len(), SIZE_OF_ZERO);
+        let mut response = response.with_linear(self.start.to_vec(), &self.derivatives);
+        if let Some((values, tests)) = self.other {
+            let other = Elastic::new(self.law, tests).with_zeros();
+            response = response.bent(values, &other, &sizes);
+        }
+        Ok(Model {
+            misfit: Misfit::new(response, self.settings.weighting),
+            parameters,
+            bounds,
+            sizes,
+        })
+    }
+
+    /// The best values within a share of the size of each, by which the start may be missed.
+    pub fn within(&self, share: f64) -> Result<Vec<f64>, Error> {
+        let Model {
+            misfit,
+            bounds,
+            sizes,
+            ..
+        } = self.model()?;
+        let limits = bounds.iter().zip(self.start.iter().zip(&sizes));
+        let bounds: Vec<[f64; 2]> = limits
+            .map(|([low, high], (value, size))| {
+                [
+                    low.max(value - share * size),
+                    high.min(value + share * size),
+                ]
+            })
+            .collect();
+        Ok(descend(&misfit, self.start, &bounds).unwrap_or_else(|| self.start.to_vec()))
+    }
+
+    /// The fit.
+    pub fn fit(&self) -> Result<Fit, Error> {
+        let Model {
+            misfit,
+            parameters,
+            bounds,
+            ..
+        } = self.model()?;
+        let values = descend(&misfit, self.start, &bounds);
+        let solution = Solution {
+            values: values.unwrap_or_else(|| self.start.to_vec()),
+            misfit,
+            bounds,
+        };
+        Ok(finished(
+            self.law,
+            &parameters,
+            solution.settled(),
+            self.settings,
+            None,
+        ))
+    }
+}
+
+/// The size of a zero's value by which steps are measured.
+const SIZE_OF_ZERO: f64 = 0.1;
+
+/// The size of a parameter by which steps are measured; a small stress may become one of the data's.
+fn size(parameter: &Parameter, value: f64, stiffness: f64) -> f64 {
+    let [from, to] = parameter.usual;
+    let least = if parameter.is_stress() {
+        0.02 * stiffness
+    } else if from > 0.0 {
+        from
+    } else {
+        0.5 * (to - from)
     };
-    Ok(finished(
-        law,
-        &parameters,
-        solution.settled(),
-        settings,
-        None,
-    ))
+    value.abs().max(least)
 }
 
 /// The fit of a solution, with all warnings.

@@ -21,10 +21,10 @@
 //! N. T. Jacobs et al., J. Biomech. Eng. 135, 054508 (2013), doi:10.1115/1.4023965 (biaxial tests)
 
 use super::data::{Mounting, Observation, TestData};
-use super::fit::{nearest, nearest_about};
+use super::fit::{About, nearest};
 use super::fitted::Fit;
 use super::regression::Zero;
-use super::settings::{FitSettings, MEASURE};
+use super::settings::{FitSettings, MEASURE, Weighting};
 use crate::error::Error;
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::Law;
@@ -60,8 +60,6 @@ pub struct MountedFit {
 const MOST_ROUNDS: usize = 20;
 /// Forces that change by less, as a share of the largest one, are settled.
 const SETTLED: f64 = 2e-4;
-/// A sum of squares that is so many times the one before is none that the search goes on from.
-const LARGER: f64 = 1.05;
 
 /// The mounting of some tests, which must all have the same one.
 ///
@@ -91,45 +89,51 @@ pub fn nearest_mounted(
     settings: &FitSettings,
 ) -> Result<Fit, Error> {
     let homogeneous = nearest(law, tests, settings)?;
-    let mut solved = Solved::new(law, tests, mounting, &homogeneous);
-    let mut values = values_of(&solved.begin(settings)?);
-    let mut last = values.clone();
-    let (mut best, mut change, mut rounds) = (f64::INFINITY, f64::INFINITY, 0);
-    let mut reached: Option<Middle> = None;
-    while rounds < MOST_ROUNDS && change > SETTLED {
-        rounds += 1;
-        let middle = match solved.middle(&values) {
-            Ok(middle) if middle.square(&solved.tests) <= LARGER * best => middle,
-            Err(fault) if reached.is_none() => return Err(fault),
-            // Too far: half of the way from the last values.
-            _ => {
-                let pairs = values.iter().zip(&last);
-                values = pairs.map(|(far, last)| 0.5 * (far + last)).collect();
-                continue;
-            }
-        };
-        best = middle.square(&solved.tests);
-        let (fit, _) = solved.fit(&middle, &values, settings)?;
-        last = std::mem::replace(&mut values, values_of(&fit));
-        change = middle.change(&last, &values);
-        reached = Some(middle);
-    }
-    let (fine, discretisation) = solved.halved(reached.expect("a round"), &values)?;
-    let (mut fit, tests) = solved.fit(&fine, &values, settings)?;
-    if change > SETTLED {
+    let mut sheet = Solved::new(tests, mounting, &homogeneous);
+    let plain = FitSettings {
+        bounds: Vec::new(),
+        ..settings.clone()
+    };
+    // A stiffening law without directions leads to the strains of the middle, at which any law is sought.
+    let neo_hooke = sheet.neo_hookean(tests)?;
+    let isotropic = named("fung-demiray");
+    let begin = nearest(isotropic, &sheet.of_middle(&neo_hooke), &plain)?;
+    let isotropic = sheet.settled(isotropic, values_of(&begin), &plain)?;
+    let begin = sheet.extended(&isotropic, law, settings)?;
+    let reached = sheet.settled(law, begin, settings)?;
+    let (fine, discretisation) = sheet.halved(&reached)?;
+    let values = reached.values;
+    let tests = sheet.of_middle(&fine);
+    let mut fit = sheet.about(law, (&fine, &tests), &values, settings).fit()?;
+    if reached.change > SETTLED {
         fit.quality.warnings.push(format!(
             "the law and the sheet on its mounting have not settled: forces still change by {:.2} % of the largest",
-            100.0 * change
+            100.0 * reached.change
         ));
     }
+    let bias_percent = sheet.bias(&homogeneous, &fit);
     fit.mounted = Some(MountedFit {
-        bias_percent: solved.bias(&homogeneous, &values_of(&fit)),
+        bias_percent,
         homogeneous: homogeneous.law_parameters().to_vec(),
         tests,
         discretisation_percent: 100.0 * discretisation,
-        rounds,
+        rounds: reached.rounds,
     });
     Ok(fit)
+}
+
+fn named(name: &str) -> &'static Law {
+    Law::named(name).expect("a law of the registry")
+}
+
+/// A law that has settled with the sheet.
+struct Reached {
+    law: &'static Law,
+    values: Vec<f64>,
+    middle: Middle,
+    rounds: usize,
+    /// By how much forces still change, as a share of the largest.
+    change: f64,
 }
 
 /// The values of a fit: those of the law, and behind them those of the state at rest.
@@ -140,10 +144,8 @@ fn values_of(fit: &Fit) -> Vec<f64> {
         .collect()
 }
 
-/// A sheet that is solved for one set of values after the other.
+/// A sheet that is solved for one law after the other.
 struct Solved {
-    law: &'static Law,
-    of_law: usize,
     zeros: Vec<Zero>,
     /// The stretches as mounted that are stated.
     stated: [f64; 2],
@@ -151,11 +153,12 @@ struct Solved {
     tests: Vec<TestData>,
     sheet: MountedSheet,
     interpolation: Interpolation,
+    /// Those of the last law, at the knots.
     states: Vec<SheetState>,
 }
 
 impl Solved {
-    fn new(law: &'static Law, tests: &[TestData], mounting: Mounting, homogeneous: &Fit) -> Self {
+    fn new(tests: &[TestData], mounting: Mounting, homogeneous: &Fit) -> Self {
         let stated = tests[0].mounted.stated_stretches();
         let back = stated.map(f64::recip);
         let tests: Vec<TestData> = tests.iter().map(|test| test.stretched(back)).collect();
@@ -163,8 +166,6 @@ impl Solved {
         let strains: Vec<[f64; 2]> = rows.map(|one| one.strains).collect();
         let zeros = homogeneous.quality.zeros.iter();
         Self {
-            law,
-            of_law: homogeneous.of_law,
             zeros: zeros.map(|zero| zero.zero).collect(),
             stated,
             sheet: MountedSheet::new(mounting, 0),
@@ -174,12 +175,137 @@ impl Solved {
         }
     }
 
+    /// The middle of a neo-Hookean sheet, whose modulus hardly matters.
+    fn neo_hookean(&mut self, tests: &[TestData]) -> Result<Middle, Error> {
+        let neo_hooke = named("neo-hooke");
+        let modulus = nearest(neo_hooke, tests, &FitSettings::default())?.parameters[0].value;
+        let (law, _) = neo_hooke.with_values(&[modulus], StressMeasure::Nominal, MEASURE);
+        let laws = [SheetLaw {
+            law: law.into(),
+            stretches: [1.0; 2],
+        }];
+        let states = self.sheet.states(&laws, self.interpolation.knots(), &[])?;
+        let scale = ([0.0; 2], self.largest_stress());
+        let middle = Middle::new(&self.interpolation, &laws, &[], &states, scale);
+        self.states = states.into_iter().flatten().collect();
+        Ok(middle)
+    }
+
+    /// The values of a law that is near to the middle of another one, and near to this law itself at the strains around the tines, which no
+    /// homogeneous test has: extrapolated to them, laws that are alike in the middle differ by orders of magnitude.
+    fn extended(
+        &self,
+        isotropic: &Reached,
+        law: &'static Law,
+        settings: &FitSettings,
+    ) -> Result<Vec<f64>, Error> {
+        /// Strains around the tines over those of the middle.
+        const MULTIPLES: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
+        let (at, _) = self.sheet_law(isotropic.law, &isotropic.values);
+        let mut tests = self.of_middle(&isotropic.middle);
+        let beyond = tests.iter().map(|test| {
+            let mut beyond = test.clone();
+            let protocols = test.protocols();
+            let largest = protocols.iter().flat_map(|rows| {
+                let size = |one: &Observation| one.strains[0].hypot(one.strains[1]);
+                let far = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+                far.map(|one| one.strains)
+            });
+            let strains = largest.flat_map(|far| MULTIPLES.map(|times| far.map(|x| times * x)));
+            beyond.observations = strains
+                .flat_map(|strains| {
+                    let stresses = at.law.biaxial(strains);
+                    [0, 1].map(|axis| Observation {
+                        strains,
+                        axis,
+                        stress: stresses[axis],
+                    })
+                })
+                .collect();
+            let stresses = beyond.observations.iter().map(|one| one.stress.abs());
+            beyond.largest_stress = stresses.fold(0.0, f64::max);
+            beyond
+        });
+        let beyond: Vec<TestData> = beyond.collect();
+        tests.extend(beyond);
+        let relative = FitSettings {
+            weighting: Weighting::Relative,
+            ..settings.clone()
+        };
+        Ok(values_of(&nearest(law, &tests, &relative)?))
+    }
+
+    /// The values of a law that settle with the sheet. They change by a share of their size, which becomes larger where the sum of squares
+    /// falls and smaller where it does not.
+    fn settled(
+        &mut self,
+        law: &'static Law,
+        mut values: Vec<f64>,
+        settings: &FitSettings,
+    ) -> Result<Reached, Error> {
+        const SHARES: [f64; 2] = [0.5, 4.0];
+        /// A sum of squares that is larger by less is as good: it is not quite what the fit makes the least.
+        const AS_GOOD: f64 = 1.02;
+        /// Forces that change by less, as a share of the largest one, do so linearly.
+        const CLOSE: f64 = 0.01;
+        let mut share = SHARES[0];
+        let mut best: Option<(f64, Reached)> = None;
+        let mut other: Option<(Vec<f64>, Middle)> = None;
+        for rounds in 1..=MOST_ROUNDS {
+            let found = self.middle(law, &values);
+            let before = best.as_ref().map_or(f64::INFINITY, |(square, _)| *square);
+            let square = match &found {
+                Ok(middle) => middle.square(&self.tests),
+                Err(_) => f64::INFINITY,
+            };
+            if square <= AS_GOOD * before || best.is_none() {
+                let middle = found?;
+                share = (2.0 * share).min(SHARES[1]);
+                // Between values that are close, differences are rounding.
+                let last = best.take().map(|(_, last)| last);
+                other = last
+                    .filter(|last| last.change > CLOSE)
+                    .map(|last| (last.values, last.middle));
+                let (values, change) = (values.clone(), f64::INFINITY);
+                best = Some((
+                    square,
+                    Reached {
+                        law,
+                        values,
+                        middle,
+                        rounds,
+                        change,
+                    },
+                ));
+            } else {
+                share *= 0.5;
+                other = found.ok().map(|middle| (values.clone(), middle)).or(other);
+            }
+            let (_, reached) = best.as_mut().expect("a round");
+            let tests = self.of_middle(&reached.middle);
+            let others = other
+                .as_ref()
+                .map(|(values, middle)| (values, self.of_modelled(&reached.middle, middle)));
+            let about = About {
+                other: others
+                    .as_ref()
+                    .map(|(values, tests)| (&values[..], &tests[..])),
+                ..self.about(law, (&reached.middle, &tests), &reached.values, settings)
+            };
+            values = about.within(share)?;
+            (reached.change, reached.rounds) =
+                (reached.middle.change(&reached.values, &values), rounds);
+            if reached.change <= SETTLED {
+                break;
+            }
+        }
+        Ok(best.expect("a round").1)
+    }
+
     /// The law and the stretches as mounted of some values, and what the load cells read without load in MPa.
-    fn sheet_law(&self, values: &[f64]) -> (SheetLaw, [f64; 2]) {
-        let (of_law, of_zeros) = values.split_at(self.of_law);
-        let (law, _) = self
-            .law
-            .with_values(of_law, StressMeasure::Nominal, MEASURE);
+    fn sheet_law(&self, law: &Law, values: &[f64]) -> (SheetLaw, [f64; 2]) {
+        let (of_law, of_zeros) = values.split_at(values.len() - self.zeros.len());
+        let (law, _) = law.with_values(of_law, StressMeasure::Nominal, MEASURE);
         let (mut stretches, mut read) = (self.stated, [0.0; 2]);
         for (zero, value) in self.zeros.iter().zip(of_zeros) {
             match zero {
@@ -193,115 +319,105 @@ impl Solved {
     }
 
     /// What the middle of the sheet carries by some values, with the derivatives by each of them.
-    fn middle(&mut self, values: &[f64]) -> Result<Middle, Error> {
-        let (law, read) = self.sheet_law(values);
-        let mut laws = vec![law];
-        let mut steps = Vec::new();
-        for (index, value) in values.iter().enumerate() {
-            let step = self.step(index, *value);
+    fn middle(&mut self, law: &Law, values: &[f64]) -> Result<Middle, Error> {
+        let (unmoved, read) = self.sheet_law(law, values);
+        let mut laws = vec![unmoved];
+        let steps = self.steps(values);
+        for (index, step) in steps.iter().enumerate() {
             let mut moved = values.to_vec();
             moved[index] += step.unwrap_or(0.0);
-            laws.push(self.sheet_law(&moved).0);
-            steps.push(step);
+            laws.push(self.sheet_law(law, &moved).0);
         }
-        let knots = self.interpolation.knots();
-        let solved = self.sheet.states(&laws, knots, &self.states)?;
+        let solved = self
+            .sheet
+            .states(&laws, self.interpolation.knots(), &self.states)?;
         let states = solved.iter().map(|states| states[0].clone());
         self.states = states.collect();
-        let largest = self.tests.iter().map(|test| test.largest_stress);
-        let largest = largest.fold(0.0, f64::max);
-        let of_bars = &self.interpolation;
+        let scale = (read, self.largest_stress());
         Ok(Middle::new(
-            of_bars,
+            &self.interpolation,
             &laws,
             &steps,
             &solved,
-            (read, largest),
+            scale,
         ))
     }
 
-    /// The step of a difference by a value; `None` for a zero of force, which the sheet does not depend on.
-    fn step(&self, index: usize, value: f64) -> Option<f64> {
+    /// The steps of differences by some values; `None` for a zero of force, which the sheet does not depend on.
+    fn steps(&self, values: &[f64]) -> Vec<Option<f64>> {
         const SHARE: f64 = 1e-4;
         const LEAST: f64 = 1e-2;
-        let zero = index
-            .checked_sub(self.of_law)
-            .map(|index| self.zeros[index]);
-        match zero {
-            Some(Zero::Force { .. }) => None,
-            Some(_) => Some(SHARE),
-            None if value.abs() > 0.0 => Some(SHARE * value.abs()),
-            None => Some(SHARE * LEAST),
-        }
-    }
-
-    /// An observation of a test at rest from the mounted state on.
-    fn as_mounted(&self, one: &Observation) -> Observation {
-        let [first, second] = self.stated.map(f64::recip);
-        let nominal = StressMeasure::Nominal;
-        one.stretched(0, first, nominal)
-            .stretched(1, second, nominal)
-    }
-
-    /// The law that is nearest to the middle that a neo-Hookean sheet has: what it carries of the forces is nearer to that of any law than
-    /// the homogeneous reading, whose strains are too large.
-    fn begin(&mut self, settings: &FitSettings) -> Result<Fit, Error> {
-        let neo_hooke = Law::named("neo-hooke").expect("a law of the registry");
-        let read: Vec<TestData> = self
-            .tests
-            .iter()
-            .map(|test| test.stretched(self.stated))
-            .collect();
-        let modulus = nearest(neo_hooke, &read, &FitSettings::default())?.parameters[0].value;
-        let (law, _) = neo_hooke.with_values(&[modulus], StressMeasure::Nominal, MEASURE);
-        let laws = [SheetLaw {
-            law: law.into(),
-            stretches: [1.0; 2],
-        }];
-        let knots = self.interpolation.knots();
-        let states = self.sheet.states(&laws, knots, &[])?;
-        let scale = ([0.0; 2], self.largest_stress());
-        let middle = Middle::new(&self.interpolation, &laws, &[], &states, scale);
-        self.states = states.into_iter().flatten().collect();
-        nearest(self.law, &self.of_middle(&middle), settings)
+        let of_law = values.len() - self.zeros.len();
+        let of_laws = values[..of_law].iter().map(|value| {
+            let size = if *value == 0.0 { LEAST } else { value.abs() };
+            Some(SHARE * size)
+        });
+        let of_zeros = self.zeros.iter();
+        let of_zeros = of_zeros.map(|zero| match zero {
+            Zero::Force { .. } => None,
+            Zero::Stretch { .. } | Zero::Record { .. } => Some(SHARE),
+        });
+        of_laws.chain(of_zeros).collect()
     }
 
     /// The tests as they would be of a middle.
     fn of_middle(&self, middle: &Middle) -> Vec<TestData> {
-        let of_test = |test: &TestData| {
-            let own = test.with_observations(|one| middle.of(one));
-            own.stretched(self.stated)
-        };
-        self.tests.iter().map(of_test).collect()
+        self.tests_of(|one| middle.of(one))
     }
 
-    /// The fit to the middle of the sheet about some values, and the tests as they would be of this middle.
-    fn fit(
+    /// The tests as they would be of a middle if another one had been measured.
+    fn of_modelled(&self, middle: &Middle, other: &Middle) -> Vec<TestData> {
+        self.tests_of(|one| {
+            let stress = other.modelled(one);
+            middle.of(&Observation { stress, ..*one })
+        })
+    }
+
+    fn tests_of(&self, change: impl Fn(&Observation) -> Observation) -> Vec<TestData> {
+        let tests = self.tests.iter();
+        tests
+            .map(|test| test.with_observations(&change).stretched(self.stated))
+            .collect()
+    }
+
+    /// The law about some values with the tests of a middle.
+    fn about<'a>(
         &self,
-        middle: &Middle,
-        values: &[f64],
-        settings: &FitSettings,
-    ) -> Result<(Fit, Vec<TestData>), Error> {
-        let tests = self.of_middle(middle);
-        let derivatives = |one: &Observation| middle.derivatives(&self.as_mounted(one));
-        let fit = nearest_about(self.law, &tests, values, derivatives, settings)?;
-        Ok((fit, tests))
+        law: &'static Law,
+        (middle, tests): (&'a Middle, &'a [TestData]),
+        start: &'a [f64],
+        settings: &'a FitSettings,
+    ) -> About<'a, impl Fn(&Observation) -> Vec<f64> + use<'a>> {
+        let [first, second] = self.stated.map(f64::recip);
+        let nominal = StressMeasure::Nominal;
+        About {
+            law,
+            tests,
+            start,
+            derivatives: move |one: &Observation| {
+                let mounted = one.stretched(0, first, nominal);
+                middle.derivatives(&mounted.stretched(1, second, nominal))
+            },
+            other: None,
+            settings,
+        }
     }
 
-    /// The same middle by cells of half the size, with the derivatives of the large ones, and by how much the forces change, as a share of
-    /// the largest.
-    fn halved(&self, middle: Middle, values: &[f64]) -> Result<(Middle, f64), Error> {
+    /// The middle of a law that has settled by cells of half the size, with the derivatives of the large ones, and by how much the forces
+    /// change, as a share of the largest.
+    fn halved(&mut self, reached: &Reached) -> Result<(Middle, f64), Error> {
         let fine = self.sheet.halved();
-        let starts = self.sheet.on(&fine, &self.states);
-        let law = [self.sheet_law(values).0];
-        let states = fine.states(&law, self.interpolation.knots(), &starts)?;
-        let pairs = states.iter().zip(&self.states);
+        let law = [self.sheet_law(reached.law, &reached.values).0];
+        let knots = self.interpolation.knots();
+        let coarse = self.sheet.states(&law, knots, &self.states)?.concat();
+        let states = fine.states(&law, knots, &self.sheet.on(&fine, &coarse))?;
+        let pairs = states.iter().zip(&coarse);
         let changes = pairs.map(|(fine, coarse)| {
             let along = |axis: usize| (fine[0].stresses[axis] - coarse.stresses[axis]).abs();
             along(0).max(along(1))
         });
         let change = changes.fold(0.0, f64::max) / self.largest_stress();
-        Ok((middle.with_states(&law, &states), change))
+        Ok((reached.middle.with_states(&law, &states), change))
     }
 
     fn largest_stress(&self) -> f64 {
@@ -310,14 +426,13 @@ impl Solved {
     }
 
     /// By how much the stresses of the homogeneous reading deviate along both axes in %.
-    fn bias(&self, homogeneous: &Fit, values: &[f64]) -> [f64; 2] {
+    fn bias(&self, homogeneous: &Fit, fit: &Fit) -> [f64; 2] {
         let farthest = |axis: usize| {
             let rows = self.tests.iter().flat_map(|test| &test.observations);
             rows.map(|one| one.strains[axis]).fold(0.0, f64::max)
         };
         let strain = farthest(0).min(farthest(1));
-        let laws =
-            [values_of(homogeneous), values.to_vec()].map(|values| self.sheet_law(&values).0);
+        let laws = [homogeneous, fit].map(|fit| self.sheet_law(fit.law, &values_of(fit)).0);
         let off = |step: u8, axis: usize| {
             let at = [f64::from(step) / 10.0 * strain; 2];
             let [read, solved] = [&laws[0], &laws[1]].map(|law| law.stresses(at)[axis]);

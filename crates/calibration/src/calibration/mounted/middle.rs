@@ -120,12 +120,12 @@ impl Middle {
 
     /// The same with the states of its law by other finite elements.
     #[must_use]
-    pub fn with_states(self, law: &[SheetLaw], solved: &[Vec<SheetState>]) -> Self {
+    pub fn with_states(&self, law: &[SheetLaw], solved: &[Vec<SheetState>]) -> Self {
         let own = Self::new(&self.of_bars, law, &[], solved, (self.read, self.largest));
         Self {
-            of_middle: self.of_middle,
-            slopes: self.slopes,
-            forces: self.forces,
+            of_middle: self.of_middle.clone(),
+            slopes: self.slopes.clone(),
+            forces: self.forces.clone(),
             ..own
         }
     }
@@ -167,13 +167,15 @@ impl Middle {
     /// The sum of squares of the measured less the modelled stresses of some tests in MPa².
     pub fn square(&self, tests: &[TestData]) -> f64 {
         let rows = tests.iter().flat_map(|test| &test.observations);
-        rows.map(|one| {
-            let (strains, factor) = self.at(one);
-            let stress = self.law.stresses(strains)[one.axis];
-            let modelled = stress + factor * (stress.abs() + self.small) + self.read[one.axis];
-            (one.stress - modelled).powi(2)
-        })
-        .sum()
+        rows.map(|one| (one.stress - self.modelled(one)).powi(2))
+            .sum()
+    }
+
+    /// What would be measured at the strains of an observation, in MPa.
+    pub fn modelled(&self, one: &Observation) -> f64 {
+        let (strains, factor) = self.at(one);
+        let stress = self.law.stresses(strains)[one.axis];
+        stress + factor * (stress.abs() + self.small) + self.read[one.axis]
     }
 
     /// By how much forces change between some values, to first order, as a share of the largest.

@@ -47,6 +47,30 @@ pub struct Linear {
     pub at: Vec<f64>,
     /// The derivatives of each row in MPa.
     rows: Vec<Vec<f64>>,
+    /// What is quadratic along one direction: Dᵢ (w · (p − p₀))².
+    bend: Option<Bend>,
+}
+
+#[derive(Debug)]
+struct Bend {
+    weights: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+impl Linear {
+    /// What is added to the stress of a row.
+    fn at(&self, row: usize, values: &[f64]) -> f64 {
+        let sum = |slopes: &[f64]| -> f64 {
+            let changes = values.iter().zip(&self.at).map(|(now, at)| now - at);
+            slopes
+                .iter()
+                .zip(changes)
+                .map(|(slope, by)| slope * by)
+                .sum()
+        };
+        let bend = self.bend.as_ref();
+        sum(&self.rows[row]) + bend.map_or(0.0, |bend| bend.rows[row] * sum(&bend.weights).powi(2))
+    }
 }
 
 impl<'a> Elastic<'a> {
@@ -123,9 +147,42 @@ impl<'a> Elastic<'a> {
 
     /// The same with a part that is linear in the values about some of them; `derivatives` are those at an observation of a test.
     pub fn with_linear(self, at: Vec<f64>, derivatives: impl Fn(&Observation) -> Vec<f64>) -> Self {
-        let rows = self.observations.iter().map(derivatives).collect();
+        let linear = Linear {
+            at,
+            rows: self.observations.iter().map(derivatives).collect(),
+            bend: None,
+        };
         Self {
-            linear: Some(Arc::new(Linear { at, rows })),
+            linear: Some(Arc::new(linear)),
+            ..self
+        }
+    }
+
+    /// The same bent along the way to other values so that the stresses there are the measured ones of `other`; `sizes` are those of the
+    /// values.
+    pub fn bent(self, values: &[f64], other: &Elastic, sizes: &[f64]) -> Self {
+        let Some(Linear { at, rows, .. }) = self.linear.as_deref() else {
+            return self;
+        };
+        let way = values.iter().zip(at).map(|(to, from)| to - from);
+        let shares: Vec<f64> = way.zip(sizes).map(|(by, size)| by / size).collect();
+        let square: f64 = shares.iter().map(|share| share * share).sum();
+        let weights = shares.iter().zip(sizes);
+        let modelled = self.stresses(values);
+        let differences = modelled.iter().enumerate();
+        let bend = Bend {
+            weights: weights.map(|(share, size)| share / size / square).collect(),
+            rows: differences
+                .map(|(row, stress)| other.measured(values, row) - stress)
+                .collect(),
+        };
+        let linear = Linear {
+            at: at.clone(),
+            rows: rows.clone(),
+            bend: (square > 0.0).then_some(bend),
+        };
+        Self {
+            linear: Some(Arc::new(linear)),
             ..self
         }
     }
@@ -194,13 +251,8 @@ impl Response for Elastic<'_> {
         };
         let mut stresses: Vec<f64> = pairs.map(stress).collect();
         if let Some(linear) = &self.linear {
-            for (stress, row) in stresses.iter_mut().zip(&linear.rows) {
-                let changes = values.iter().zip(&linear.at).map(|(now, at)| now - at);
-                *stress += row
-                    .iter()
-                    .zip(changes)
-                    .map(|(slope, by)| slope * by)
-                    .sum::<f64>();
+            for (row, stress) in stresses.iter_mut().enumerate() {
+                *stress += linear.at(row, values);
             }
         }
         stresses
