@@ -23,7 +23,7 @@ from ._specimen import Specimen
 from ._study import check, run
 from ._sweep import SweepPlan, salib_problem, sweep
 from ._sweep_table import Band, SweepTable
-from ._tests import Estimate, Fit, Identification, fit, identify
+from ._tests import Estimate, Fit, Identification, biaxial, fit, identify
 
 __all__ = [
     "AtPoints",
@@ -50,6 +50,7 @@ __all__ = [
     "SweepTable",
     "WriteError",
     "__version__",
+    "biaxial",
     "check",
     "correct",
     "corrector",

@@ -47,6 +47,12 @@ MEASURES = (
     "inner_radius",
     "outer_radius",
     "angle",
+    "tines",
+    "tine_spacing",
+    "tine_inset",
+    "tine_diameter",
+    "arm_width",
+    "fillet",
 )
 
 ARGUMENTS = {
@@ -72,7 +78,7 @@ class Specimen(StudyInMemory):
 
     Parameters
     ----------
-    shape : {"strip", "strip-with-hole", "notched-strip", "dog-bone", "ring-sector"}
+    shape : {"strip", "strip-with-hole", "notched-strip", "dog-bone", "ring-sector", "square-on-rakes", "cruciform"}
         The shape; `Specimen.from_mesh` takes any.
     thickness : quantity
         Thickness at rest [mm].
@@ -95,7 +101,8 @@ class Specimen(StudyInMemory):
         that are arguments are refused here.
     **measures : quantity
         Measures of the shape [mm]: ``length``, ``width``, ``hole_diameter``, ``notch_depth``, ``notch_length``,
-        ``narrow_length``, ``narrow_width``, ``shoulder_length``, ``inner_radius``, ``outer_radius``; ``angle`` [rad].
+        ``narrow_length``, ``narrow_width``, ``shoulder_length``, ``inner_radius``, ``outer_radius``; ``angle`` [rad]; of a square on rakes
+        ``tine_spacing``, ``tine_inset``, ``tine_diameter`` and the number of ``tines`` at each side; of a cruciform ``arm_width``, ``fillet``.
 
     Examples
     --------
@@ -125,9 +132,12 @@ class Specimen(StudyInMemory):
         unknown = [name for name in measures if name not in MEASURES]
         if unknown:
             raise fault(unknown[0], "is not a dimension of a shape", f"measures are {', '.join(MEASURES)}")
-        own = {
-            name: text(value, "rad" if name == "angle" else "mm", name) for name, value in measures.items()
-        }
+        def measure(name: str, value: Quantity) -> str | int:
+            if name == "tines":
+                return whole(value, "tines", 1)
+            return text(value, "rad" if name == "angle" else "mm", name)
+
+        own = {name: measure(name, value) for name, value in measures.items()}
         specimen = {"shape": shape, **own, "cells": whole(cells, "cells", 1), "lattice": lattice}
         self._set(specimen, None, thickness, material, supports, measured, loads, settings)
 

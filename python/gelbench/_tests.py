@@ -272,6 +272,54 @@ def fit(
     return Fit(_core.fit(tables, law, name, said, weighting, limits, least, history, callback(progress)))
 
 
+def biaxial(
+    data: Data,
+    law: str | None,
+    *,
+    mounting: str | None = None,
+    rest_state: str | Sequence[float] = "as-mounted",
+    force_zero: str = "as-measured",
+    markers: Quantity | None = None,
+    **more: Any,
+) -> Fit:
+    """Fits a law to planar biaxial tests of one specimen, as it is mounted.
+
+    Parameters
+    ----------
+    data : path, DataFrame, mapping or array_like
+        A test, or a list of protocols of one specimen: displacements and forces, or strains and stresses, along both axes.
+    law : str or None
+        Name of the law, such as ``"fung"`` or ``"holzapfel-gasser-ogden"``; None selects the best of all.
+    mounting : {"rakes", "cruciform"}, optional
+        What holds the sheet, which is then solved by finite elements with the law; homogeneous if omitted. Rakes have ``tines=``
+        at each side, ``tine_spacing=``, ``tine_inset=`` from the edge and ``tine_diameter=`` [mm], and ``tine_bars="sliding"`` where tines or
+        threads move along their bar; a cruciform has ``arm_width=`` and ``fillet=`` [mm].
+    rest_state : str or pair of float
+        The state without stress: ``"as-mounted"``, ``"estimated"`` with the law, or the stretches along both axes as mounted.
+    force_zero : {"as-measured", "estimated"}
+        The zeros of both forces.
+    markers : quantity, optional
+        The stretches are those of four markers at the corners of a square of this side in the middle [mm]; of the bars if omitted.
+    **more
+        Anything that `gelbench.fit` takes, such as ``length=``, ``width=``, ``thickness=`` [mm] as mounted, ``bounds=`` and ``fixed=``.
+
+    Returns
+    -------
+    Fit
+        ``.json["mounting"]`` has the homogeneous reading and its bias, ``.json["rest_state"]`` what was found of the state at rest.
+
+    Examples
+    --------
+    >>> gb.biaxial("square.csv", "fung", mounting="rakes", tines=5, tine_spacing=1.5, tine_inset=1, tine_diameter=0.25,
+    ...            length=8, width=8, thickness=0.8, rest_state="estimated")
+    """
+    stretches = rest_state if isinstance(rest_state, str) else ",".join(str(float(one)) for one in rest_state)
+    said = {"mounting": mounting, "markers": markers}
+    said |= {"rest_state": None if stretches == "as-mounted" else stretches}
+    said |= {"force_zero": None if force_zero == "as-measured" else force_zero}
+    return fit(data, law, **{key: value for key, value in said.items() if value is not None}, **{"test": "biaxial", **more})
+
+
 def _history(law: str | None, relaxation: bool | int, softening: bool) -> str | None:
     """Extensions fitted on top of a law."""
     if softening and relaxation is not False:
@@ -283,7 +331,9 @@ def _history(law: str | None, relaxation: bool | int, softening: bool) -> str | 
     return "softening" if softening else None
 
 
-PLAIN = {"area": "mm^2", "length": "mm", "width": "mm", "thickness": "mm", "mass": "tonne"}
+LENGTHS = ("length", "width", "thickness", "tine spacing", "tine inset", "tine diameter", "arm width", "fillet", "markers")
+
+PLAIN = {"area": "mm^2", "mass": "tonne", **{key: "mm" for key in LENGTHS}}
 """Units of plain numbers in statements about data."""
 
 

@@ -4,6 +4,7 @@ use gelbench_calibration::calibration::{Fit, Test, TestData};
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::material::curve::{Mode, samples};
+use gelbench_mechanics::material::parameters::Parameter;
 
 /// Parameters, figures, stability, predictions and warnings of a fit.
 pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
@@ -43,28 +44,35 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
     text
 }
 
-/// What the homogeneous reading of a mounted sheet says, and by how much it is wrong.
+/// What the homogeneous reading of a mounted sheet says, by how much it is wrong, and what another state at rest would.
 fn mounted(fit: &Fit) -> String {
-    let Some(mounted) = &fit.mounted else {
-        return String::new();
-    };
-    let read = mounted.homogeneous.iter().map(|parameter| {
-        format!(
-            "{} {} {}",
-            parameter.key,
-            digits(parameter.value, 4),
-            parameter.unit()
-        )
-    });
-    let [first, second] = mounted.bias_percent;
-    format!(
-        "  mounting     solved {} times by finite elements, whose forces are within {:.2} % of those on half the cell size
-  homogeneous  {}:          stresses {first:+.1} % and {second:+.1} % off along both axes at the largest equibiaxial stretch
-",
-        mounted.rounds,
-        mounted.discretisation_percent,
-        read.collect::<Vec<_>>().join(", "),
-    )
+    let mut text = String::new();
+    if let Some(mounted) = &fit.mounted {
+        let [first, second] = mounted.bias_percent;
+        text += &format!(
+            "  mounting     sheet and law solved together {} times; halved cells change the forces by {:.2} %, which is taken into account\n",
+            mounted.rounds, mounted.discretisation_percent
+        );
+        text += &format!(
+            "  homogeneous  {}, whose equibiaxial stresses are up to {first:+.1} % and {second:+.1} % off\n",
+            values(&mounted.homogeneous)
+        );
+    }
+    if let Some((parameters, r_squared)) = &fit.at_rest_as_mounted {
+        text += &format!(
+            "  as mounted   {} if the sheet were homogeneous and at rest as mounted, R² {r_squared:.6}\n",
+            values(parameters)
+        );
+    }
+    text
+}
+
+/// Some parameters with their values.
+fn values(parameters: &[Parameter]) -> String {
+    let each = parameters
+        .iter()
+        .map(|own| format!("{} {} {}", own.key, digits(own.value, 4), own.unit()));
+    each.collect::<Vec<_>>().join(", ")
 }
 
 /// How many terms, and what the data cover.

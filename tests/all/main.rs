@@ -27,6 +27,7 @@ mod mesh_faults;
 mod messages;
 mod mistaken_fields;
 mod motions;
+mod mounted_sheets;
 mod multigrid;
 mod nested_correction;
 mod new_cards;

@@ -34,11 +34,17 @@ use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all; [`Error::Solve`] when the search ends at no minimum.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
-    let fit = match mounting(tests)? {
+    let mut fit = match mounting(tests)? {
         Some(mounting) => nearest_mounted(law, tests, mounting, settings),
         None => nearest(law, tests, settings),
-    };
-    fit?.that_follows(tests)
+    }?;
+    if tests.iter().any(|test| test.mounted.estimates_stretches()) {
+        let as_mounted = tests.iter().map(TestData::as_mounted);
+        let as_mounted = nearest(law, &as_mounted.collect::<Vec<_>>(), settings)?;
+        let at_rest = (as_mounted.parameters, as_mounted.quality.r_squared);
+        fit.at_rest_as_mounted = Some(at_rest);
+    }
+    fit.that_follows(tests)
 }
 
 /// The fit of a law, however far it is from the data.

@@ -40,6 +40,8 @@ pub struct Fit {
     pub relaxed: Option<Relaxed>,
     /// The softening of a fit to loading and unloading.
     pub softened: Option<Softened>,
+    /// The parameters and R² of a homogeneous sheet that carries nothing as it is mounted, where its state at rest was found with the law.
+    pub at_rest_as_mounted: Option<(Vec<Parameter>, f64)>,
     /// The mounting of a sheet that was solved with the law.
     pub mounted: Option<MountedFit>,
 }

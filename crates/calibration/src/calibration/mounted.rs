@@ -52,7 +52,7 @@ pub struct MountedFit {
     pub bias_percent: [f64; 2],
     /// By how much the forces changed at most when the cells were halved for the last fit, in % of the largest.
     pub discretisation_percent: f64,
-    /// How often the sheet was solved.
+    /// How often the sheet was solved with the law.
     pub rounds: usize,
 }
 

@@ -149,6 +149,7 @@ impl<R: Response> Solution<R> {
             quality,
             relaxed: None,
             softened: None,
+            at_rest_as_mounted: None,
             mounted: None,
         }
     }

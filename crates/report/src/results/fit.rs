@@ -1,9 +1,10 @@
 //! The numbers of a fitted law.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use crate::calibration::{Fit, Softened, TestData};
+use crate::calibration::{Fit, MovedZero, Softened, TestData, Zero};
 use crate::material::curve::samples;
+use crate::material::parameters::Parameter;
 
 /// All numbers of a fit. Numbers that do not exist are `null`.
 pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
@@ -64,6 +65,17 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "rates_per_s": relaxed.material.covered.rates,
         })),
         "softening": fit.softened.as_ref().map(softening_json),
+        "rest_state": quality.zeros.iter().map(zero_json).collect::<Vec<_>>(),
+        "mounting": fit.mounted.as_ref().map(|mounted| json!({
+            "homogeneous_parameters": values_json(&mounted.homogeneous),
+            "homogeneous_bias_percent": mounted.bias_percent,
+            "forces_of_halved_cells_percent": mounted.discretisation_percent,
+            "rounds": mounted.rounds,
+        })),
+        "homogeneous_at_rest_as_mounted": fit.at_rest_as_mounted.as_ref().map(|(parameters, r_squared)| json!({
+            "parameters": values_json(parameters),
+            "r_squared": r_squared,
+        })),
         "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
         "points": quality.points,
         "sum_of_squares_MPa2": quality.sum_of_squares,
@@ -85,6 +97,36 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "stretch_and_nominal_stress_MPa": sample.points,
         })).collect::<Vec<_>>(),
         "warnings": quality.warnings,
+    })
+}
+
+/// Parameters by key, in internal units.
+fn values_json(parameters: &[Parameter]) -> Value {
+    let pairs = parameters
+        .iter()
+        .map(|own| (own.key.to_owned(), json!(own.value)));
+    pairs.collect::<Map<_, _>>().into()
+}
+
+/// A zero or a stretch that was found with the law.
+fn zero_json(found: &MovedZero) -> Value {
+    let (what, unit) = match found.zero {
+        Zero::Record { test, .. } => (format!("zero of test {}", test + 1), ""),
+        Zero::Force { axis, .. } => (
+            format!("stress without load along axis {}", axis + 1),
+            "MPa",
+        ),
+        Zero::Stretch { axis } => (
+            format!("stretch as mounted less 1 along axis {}", axis + 1),
+            "-",
+        ),
+    };
+    json!({
+        "what": what,
+        "unit": unit,
+        "value": found.by.value,
+        "standard_error": found.by.standard_error,
+        "interval_95_percent": found.by.interval,
     })
 }
 

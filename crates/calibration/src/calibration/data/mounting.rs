@@ -246,6 +246,19 @@ impl Observation {
 }
 
 impl TestData {
+    /// The test of a homogeneous sheet that carries nothing as it is mounted.
+    pub(in crate::calibration) fn as_mounted(&self) -> Self {
+        let mounted = Mounted {
+            mounting: None,
+            rest_state: RestState::AsMounted,
+            ..self.mounted
+        };
+        Self {
+            mounted,
+            ..self.clone()
+        }
+    }
+
     /// The test of a sheet that was stretched along both axes before.
     #[must_use]
     pub(in crate::calibration) fn stretched(&self, [first, second]: [f64; 2]) -> Self {
