@@ -11,7 +11,8 @@ use crate::material::prestretched::PrestretchedLaw;
 use crate::material::sheet::Kinematics;
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::{BoundaryProblem, Drive, Model, Support, sheet_energy::SheetEnergy};
-use crate::solve::{Convergence, Loading, Newton, NewtonSettings, Stage, State};
+use crate::solve::tangent::inverted;
+use crate::solve::{Assembly, Convergence, Loading, Newton, NewtonSettings, Stage, State};
 
 /// Cells across the sheet: the finite elements are quadratic.
 const CELLS: usize = 8;
@@ -260,13 +261,57 @@ impl<'a> Search<'a> {
         strains: [f64; 2],
         near: Option<&SheetState>,
     ) -> Result<Vec<SheetState>, SolveFault> {
-        let bodies = self.bodies;
-        let mut states = vec![self.state(&bodies[0], strains, near)?];
-        for body in &bodies[1..] {
-            let near = states[0].clone();
-            states.push(self.state(body, strains, Some(&near))?);
+        let (first, others) = self.bodies.split_first().expect("a law");
+        let state = self.state(first, strains, near)?;
+        let mut states = vec![state];
+        if self.sheet.mounting.markers.is_some() || states[0].field.iter().all(|u| *u == 0.0) {
+            for body in others {
+                let near = states[0].clone();
+                states.push(self.state(body, strains, Some(&near))?);
+            }
+        } else if !others.is_empty() {
+            let moved = self.moved(first, others, &states[0])?;
+            states.extend(moved);
         }
         Ok(states)
+    }
+
+    /// The states of laws that differ little from the one of a state between the same bars, by a step of Newton's method with its tangent.
+    fn moved(
+        &mut self,
+        first: &Body,
+        others: &[Body],
+        state: &SheetState,
+    ) -> Result<Vec<SheetState>, SolveFault> {
+        let mesh = &self.sheet.mesh;
+        let problem = |body: &Body| self.sheet.problem(&body.law, state.bars);
+        let model = problem(first);
+        let model = model
+            .on(mesh, &first.energy)
+            .expect("the groups of the shape");
+        let describe = |element| model.describe(element);
+        let potential = model.potential(1.0, &[]);
+        self.newton
+            .tangent
+            .at(&*potential, &state.field, &describe)?;
+        let mut moved = Vec::new();
+        for body in others {
+            let problem = problem(body);
+            let model = problem
+                .on(mesh, &body.energy)
+                .expect("the groups of the shape");
+            let mut residual = vec![0.0; state.field.len()];
+            let potential = model.potential(1.0, &[]);
+            Assembly::residual(&*potential, &state.field, &mut residual)
+                .map_err(|fault| inverted(fault, &describe))?;
+            let change = self.newton.tangent.changes(&[residual.clone()])?;
+            let pairs = state.field.iter().zip(&change[0]);
+            let mut field: Vec<f64> = pairs.map(|(at, by)| at + by).collect();
+            model.impose(1.0, &mut field);
+            let reached = Stage::first(1.0).reached(field, residual, Convergence::default());
+            moved.push(self.seen(&model, state.bars, reached));
+        }
+        Ok(moved)
     }
 
     /// The state at some strains of the bars, or of the markers where these were measured.
