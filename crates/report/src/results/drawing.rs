@@ -75,7 +75,9 @@ pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
     let cells = 0..mesh.cell_count();
     // Groups of the same part share a line: one would hide the others.
     let mut parts: Vec<(&Group, Vec<&str>)> = Vec::new();
-    for (name, group) in mesh.groups() {
+    // Single tines are drawn as those of their side.
+    let groups = mesh.groups().iter();
+    for (name, group) in groups.filter(|(name, _)| !name.contains("-tine-")) {
         let is_same = |(own, _): &&mut (&Group, Vec<&str>)| {
             own.nodes == group.nodes && own.edges.is_empty() == group.edges.is_empty()
         };
