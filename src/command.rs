@@ -48,6 +48,7 @@ mod large;
 mod materials;
 mod message;
 mod new_card;
+mod parameter_bounds;
 mod progress;
 mod reference;
 mod schema;

@@ -7,17 +7,15 @@ use clap::{ArgGroup, Args};
 use serde_json::Value;
 
 use super::choice::one_of;
-use super::new_card::pair;
+use super::parameter_bounds::{bounds, pair, stated};
 use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, warn};
+use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use gelbench_base::document::Statements;
 use gelbench_base::error::{Diagnostic, Error};
-use gelbench_base::units::{self, Dimension};
 use gelbench_calibration::calibration::{
-    self, Base, Bounds, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData,
-    Weighting,
+    self, Base, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData, Weighting,
 };
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::card::FitRecord;
@@ -80,23 +78,6 @@ pub fn load(name: &str) -> Result<Card, Error> {
     Ok(card)
 }
 
-/// All of some results, or the faults of all of them.
-pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
-    let (mut good, mut faults) = (Vec::new(), Vec::new());
-    for result in results {
-        match result {
-            Ok(one) => good.push(one),
-            Err(Error::Input(found)) => faults.extend(found),
-            Err(other) => return Err(other),
-        }
-    }
-    if faults.is_empty() {
-        Ok(good)
-    } else {
-        Err(Error::Input(faults))
-    }
-}
-
 /// Fits, prints, and writes card, picture and figures.
 pub fn fit(arguments: FitArguments) -> Outcome {
     arguments.printed.choose();
@@ -115,7 +96,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     tests.iter().for_each(|test| warn(&test.warnings));
     let settings = FitSettings {
         weighting: arguments.weighting,
-        bounds: [bounds(&arguments.bounds)?, fixed(&arguments.fixed)?].concat(),
+        bounds: [bounds(&arguments.bounds)?, stated(&arguments.fixed)?].concat(),
         starts: arguments.starts.into(),
     };
     let base = arguments.card.as_deref().map(load).transpose()?;
@@ -334,41 +315,6 @@ fn weighting(name: &str) -> Result<Weighting, Error> {
         );
         Error::input(format!("weighting {name} is not known"), hint)
     })
-}
-
-/// Bounds as `key=low..high`.
-fn bounds(texts: &[String]) -> Result<Bounds, Error> {
-    let bound = |text: &String| {
-        let (key, range) = text.split_once('=')?;
-        let (low, high) = range.split_once("..")?;
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| !n.is_nan());
-        Some((key.trim().to_owned(), [number(low)?, number(high)?]))
-    };
-    let each = texts.iter().map(|text| {
-        bound(text).ok_or_else(|| {
-            Error::input(
-                format!("the bound `{text}` cannot be read"),
-                "write it as key=low..high, such as jm=5..200",
-            )
-        })
-    });
-    together(each)
-}
-
-/// Stated values as bounds that are equal.
-fn fixed(stated: &[(String, String)]) -> Result<Bounds, Error> {
-    let dimensions = [Dimension::Ratio, Dimension::Stress, Dimension::Angle];
-    let each = stated.iter().map(|(key, text)| {
-        let value = dimensions
-            .iter()
-            .find_map(|dimension| units::parse(text, *dimension).ok());
-        let value = value.ok_or_else(|| {
-            let hint = "such as angle=\"30 deg\", mu=\"2 kPa\" or k2=0.8";
-            Error::input(format!("the value `{text}` of {key} cannot be read"), hint)
-        })?;
-        Ok((key.clone(), [value; 2]))
-    });
-    together(each)
 }
 
 /// Fits a card again and compares.

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 
 use super::convert::{ConvertArguments, convert};
-use super::fit::{FitArguments, fit, load, refit, together};
+use super::fit::{FitArguments, fit, load, refit};
 use super::message;
 use super::new_card::{CheckCards, NEW_HELP, NewCard, check_cards, new_card};
-use super::terminal::{Outcome, print, save};
+use super::terminal::{Outcome, print, save, together};
 use gelbench_base::error::Error;
 use gelbench_mechanics::material::registry::{CARDS, LAWS};
 use gelbench_report::output;

@@ -278,17 +278,3 @@ fn quantity(text: &str, dimension: Dimension) -> Result<f64, Diagnostic> {
         Diagnostic::error("", fault.to_string()).hint(hint)
     })
 }
-
-pub fn pair(text: &str) -> Result<(String, String), Diagnostic> {
-    let parts = text.split_once('=');
-    let parts = parts.map(|(key, value)| (key.trim(), value.trim()));
-    match parts {
-        Some((key, value)) if !key.is_empty() && !value.is_empty() => {
-            Ok((key.to_owned(), value.to_owned()))
-        }
-        _ => {
-            let hint = "write it as KEY=VALUE, such as jm=30 or mu=\"20 kPa\"";
-            Err(Diagnostic::error("", "is no parameter with a value").hint(hint))
-        }
-    }
-}

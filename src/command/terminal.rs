@@ -176,6 +176,23 @@ pub fn complain_of_end(end: &End) {
     let _ = write!(io::stderr(), "{}", wrapped(&text, columns_of_errors()));
 }
 
+/// All of some results, or the faults of all of them.
+pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
+    let (mut good, mut faults) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(one) => good.push(one),
+            Err(Error::Input(found)) => faults.extend(found),
+            Err(other) => return Err(other),
+        }
+    }
+    if faults.is_empty() {
+        Ok(good)
+    } else {
+        Err(Error::Input(faults))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

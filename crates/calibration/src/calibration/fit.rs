@@ -231,20 +231,21 @@ fn finished(
     let tests = solution.misfit.response.moved_tests(&solution.values);
     let of_noise = noise_warnings(&fit.quality, &*fit.fitted, &tests, settings.weighting);
     fit.quality.warnings.extend(of_noise);
-    fit.quality
-        .warnings
-        .extend(held_warning(&held(law, &tests, &settings.bounds)));
+    let of_shear = held_warning(&fit, &tests);
+    fit.quality.warnings.extend(of_shear);
     fit.choices = solution.misfit.response.build(&solution.values).1.choices;
     fit
 }
 
 /// The warning about parameters that only shear determines.
-fn held_warning(held: &[(&str, f64)]) -> Option<String> {
-    let values: Vec<String> = held
-        .iter()
-        .map(|(key, value)| format!("{key} = {value}"))
+fn held_warning(fit: &Fit, tests: &[TestData]) -> Option<String> {
+    let held = held(fit.law, tests, &fit.settings.bounds);
+    let is_held = |one: &&Parameter| held.iter().any(|(key, _)| *key == one.key);
+    let parameters = fit.parameters.iter().filter(is_held);
+    let values: Vec<String> = parameters
+        .map(|one| format!("{} = {:.4}", one.key, one.value))
         .collect();
-    (!held.is_empty()).then(|| {
+    (!values.is_empty()).then(|| {
         format!(
             "no test shears the sheet, which would determine {}: held, not fitted; state what is known, or add a test in simple shear",
             values.join(", ")

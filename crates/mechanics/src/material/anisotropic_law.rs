@@ -1,5 +1,7 @@
 //! Laws of the first invariant and of the strain in the axes of the material.
 
+use nalgebra::Matrix4;
+
 use super::code::{Code, CodeLaw};
 use super::curve;
 use super::jet::Jet;
@@ -19,11 +21,6 @@ pub trait AnisotropicLaw: Clone + Send + Sync + std::fmt::Debug {
     /// As [`HyperelasticLaw::in_code`], with the first axis of the material.
     fn in_code(&self, _code: Code, _bulk_modulus: f64, _axis: [f64; 2]) -> Option<CodeLaw> {
         None
-    }
-
-    /// As [`HyperelasticLaw::statements`].
-    fn statements(&self) -> Vec<(&'static str, String)> {
-        Vec::new()
     }
 }
 
@@ -55,13 +52,14 @@ impl<L> AnisotropicSheet<L> {
 }
 
 impl<L: AnisotropicLaw> AnisotropicSheet<L> {
-    /// A law whose first axis is turned by an angle in rad.
-    pub fn turned_by(law: L, angle: f64) -> Self {
+    /// The sheet of a card whose first material axis is turned by an angle in rad.
+    pub(super) fn boxed(law: L, angle: f64) -> Box<dyn HyperelasticLaw>
+    where
+        L: 'static,
+    {
         let (sine, cosine) = angle.sin_cos();
-        Self {
-            law,
-            axis: [cosine, sine],
-        }
+        let axis = [cosine, sine];
+        Box::new(Self { law, axis })
     }
 
     #[inline(always)]
@@ -76,7 +74,7 @@ impl<L: AnisotropicLaw> AnisotropicSheet<L> {
 
     /// ∂xᵢ/∂F.
     #[inline(always)]
-    fn gradients(&self, kinematics: &Kinematics) -> [PlaneTensor; 4] {
+    fn gradients(&self, kinematics: &Kinematics) -> Matrix4<f64> {
         let f = &kinematics.deformation_gradient;
         let along = |[x, y]: [f64; 2]| [f[0] * x + f[1] * y, f[2] * x + f[3] * y];
         let [d11, d12, d22] = self.axes().map(|[a, b]| {
@@ -84,22 +82,18 @@ impl<L: AnisotropicLaw> AnisotropicSheet<L> {
             let entry = |i: usize, j: usize| fa[i] * b[j] + fb[i] * a[j];
             PlaneTensor::new(entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1))
         });
-        [2.0 * kinematics.half_d1, d11, d12, d22]
+        Matrix4::from_columns(&[2.0 * kinematics.half_d1, d11, d12, d22])
     }
 }
 
 impl<L: AnisotropicLaw> HyperelasticLaw for AnisotropicSheet<L> {
     fn stress(&self, kinematics: &Kinematics) -> (f64, PlaneTensor) {
-        let (w, [d1, d11, d12, d22]) = (self.energy(kinematics), self.gradients(kinematics));
-        let g = w.gradient;
-        let stress = g[0] * d1 + g[1] * d11 + g[2] * d12 + g[3] * d22;
-        (w.value, stress)
+        let w = self.energy(kinematics);
+        (w.value, self.gradients(kinematics) * w.gradient)
     }
 
     fn response(&self, kinematics: &Kinematics) -> SheetResponse {
-        let (energy, stress) = self.stress(kinematics);
-        let w = self.energy(kinematics);
-        let gradients = nalgebra::Matrix4::from_columns(&self.gradients(kinematics));
+        let (w, gradients) = (self.energy(kinematics), self.gradients(kinematics));
         let mut tangent = gradients * w.hessian * gradients.transpose()
             + 2.0 * w.gradient[0] * kinematics.second_derivative_1();
         for ([a, b], slope) in self.axes().iter().zip(w.gradient.iter().skip(1)) {
@@ -110,8 +104,8 @@ impl<L: AnisotropicLaw> HyperelasticLaw for AnisotropicSheet<L> {
             }
         }
         SheetResponse {
-            energy,
-            first_piola_kirchhoff_stress: stress,
+            energy: w.value,
+            first_piola_kirchhoff_stress: gradients * w.gradient,
             tangent,
         }
     }
@@ -134,7 +128,12 @@ impl<L: AnisotropicLaw> HyperelasticLaw for AnisotropicSheet<L> {
     }
 
     fn statements(&self) -> Vec<(&'static str, String)> {
-        self.law.statements()
+        let soft = "the law has no stiffness at rest, and no study can begin with it";
+        let is_soft = self.shear_modulus() == 0.0;
+        is_soft
+            .then(|| ("at rest", soft.to_owned()))
+            .into_iter()
+            .collect()
     }
 
     /// Zero where nothing resists the first strain.

@@ -1,5 +1,7 @@
 //! The exponential law of Fung for orthotropic sheets.
 
+use std::f64::consts::FRAC_PI_4;
+
 use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 use super::code::{Code, CodeLaw};
 use super::jet::Jet;
@@ -24,7 +26,8 @@ use crate::document::Bound;
 ///
 /// Q is positive definite, which makes Ψ convex in E. Turned by 90° and with a₁ and a₂ exchanged, the law is the same.
 /// Normal stresses of a sheet that is stretched along its axes depend on θ and a₄ through three coefficients of E₁₁² and
-/// E₂₂² alone: fits to tests without shear hold θ = 0 and a₄ unless a bound or a value is stated for them.
+/// E₂₂² alone: fits to tests without shear hold θ = 0 and a₄ = √(a₁ a₂)/4, as if the sheet were isotropic, unless a bound or a
+/// value is stated for them.
 ///
 /// **Limits.** Small strain: an orthotropic sheet with C₁₁₁₁ = c a₁, C₂₂₂₂ = c a₂, C₁₁₂₂ = c a₃, C₁₂₁₂ = c a₄.
 /// **Not covered.** Terms of shear beside normal strain. The thickness follows from the constant volume and has no energy.
@@ -46,18 +49,22 @@ impl Fung {
         let c = parameters.stress("c", Bound::Positive);
         let number = |key, bound| parameters.number(key, bound, [0.1, 500.0]);
         let [a1, a2] = ["a1", "a2"].map(|key| number(key, Bound::Positive));
-        number("a3", Bound::Any);
-        let a4 = number("a4", Bound::Positive);
-        let angle = parameters.angle(
-            "angle",
-            [-0.25, 0.25].map(|turn| turn * std::f64::consts::PI),
-        );
-        parameters.hold_without_shear(&[("a4", 10.0), ("angle", 0.0)]);
-        let most = (1.0 - 1e-9) * (a1 * a2).sqrt();
-        let hint = "a3² must be less than a1 a2, or some strain lowers the energy";
-        let a3 = parameters.limited("a3", most, hint);
+        let mut a3 = number("a3", Bound::Any);
+        let mut a4 = number("a4", Bound::Positive);
+        let angle = parameters.angle("angle", [-FRAC_PI_4, FRAC_PI_4]);
+        parameters.hold_without_shear(&[("a4", 0.0), ("angle", 0.0)]);
+        let mean = (a1 * a2).sqrt();
+        let most = (1.0 - 1e-9) * mean;
+        if a3.abs() > most {
+            let hint = "a3² must be less than a1 a2, or some strain lowers the energy";
+            parameters.fault("a3", "is larger than a1 and a2 allow", hint);
+            a3 = parameters.replace("a3", a3.clamp(-most, most));
+        }
+        if a4 == 0.0 {
+            a4 = parameters.replace("a4", 0.25 * mean);
+        }
         let a = [a1, a2, a3, a4];
-        Box::new(AnisotropicSheet::turned_by(Self { c, a }, angle))
+        AnisotropicSheet::boxed(Self { c, a }, angle)
     }
 }
 
@@ -65,8 +72,12 @@ impl AnisotropicLaw for Fung {
     #[inline(always)]
     fn energy(&self, [_, c11, c12, c22]: [Jet; 4]) -> Jet {
         let ([a1, a2, a3, a4], e11, e22) = (self.a, 0.5 * c11, 0.5 * c22);
-        let normal = a1 * e11.squared() + a2 * e22.squared() + 2.0 * a3 * (e11 * e22);
-        0.5 * self.c * (normal + a4 * c12.squared()).exponential_less_one()
+        // 2 E₁₁ E₂₂ = (E₁₁ + E₂₂)² − E₁₁² − E₂₂²
+        let exponent = (a1 - a3) * e11.squared()
+            + (a2 - a3) * e22.squared()
+            + a3 * (e11 + e22).squared()
+            + a4 * c12.squared();
+        0.5 * self.c * exponent.exponential_less_one()
     }
 
     fn is_isotropic(&self) -> bool {
@@ -78,21 +89,12 @@ impl AnisotropicLaw for Fung {
     /// across the sheet.
     fn in_code(&self, code: Code, bulk: f64, axis: [f64; 2]) -> Option<CodeLaw> {
         let [a1, a2, a3, a4] = self.a;
-        let values = [
-            ("b1111", a1),
-            ("b1122", a3),
-            ("b2222", a2),
-            ("b1133", 0.0),
-            ("b2233", 0.0),
-            ("b3333", 0.0),
-            ("b1212", a4),
-            ("b1313", 0.0),
-            ("b2323", 0.0),
-            ("c", self.c),
-            ("D", 2.0 / bulk),
+        let names = [
+            "b1111", "b1122", "b2222", "b1133", "b2233", "b3333", "b1212", "b1313", "b2323", "c",
+            "D",
         ];
-        (code == Code::Abaqus)
-            .then(|| CodeLaw::directed("FUNG-ORTHOTROPIC", values, &[axis]))
-            .flatten()
+        let values = [a1, a3, a2, 0.0, 0.0, 0.0, a4, 0.0, 0.0, self.c, 2.0 / bulk];
+        let law = || CodeLaw::directed("FUNG-ORTHOTROPIC", names.into_iter().zip(values), &[axis]);
+        (code == Code::Abaqus).then(law).flatten()
     }
 }

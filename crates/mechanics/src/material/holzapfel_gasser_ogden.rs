@@ -75,7 +75,10 @@ impl HolzapfelGasserOgden {
 
     /// The sheet made of it, in whose axes the fibres are stated.
     pub fn sheet(self) -> AnisotropicSheet<Self> {
-        AnisotropicSheet::turned_by(self, 0.0)
+        AnisotropicSheet {
+            law: self,
+            axis: [1.0, 0.0],
+        }
     }
 }
 

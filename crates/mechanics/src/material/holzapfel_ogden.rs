@@ -1,5 +1,7 @@
 //! The law of Holzapfel and Ogden for myocardium.
 
+use std::f64::consts::FRAC_PI_4;
+
 use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 use super::jet::Jet;
 use super::law::HyperelasticLaw;
@@ -59,12 +61,9 @@ impl HolzapfelOgden {
             sheets: pair(["a_s", "b_s"], Bound::NonNegative),
             shear: pair(["a_fs", "b_fs"], Bound::NonNegative),
         };
-        let angle = parameters.angle(
-            "angle",
-            [-0.25, 0.25].map(|turn| turn * std::f64::consts::PI),
-        );
+        let angle = parameters.angle("angle", [-FRAC_PI_4, FRAC_PI_4]);
         parameters.hold_without_shear(&[("a_fs", 0.0), ("b_fs", 1.0)]);
-        Box::new(AnisotropicSheet::turned_by(law, angle))
+        AnisotropicSheet::boxed(law, angle)
     }
 }
 

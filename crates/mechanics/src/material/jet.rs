@@ -82,19 +82,3 @@ impl Mul<Jet> for f64 {
         }
     }
 }
-
-impl Mul for Jet {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let mixed = self.gradient * other.gradient.transpose();
-        Self {
-            value: self.value * other.value,
-            gradient: self.value * other.gradient + other.value * self.gradient,
-            hessian: self.value * other.hessian
-                + other.value * self.hessian
-                + (mixed + mixed.transpose()),
-        }
-    }
-}

@@ -1,5 +1,7 @@
 //! The law of Lee, Sacks and others.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 use super::jet::Jet;
 use super::law::HyperelasticLaw;
@@ -56,7 +58,8 @@ impl LeeSacks {
             c2: parameters.number("c2", Bound::Positive, [0.1, 100.0]),
             delta: parameters.number("delta", Bound::Within(0.0, 1.0), [0.0, 1.0]),
         };
-        Box::new(AnisotropicSheet::turned_by(law, parameters.fibre_angle()))
+        let angle = parameters.angle("angle", [-FRAC_PI_2, FRAC_PI_2]);
+        AnisotropicSheet::boxed(law, angle)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The law of May-Newman and Yin.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 use super::jet::Jet;
 use super::law::HyperelasticLaw;
@@ -50,7 +52,8 @@ impl MayNewman {
             c1: parameters.number("c1", Bound::NonNegative, [0.1, 100.0]),
             c2: parameters.number("c2", Bound::NonNegative, [1.0, 1e5]),
         };
-        Box::new(AnisotropicSheet::turned_by(law, parameters.fibre_angle()))
+        let angle = parameters.angle("angle", [-FRAC_PI_2, FRAC_PI_2]);
+        AnisotropicSheet::boxed(law, angle)
     }
 }
 
@@ -70,11 +73,5 @@ impl AnisotropicLaw for MayNewman {
 
     fn is_isotropic(&self) -> bool {
         self.c2 == 0.0
-    }
-
-    fn statements(&self) -> Vec<(&'static str, String)> {
-        let soft = "the law has no stiffness at rest, and no study can begin with it; a matrix `mu` gives it one";
-        let soft = (self.mu == 0.0).then(|| ("at rest", soft.to_owned()));
-        soft.into_iter().collect()
     }
 }

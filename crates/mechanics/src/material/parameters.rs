@@ -262,30 +262,17 @@ impl<'a> Parameters<'a> {
         self.ask(key, Dimension::Angle, Bound::Any, period)
     }
 
-    /// The angle in rad between one family of fibres and the first axis.
-    pub fn fibre_angle(&self) -> f64 {
-        self.angle("angle", [-FRAC_PI_2, FRAC_PI_2])
-    }
-
     /// Parameters that only tests with shear determine, with the values at which fits to others hold them.
     pub fn hold_without_shear(&self, held: &'static [(&'static str, f64)]) {
         self.of_shear.set(held);
     }
 
-    /// A parameter that was asked for before, within ± `most`, which depends on others: a larger one is a fault of a card, and in
-    /// a fit the law is that of the limit.
-    pub fn limited(&self, key: &'static str, most: f64, hint: &str) -> f64 {
+    /// Records that the law takes another value of a parameter than was asked for.
+    pub fn replace(&self, key: &'static str, value: f64) -> f64 {
         let mut asked = self.asked.borrow_mut();
-        let mut same = asked.iter_mut().filter(|one| one.key == key);
-        let Some(parameter) = same.next() else {
-            return f64::NAN;
-        };
-        if parameter.value.abs() > most {
-            let message = format!("is larger than the other parameters allow, {most:.4}");
-            self.fault(key, &message, hint);
-            parameter.value = parameter.value.clamp(-most, most);
-        }
-        parameter.value
+        let same = asked.iter_mut().filter(|one| one.key == key);
+        same.for_each(|one| one.value = value);
+        value
     }
 
     /// A choice that a card states; the first one where there is no card.

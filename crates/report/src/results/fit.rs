@@ -9,13 +9,7 @@ use crate::material::parameters::Parameter;
 /// All numbers of a fit. Numbers that do not exist are `null`.
 pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
     let quality = &fit.quality;
-    let parameters = fit
-        .parameters
-        .iter()
-        .zip(quality.estimates.iter().zip(&quality.at_bound))
-        .zip(&quality.held);
     let rows = quality.correlation.row_iter();
-    let told = quality.has_intervals();
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
         "law": fit.law.name,
@@ -48,15 +42,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "effective_points": verdict.effective_points,
             "noise_ratio": verdict.noise_ratio,
         })),
-        "parameters": parameters.map(|((parameter, (estimate, at_bound)), held)| json!({
-            "key": parameter.key,
-            "value": parameter.value,
-            "unit": parameter.unit(),
-            "standard_error": told.then_some(estimate.standard_error),
-            "interval_95_percent": told.then_some(estimate.interval),
-            "at_bound": at_bound,
-            "held": held,
-        })).collect::<Vec<_>>(),
+        "parameters": (0..fit.parameters.len()).map(|index| parameter_json(fit, index)).collect::<Vec<_>>(),
         "relaxation": fit.relaxed.as_ref().map(|relaxed| json!({
             "shares": relaxed.material.relaxation.iter().map(|term| term.share).collect::<Vec<_>>(),
             "times_s": relaxed.material.relaxation.iter().map(|term| term.time).collect::<Vec<_>>(),
@@ -127,6 +113,21 @@ fn zero_json(found: &MovedZero) -> Value {
         "value": found.by.value,
         "standard_error": found.by.standard_error,
         "interval_95_percent": found.by.interval,
+    })
+}
+
+/// A parameter with its uncertainty.
+fn parameter_json(fit: &Fit, index: usize) -> Value {
+    let (quality, parameter) = (&fit.quality, &fit.parameters[index]);
+    let estimate = quality.has_intervals().then_some(&quality.estimates[index]);
+    json!({
+        "key": parameter.key,
+        "value": parameter.value,
+        "unit": parameter.unit(),
+        "standard_error": estimate.map(|own| own.standard_error),
+        "interval_95_percent": estimate.map(|own| own.interval),
+        "at_bound": quality.at_bound[index],
+        "held": quality.held[index],
     })
 }
 

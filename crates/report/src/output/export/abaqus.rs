@@ -261,25 +261,35 @@ fn orientation(material: &PartMaterial, deck: &mut Deck) -> String {
     else {
         return String::new();
     };
-    let head = format!("*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR", material.axes);
-    match (&directions[..], keyword.starts_with("FUNG")) {
-        ([], _) => return String::new(),
-        ([[x, y], ..], true) => {
-            deck.line(&head);
-            let axes = [*x, *y, 0.0, -*y, *x, 0.0].map(number);
-            deck.line(&axes.join(", "));
-            deck.line("3, 0.");
-        }
-        (fibres, false) => {
-            deck.line(&format!("{head}, LOCAL DIRECTIONS={}", fibres.len()));
-            deck.line("1., 0., 0., 0., 1., 0.");
-            deck.line("3, 0.");
-            for [x, y] in fibres {
-                deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
-            }
+    let Some([x, y]) = directions.first() else {
+        return String::new();
+    };
+    let local = local_directions(keyword, directions);
+    deck.line(&format!(
+        "*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR{local}",
+        material.axes
+    ));
+    if local.is_empty() {
+        let axes = [*x, *y, 0.0, -*y, *x, 0.0].map(number);
+        deck.line(&axes.join(", "));
+        deck.line("3, 0.");
+    } else {
+        deck.line("1., 0., 0., 0., 1., 0.");
+        deck.line("3, 0.");
+        for [x, y] in directions {
+            deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
         }
     }
     format!(", ORIENTATION={}", material.axes)
+}
+
+/// The option that counts the directions of fibres; those of Fung's law are its axes.
+fn local_directions(keyword: &str, directions: &[[f64; 2]]) -> String {
+    match directions.len() {
+        0 => String::new(),
+        _ if keyword.starts_with("FUNG") => String::new(),
+        count => format!(", LOCAL DIRECTIONS={count}"),
+    }
 }
 
 /// The keyword and data of a material.
@@ -291,15 +301,13 @@ fn material(material: &PartMaterial, deck: &mut Deck) {
             parameters,
             directions,
         } => {
-            match directions.len() {
-                0 => deck.line(&format!("*HYPERELASTIC, {keyword}")),
-                _ if keyword.starts_with("FUNG") => {
-                    deck.line(&format!("*ANISOTROPIC HYPERELASTIC, {keyword}"));
-                }
-                count => deck.line(&format!(
-                    "*ANISOTROPIC HYPERELASTIC, {keyword}, LOCAL DIRECTIONS={count}"
-                )),
-            }
+            let kind = if directions.is_empty() {
+                ""
+            } else {
+                "ANISOTROPIC "
+            };
+            let local = local_directions(keyword, directions);
+            deck.line(&format!("*{kind}HYPERELASTIC, {keyword}{local}"));
             let values = parameters.iter().map(|(_, value)| number(*value));
             for line in values.collect::<Vec<_>>().chunks(8) {
                 deck.line(&line.join(", "));

@@ -1,0 +1,56 @@
+//! Bounds and stated values of a fit's parameters.
+
+use super::terminal::together;
+use gelbench_base::error::{Diagnostic, Error};
+use gelbench_base::units::{self, Dimension};
+use gelbench_calibration::calibration::Bounds;
+
+/// A key with a value, as an option states it.
+pub fn pair(text: &str) -> Result<(String, String), Diagnostic> {
+    let parts = text.split_once('=');
+    let parts = parts.map(|(key, value)| (key.trim(), value.trim()));
+    match parts {
+        Some((key, value)) if !key.is_empty() && !value.is_empty() => {
+            Ok((key.to_owned(), value.to_owned()))
+        }
+        _ => {
+            let hint = "write it as KEY=VALUE, such as jm=30 or mu=\"20 kPa\"";
+            Err(Diagnostic::error("", "is no parameter with a value").hint(hint))
+        }
+    }
+}
+
+/// Bounds as `key=low..high`.
+pub fn bounds(texts: &[String]) -> Result<Bounds, Error> {
+    let bound = |text: &String| {
+        let (key, range) = text.split_once('=')?;
+        let (low, high) = range.split_once("..")?;
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| !n.is_nan());
+        Some((key.trim().to_owned(), [number(low)?, number(high)?]))
+    };
+    let each = texts.iter().map(|text| {
+        bound(text).ok_or_else(|| {
+            Error::input(
+                format!("the bound `{text}` cannot be read"),
+                "write it as key=low..high, such as jm=5..200",
+            )
+        })
+    });
+    together(each)
+}
+
+/// Stated values as bounds that are equal.
+pub fn stated(pairs: &[(String, String)]) -> Result<Bounds, Error> {
+    let dimensions = [Dimension::Ratio, Dimension::Stress, Dimension::Angle];
+    let each = pairs.iter().map(|(key, text)| {
+        let value = dimensions
+            .iter()
+            .find_map(|dimension| units::parse(text, *dimension).ok());
+        let value = value.ok_or_else(|| {
+            let hint = "such as angle=\"30 deg\", mu=\"2 kPa\" or k2=0.8";
+            Error::input(format!("the value `{text}` of {key} cannot be read"), hint)
+        })?;
+        Ok((key.clone(), [value; 2]))
+    });
+    together(each)
+}
