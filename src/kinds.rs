@@ -94,9 +94,7 @@ pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Kind>, Error
             fault.hint(suggestion(name, &known().collect::<Vec<_>>(), "cases:"))
         })
         .collect();
-    if !faults.is_empty() {
-        return Err(Error::Input(faults));
-    }
+    Error::refuse(faults)?;
     let chosen = KINDS
         .iter()
         .filter(|kind| names.iter().any(|name| name == kind.name));

@@ -73,15 +73,14 @@ impl Sweep {
     /// [`Error::Input`] where no key is varied, a key is varied twice, distributions have no number of samples, or there are more than a million
     /// runs.
     pub fn runs(&self) -> Result<Vec<Run>, Error> {
-        let input = |fault: Diagnostic| Error::Input(vec![fault]);
-        plan::check_keys(&self.keys()).map_err(input)?;
+        plan::check_keys(&self.keys())?;
         let rows = plan::rows(
             &self.variables,
             self.points.as_ref(),
             self.fitted.as_ref(),
             self.sampling,
         );
-        let rows = rows.map_err(input)?.into_iter().enumerate();
+        let rows = rows?.into_iter().enumerate();
         let run = |(index, settings)| Run {
             number: index + 1,
             settings,

@@ -238,11 +238,8 @@ pub fn check_cards(options: &CheckCards) -> Outcome {
         }
     }
     print(&lines)?;
-    if faults.is_empty() {
-        Ok(0)
-    } else {
-        Err(Error::Input(faults))
-    }
+    Error::refuse(faults)?;
+    Ok(0)
 }
 
 /// Reads a card, and returns a line about it.

@@ -33,18 +33,8 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// All, in the order of the reference.
-    pub const ALL: [Self; 6] = [
-        Self::Plate,
-        Self::Specimen,
-        Self::Motion,
-        Self::MovingSpecimen,
-        Self::Markers,
-        Self::Card,
-    ];
-
     fn case(self) -> Option<&'static Kind> {
-        kinds::named(match self {
+        kinds::named(&match self {
             Self::MovingSpecimen => Self::Motion.name(),
             other => other.name(),
         })
@@ -68,15 +58,9 @@ impl FileKind {
     }
 
     /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Plate => "plate",
-            Self::Specimen => "specimen",
-            Self::Motion => "motion",
-            Self::MovingSpecimen => "moving-specimen",
-            Self::Markers => "markers",
-            Self::Card => "card",
-        }
+    pub fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or(String::new(), |value| value.get_name().to_owned())
     }
 
     fn title(self) -> &'static str {
@@ -139,7 +123,7 @@ pub fn write(name: PathBuf, kind: FileKind) -> Outcome {
 pub fn print_keys(kind: Option<FileKind>) -> Outcome {
     print_data(&match kind {
         Some(kind) => reference(&[kind]),
-        None => reference(&FileKind::ALL),
+        None => reference(FileKind::value_variants()),
     })?;
     Ok(0)
 }
@@ -215,7 +199,8 @@ fn line(found: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
     let name = key.path.rsplit('.').next().unwrap_or_default();
     let takes: Vec<String> = key.takes.iter().map(takes).collect();
     let example = key.example.clone();
-    let example = example.unwrap_or_else(|| key.takes.first().map_or(String::new(), example_of));
+    let example =
+        example.unwrap_or_else(|| key.takes.first().map_or(String::new(), Takes::example));
     let default = match key.presence {
         Presence::Default => format!("`{example}`"),
         Presence::Required => format!("must be stated, such as `{example}`"),
@@ -297,34 +282,4 @@ fn range(bound: Bound, unit: &str) -> String {
         }
         Bound::Range(_, _, words) => format!(", {words}"),
     }
-}
-
-/// A value that suits, where no file that comes along has one.
-fn example_of(takes: &Takes) -> String {
-    match takes {
-        Takes::Text => "\"…\"".to_owned(),
-        Takes::Texts => "[\"…\"]".to_owned(),
-        Takes::Flag => "true".to_owned(),
-        Takes::Choice(names) => names
-            .first()
-            .map_or(String::new(), |name| format!("\"{name}\"")),
-        Takes::Choices(names) => {
-            let first = names.first();
-            first.map_or("[]".to_owned(), |name| format!("[\"{name}\"]"))
-        }
-        Takes::Count([low, _]) => low.to_string(),
-        Takes::Counts([low, _], _) => format!("[{low}, {low}]"),
-        Takes::Number(bound) if bound.ends()[0] > 1.0 => "2.0".to_owned(),
-        Takes::Number(_) => "1.0".to_owned(),
-        Takes::Quantity(dimension, _) => quoted_example(*dimension),
-        Takes::Quantities(dimension, _) => format!("[{}]", quoted_example(*dimension)),
-        Takes::Unit(dimension) => format!("\"{}\"", dimension.units().next().unwrap_or_default()),
-        Takes::LinearLength => "\"2 mm\"".to_owned(),
-        Takes::Section | Takes::Sections => String::new(),
-    }
-}
-
-fn quoted_example(dimension: Dimension) -> String {
-    let example = dimension.example();
-    example.rsplit(" or ").next().unwrap_or(example).to_owned()
 }

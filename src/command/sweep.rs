@@ -143,14 +143,11 @@ pub fn run(options: Options) -> Outcome {
 /// The sweep that is asked for.
 fn sweep(options: &Options) -> Result<Sweep, Error> {
     let variables = options.vary.iter().map(|text| Variable::parse(text));
-    let variables = variables
-        .collect::<Result<_, _>>()
-        .map_err(|fault| Error::Input(vec![fault]))?;
+    let variables = variables.collect::<Result<_, _>>()?;
     let fitted = options.fit.as_deref().map(|path| {
         let hint = "`gelbench materials fit` writes it beside the card";
         let text = document::read_text(path, file::MOST_OF_DATA, hint)?;
-        let read = FittedParameters::parse(&path.display().to_string(), &text);
-        read.map_err(|fault| Error::Input(vec![fault]))
+        Ok::<_, Error>(FittedParameters::parse(&path.display().to_string(), &text)?)
     });
     let points = options.points.as_deref().map(|path| {
         let table = document::read_text(path, file::MOST_OF_DATA, Points::HINT)?;

@@ -29,16 +29,10 @@ const FLOORS: &[&[&str]] = &[
     &["guide"],
 ];
 
-/// Packages that few places may know: one each, but vtkio has one that writes and one that reads.
+/// Packages that few places may know: one each.
 const DOORS: &[(&str, &[&str])] = &[
     ("faer::", &["crates/mechanics/src/solve/sparse.rs"]),
-    (
-        "vtkio::",
-        &[
-            "crates/report/src/output/vtk.rs",
-            "crates/mechanics/src/mesh/import/vtk.rs",
-        ],
-    ),
+    ("vtkio::", &["crates/mechanics/src/mesh/import/vtk.rs"]),
     ("plotters::", &["crates/report/src/output/picture"]),
     ("resvg::", &["crates/report/src/output/picture"]),
     (

@@ -15,6 +15,7 @@ use crate::units::{SIZES, on_the_end};
 
 mod archive;
 mod arrays;
+pub mod binary;
 mod chosen;
 mod columns;
 mod comments;
@@ -193,9 +194,9 @@ impl<'a> Document<'a> {
 
     /// The whole document as a section. Keys that are missing are taken from `defaults`.
     pub fn root(&'a self, defaults: Option<&'a Self>, faults: &'a Faults) -> Section<'a> {
-        Section::root(
+        Section::of(
             &self.source,
-            &self.table,
+            Some(&self.table),
             defaults.map(|document| &document.table),
             faults,
         )

@@ -5,6 +5,10 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+mod names;
+
+pub use names::{nearest, suggestion};
+
 /// A text that was read, kept so that messages can point into it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Source {
@@ -319,7 +323,25 @@ fn list(diagnostics: &[Diagnostic]) -> String {
         .join("\n")
 }
 
+impl From<Diagnostic> for Error {
+    fn from(fault: Diagnostic) -> Self {
+        Self::Input(vec![fault])
+    }
+}
+
 impl Error {
+    /// Refuses an input with faults.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with all of them, if there are any.
+    pub fn refuse(faults: Vec<Diagnostic>) -> Result<(), Self> {
+        if faults.is_empty() {
+            Ok(())
+        } else {
+            Err(Self::Input(faults))
+        }
+    }
+
     /// One fault of the input that has no place in a file, and its remedy.
     pub fn input(message: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Input(vec![Diagnostic::error("", message).hint(hint)])
@@ -351,24 +373,6 @@ impl Error {
     }
 }
 
-/// A hint for an unknown name: the known one that was probably meant, else all known names after the words `otherwise`.
-pub fn suggestion(name: &str, known: &[&str], otherwise: &str) -> String {
-    match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("{otherwise} {}", known.join(", ")),
-    }
-}
-
-/// The name in `known` that is nearest to `name`, if it is near enough to be a typing error.
-pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    known
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 4)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -386,14 +390,5 @@ mod tests {
             diagnostic.to_string(),
             "a.toml:2: y: must be below 2 (write 1)"
         );
-    }
-
-    #[test]
-    fn the_nearest_name_is_found_only_when_near() {
-        assert_eq!(
-            nearest("thicknes", ["length", "thickness"]),
-            Some("thickness")
-        );
-        assert_eq!(nearest("colour", ["length", "thickness"]), None);
     }
 }

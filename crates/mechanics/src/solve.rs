@@ -11,6 +11,7 @@ mod convergence;
 pub mod dissection;
 mod ending;
 mod equilibrium;
+mod grouped;
 mod iterative;
 mod journal;
 pub mod krylov;

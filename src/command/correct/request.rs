@@ -18,7 +18,7 @@ pub fn request(options: Options) -> Result<Request, Error> {
             array: options.array,
             grid: options.grid,
             ignored_columns: options.ignore_columns,
-            columns: columns.map_err(|fault| Error::Input(vec![fault]))?,
+            columns: columns?,
             encoding: options.encoding,
             downwards: options.y_axis,
             deformed: options.places,

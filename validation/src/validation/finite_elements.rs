@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::{BoundaryProblem, Model, Support};
@@ -59,11 +59,6 @@ fn distorted(size: [f64; 2], cells: [usize; 2], shape: CellShape) -> Mesh {
     let mut mesh = mesh_of_blocks(&[block], shape);
     mesh.name_boundary("boundary", |_| true);
     mesh
-}
-
-/// A fault of a case that is no fault of its user.
-fn misfit(fault: Diagnostic) -> Error {
-    Error::Input(vec![fault])
 }
 
 /// Solves to load factor 1 in some steps; the last state.

@@ -95,11 +95,8 @@ impl<R: ColumnRole> ChosenColumns<R> {
                 Err(fault) => faults.push(fault),
             }
         }
-        if faults.is_empty() {
-            Ok(FoundColumns(found))
-        } else {
-            Err(Error::Input(faults))
-        }
+        Error::refuse(faults)?;
+        Ok(FoundColumns(found))
     }
 }
 

@@ -163,31 +163,17 @@ fn alone(read: &dyn Fn(&str) -> Vec<Key>, file: &Table, all: &mut Vec<Key>) {
 
 /// A suitable value for a key.
 fn value(key: &Key) -> Value {
-    let example = key.example.as_deref().unwrap_or_default();
+    let takes = key.takes.first();
+    let example = key.example.clone();
+    let example = example
+        .or_else(|| takes.map(Takes::example))
+        .unwrap_or_default();
     let parsed = format!("value = {example}").parse::<Table>().ok();
     let parsed = parsed.and_then(|mut table| table.remove("value"));
-    let text = |text: &str| Value::String(text.to_owned());
-    let number = |number: usize| Value::Integer(number as i64);
-    let quantity = |example: &str| text(example.rsplit('"').nth(1).unwrap_or("1"));
-    match key.takes.first() {
+    match takes {
         Some(Takes::Section) => Value::Table(Table::new()),
         Some(Takes::Sections) => Value::Array(vec![Value::Table(Table::new())]),
-        _ if parsed.is_some() => parsed.unwrap_or_else(|| text("")),
-        None | Some(Takes::Text) => text("?"),
-        Some(Takes::Texts) => Value::Array(vec![text("?")]),
-        Some(Takes::Flag) => Value::Boolean(true),
-        Some(Takes::Choice(names)) => text(names.first().map_or("", |name| name)),
-        Some(Takes::Choices(names)) => {
-            Value::Array(names.iter().take(1).map(|name| text(name)).collect())
-        }
-        Some(Takes::Count([low, _])) => number(*low),
-        Some(Takes::Counts([low, _], _)) => Value::Array(vec![number(*low); 2]),
-        Some(Takes::Number(_)) => Value::Float(1.0),
-        Some(Takes::Quantity(dimension, _) | Takes::Unit(dimension)) => {
-            quantity(dimension.example())
-        }
-        Some(Takes::Quantities(dimension, _)) => Value::Array(vec![quantity(dimension.example())]),
-        Some(Takes::LinearLength) => text("1 mm"),
+        _ => parsed.unwrap_or_else(|| Value::String("?".to_owned())),
     }
 }
 

@@ -36,6 +36,40 @@ pub enum Takes {
     Sections,
 }
 
+impl Takes {
+    /// A value that suits, as TOML has it; empty for tables.
+    pub fn example(&self) -> String {
+        let quantity = |dimension: &Dimension| {
+            let example = dimension.example();
+            example.rsplit(" or ").next().unwrap_or(example).to_owned()
+        };
+        match self {
+            Self::Text => "\"…\"".to_owned(),
+            Self::Texts => "[\"…\"]".to_owned(),
+            Self::Flag => "true".to_owned(),
+            Self::Choice(names) => {
+                let first = names.first();
+                first.map_or(String::new(), |name| format!("\"{name}\""))
+            }
+            Self::Choices(names) => {
+                let first = names.first();
+                first.map_or("[]".to_owned(), |name| format!("[\"{name}\"]"))
+            }
+            Self::Count([low, _]) => low.to_string(),
+            Self::Counts([low, _], _) => format!("[{low}, {low}]"),
+            Self::Number(bound) if bound.ends()[0] > 1.0 => "2.0".to_owned(),
+            Self::Number(_) => "1.0".to_owned(),
+            Self::Quantity(dimension, _) => quantity(dimension),
+            Self::Quantities(dimension, _) => format!("[{}]", quantity(dimension)),
+            Self::Unit(dimension) => {
+                format!("\"{}\"", dimension.units().next().unwrap_or_default())
+            }
+            Self::LinearLength => "\"2 mm\"".to_owned(),
+            Self::Section | Self::Sections => String::new(),
+        }
+    }
+}
+
 /// A key that a reader has looked up.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

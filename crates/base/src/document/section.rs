@@ -35,9 +35,9 @@ type Value<'a> = &'a Spanned<DeValue<'a>>;
 
 impl<'a> Section<'a> {
     /// The table of a whole document.
-    pub(super) fn root(
+    pub(super) fn of(
         source: &'a Arc<Source>,
-        table: &'a DeTable<'a>,
+        table: Option<&'a DeTable<'a>>,
         defaults: Option<&'a DeTable<'a>>,
         faults: &'a Faults,
     ) -> Self {
@@ -45,7 +45,7 @@ impl<'a> Section<'a> {
             path: String::new(),
             source,
             span: 0..0,
-            table: Some(table),
+            table,
             defaults,
             faults,
             known: RefCell::default(),
@@ -84,17 +84,20 @@ impl<'a> Section<'a> {
             Some(DeValue::Table(inner)) => Some(inner),
             _ => None,
         };
-        let path = self.full(key);
-        Section {
+        self.inner(self.full(key), span, table, defaults)
+    }
+
+    fn inner(
+        &self,
+        path: String,
+        span: Range<usize>,
+        table: Option<&'a DeTable<'a>>,
+        defaults: Option<&'a DeTable<'a>>,
+    ) -> Self {
+        Self {
             path,
-            source: self.source,
             span,
-            table,
-            defaults,
-            faults: self.faults,
-            known: RefCell::default(),
-            undecided: Cell::default(),
-            required: &[],
+            ..Self::of(self.source, table, defaults, self.faults)
         }
     }
 
@@ -119,16 +122,9 @@ impl<'a> Section<'a> {
         };
         let tables = items.iter().filter_map(table).enumerate();
         tables
-            .map(|(index, (table, span))| Section {
-                path: format!("{}[{}]", self.full(key), index + 1),
-                source: self.source,
-                span,
-                table: Some(table),
-                defaults: None,
-                faults: self.faults,
-                known: RefCell::default(),
-                undecided: Cell::default(),
-                required: &[],
+            .map(|(index, (table, span))| {
+                let path = format!("{}[{}]", self.full(key), index + 1);
+                self.inner(path, span, Some(table), None)
             })
             .collect()
     }

@@ -335,12 +335,7 @@ impl Table {
             };
             Some(self.fault(self.rows[*row].1.clone(), format!("{name}{reason}"), hint))
         };
-        let found: Vec<Diagnostic> = columns.into_iter().filter_map(first).collect();
-        if found.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::Input(found))
-        }
+        Error::refuse(columns.into_iter().filter_map(first).collect())
     }
 
     /// A fault at a place of the file.
@@ -352,7 +347,7 @@ impl Table {
 
     /// The refusal of the file for one fault.
     pub fn refuse(&self, place: Range<usize>, message: impl Into<String>, hint: &str) -> Error {
-        Error::Input(vec![self.fault(place, message, hint)])
+        self.fault(place, message, hint).into()
     }
 
     /// The refusal of the file because of its names of columns.

@@ -58,25 +58,30 @@ impl Dimension {
         Self::Ratio,
     ];
 
+    /// Name, unit inside the program, and an example.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Length => ["length", "mm", "\"2 mm\""],
+            Self::Area => ["area", "mm^2", "\"20 mm^2\""],
+            Self::Force => ["force", "N", "\"1.5 N\""],
+            Self::Stress => ["stress", "MPa", "\"1 MPa\""],
+            Self::Density => ["density", "tonne/mm^3", "\"1020 kg/m^3\""],
+            Self::Mass => ["mass", "tonne", "\"5 g\""],
+            Self::Time => ["time", "s", "\"10 s\""],
+            Self::Frequency => ["frequency", "Hz", "\"2 Hz\""],
+            Self::Acceleration => ["acceleration", "mm/s^2", "\"9.81 m/s^2\""],
+            Self::Viscosity => ["viscosity", "MPa·s", "\"50 Pa·s\""],
+            Self::Temperature => ["temperature", "K", "\"298.15 K\""],
+            Self::MolarVolume => ["molar volume", "mm^3/mol", "\"18.07 cm^3/mol\""],
+            Self::Concentration => ["concentration", "mol/mm^3", "\"20 mol/m^3\""],
+            Self::Angle => ["angle", "rad", "\"30 deg\""],
+            Self::Ratio => ["ratio", "", "0.5 or \"50 %\""],
+        }
+    }
+
     /// The quantity's name as used in messages.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Area => "area",
-            Self::Force => "force",
-            Self::Stress => "stress",
-            Self::Density => "density",
-            Self::Mass => "mass",
-            Self::Time => "time",
-            Self::Frequency => "frequency",
-            Self::Acceleration => "acceleration",
-            Self::Viscosity => "viscosity",
-            Self::Temperature => "temperature",
-            Self::MolarVolume => "molar volume",
-            Self::Concentration => "concentration",
-            Self::Angle => "angle",
-            Self::Ratio => "ratio",
-        }
+        self.words()[0]
     }
 
     /// The units that are understood for this dimension.
@@ -94,23 +99,7 @@ impl Dimension {
 
     /// The unit of this dimension inside the program; empty for a ratio.
     pub fn internal_unit(self) -> &'static str {
-        match self {
-            Self::Length => "mm",
-            Self::Area => "mm^2",
-            Self::Force => "N",
-            Self::Stress => "MPa",
-            Self::Density => "tonne/mm^3",
-            Self::Mass => "tonne",
-            Self::Time => "s",
-            Self::Frequency => "Hz",
-            Self::Acceleration => "mm/s^2",
-            Self::Viscosity => "MPa·s",
-            Self::Temperature => "K",
-            Self::MolarVolume => "mm^3/mol",
-            Self::Concentration => "mol/mm^3",
-            Self::Angle => "rad",
-            Self::Ratio => "",
-        }
+        self.words()[1]
     }
 
     /// A quantity of this dimension as written in a file, its number left out: a number in a hint would be another material's.
@@ -124,23 +113,7 @@ impl Dimension {
 
     /// An example of a well-formed quantity, for hints.
     pub fn example(self) -> &'static str {
-        match self {
-            Self::Length => "\"2 mm\"",
-            Self::Area => "\"20 mm^2\"",
-            Self::Force => "\"1.5 N\"",
-            Self::Stress => "\"1 MPa\"",
-            Self::Density => "\"1020 kg/m^3\"",
-            Self::Mass => "\"5 g\"",
-            Self::Time => "\"10 s\"",
-            Self::Frequency => "\"2 Hz\"",
-            Self::Acceleration => "\"9.81 m/s^2\"",
-            Self::Viscosity => "\"50 Pa·s\"",
-            Self::Temperature => "\"298.15 K\"",
-            Self::MolarVolume => "\"18.07 cm^3/mol\"",
-            Self::Concentration => "\"20 mol/m^3\"",
-            Self::Angle => "\"30 deg\"",
-            Self::Ratio => "0.5 or \"50 %\"",
-        }
+        self.words()[2]
     }
 }
 

@@ -37,7 +37,7 @@
 
 use super::climb::{Ratios, geometric_tail};
 use super::specimen::correct_without_multipliers;
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::mass_spring::MassSpring;
 use crate::material::softened_law::check_memory;
 use crate::mesh::{Interpolation, Mesh};
@@ -200,6 +200,5 @@ fn on<'a>(
     mesh: &'a Mesh,
     energy: &'a dyn Remembering,
 ) -> Result<Model<'a>, Error> {
-    let model = problem.on(mesh, energy);
-    model.map_err(|fault: Diagnostic| Error::Input(vec![fault]))
+    Ok(problem.on(mesh, energy)?)
 }

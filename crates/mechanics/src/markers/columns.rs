@@ -241,11 +241,7 @@ pub fn check_all(
         .into_iter()
         .map(fault)
         .collect();
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(Error::Input(faults))
-    }
+    Error::refuse(faults)
 }
 
 /// Numbers of frames.

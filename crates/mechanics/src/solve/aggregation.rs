@@ -26,7 +26,6 @@ mod prolongation;
 #[cfg(test)]
 mod tests;
 
-use super::pattern::SymmetricPattern;
 use super::sparse::{Cholesky, FactorFault};
 use blocks::Blocks;
 use level::{Coarser, Level};
@@ -142,30 +141,14 @@ pub fn single_precision<const N: usize>(r: &[[f64; N]], rounded: &mut [[f32; N]]
 /// The factor of the coarsest level.
 fn factor(below: &Coarser) -> Result<Cholesky, FactorFault> {
     let matrix = &below.matrix;
-    let unknowns = 0..3 * matrix.rows();
-    let rows_of = |column: usize| {
-        let nodes = matrix.row(column / 3).map(|(node, _)| node);
-        nodes
-            .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
-            .collect()
+    let column = |column: usize| -> Vec<(usize, f64)> {
+        let blocks = matrix.row(column / 3);
+        let entries = blocks.flat_map(|(other, block)| {
+            let entries = block[column % 3].into_iter().enumerate();
+            entries.map(move |(i, entry)| (3 * other + i, entry))
+        });
+        entries.filter(|(row, _)| *row >= column).collect()
     };
-    let pattern = SymmetricPattern::new(unknowns.clone().map(rows_of));
-    let mut values = vec![0.0; pattern.entries()];
-    for node in 0..matrix.rows() {
-        for (other, block) in matrix.row(node) {
-            for (i, entries) in block.iter().enumerate() {
-                for (k, entry) in entries.iter().enumerate() {
-                    let (row, column) = (3 * node + i, 3 * other + k);
-                    if row >= column
-                        && let Some(place) = pattern.position(row, column)
-                    {
-                        values[place] = *entry;
-                    }
-                }
-            }
-        }
-    }
-    let mut cholesky = Cholesky::analyse(pattern)?;
-    cholesky.factorise(&values)?;
-    Ok(cholesky)
+    let columns: Vec<_> = (0..3 * matrix.rows()).map(column).collect();
+    Cholesky::of_columns(&columns)
 }

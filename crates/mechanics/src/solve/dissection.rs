@@ -131,19 +131,11 @@ impl Graph {
         for vertex in vertices {
             for other in &self.later[*vertex] {
                 let pair = [*vertex, *other as usize];
-                match pair.map(|vertex| self.halves[vertex]) {
-                    [Half::Lower, Half::Upper] => sides
-                        .iter_mut()
-                        .zip(pair)
-                        .for_each(|(side, v)| side.push(v)),
-                    [Half::Upper, Half::Lower] => {
-                        sides
-                            .iter_mut()
-                            .rev()
-                            .zip(pair)
-                            .for_each(|(side, v)| side.push(v));
+                let halves = pair.map(|vertex| self.halves[vertex]);
+                if !halves.contains(&Half::Outside) && halves[0] != halves[1] {
+                    for (vertex, half) in pair.into_iter().zip(halves) {
+                        sides[usize::from(half == Half::Upper)].push(vertex);
                     }
-                    _ => {}
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! The pattern of a sum of element matrices, and where each of their entries is added.
 
 use super::connectivity::Connectivity;
+use super::grouped::grouped;
 use super::pattern::SymmetricPattern;
 
 /// No free unknown, or no place.
@@ -96,31 +97,16 @@ struct Around {
 
 impl Around {
     fn of(elements: &Connectivity) -> Self {
-        let free = elements.unknowns();
         let own = |element: usize| {
             let unknowns = elements.of(element).iter().enumerate();
             unknowns.filter(|(_, unknown)| **unknown != NOWHERE)
         };
-        let mut starts = vec![0; free + 1];
-        for (_, unknown) in (0..elements.elements()).flat_map(own) {
-            starts[*unknown as usize + 1] += 1;
-        }
-        for unknown in 0..free {
-            starts[unknown + 1] += starts[unknown];
-        }
-        let mut next = starts.clone();
-        let mut around = vec![(0, 0); starts[free]];
-        for element in 0..elements.elements() {
-            for (local, unknown) in own(element) {
-                let next = &mut next[*unknown as usize];
-                around[*next] = (element as u32, local as u32);
-                *next += 1;
-            }
-        }
-        Self {
-            starts,
-            elements: around,
-        }
+        let all = (0..elements.elements()).flat_map(|element| {
+            own(element)
+                .map(move |(local, unknown)| (*unknown as usize, (element as u32, local as u32)))
+        });
+        let (starts, elements) = grouped(elements.unknowns(), all);
+        Self { starts, elements }
     }
 
     fn of_unknown(&self, unknown: u32) -> &[(u32, u32)] {

@@ -88,6 +88,20 @@ impl Cholesky {
         Self::analyse_by(pattern, SymmetricOrdering::Amd)
     }
 
+    /// The factor of a matrix by the columns of its lower triangle: rows and values, rows ascending from the diagonal on.
+    ///
+    /// # Errors
+    /// [`FactorFault`] when a pivot is not positive, or the factor does not fit.
+    pub fn of_columns(columns: &[Vec<(usize, f64)>]) -> Result<Self, FactorFault> {
+        let rows = columns
+            .iter()
+            .map(|column| column.iter().map(|(row, _)| *row).collect());
+        let mut cholesky = Self::analyse(SymmetricPattern::new(rows))?;
+        let values: Vec<f64> = columns.iter().flatten().map(|(_, value)| *value).collect();
+        cholesky.factorise(&values)?;
+        Ok(cholesky)
+    }
+
     /// Analyses a pattern, to be eliminated in a given order of all unknowns.
     ///
     /// # Errors

@@ -37,7 +37,7 @@ impl Export<'_> {
     /// # Errors
     /// [`Error::Input`] when the code lacks the law, or when a support or a load cannot be expressed in it.
     pub fn input_file(&self, code: Code) -> Result<InputFile, Error> {
-        let model = Model::new(self, code).map_err(|fault| Error::Input(vec![fault]))?;
+        let model = Model::new(self, code)?;
         let text = match code {
             Code::Abaqus | Code::CalculiX => abaqus::write(&model),
             Code::FeBio => febio::write(&model),

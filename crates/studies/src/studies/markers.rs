@@ -250,10 +250,7 @@ impl MarkerStudy {
         if !failed.is_empty() && failed.len() == self.series.frames.len() {
             let most = self.most_moved();
             let mistake = most.and_then(|frame| self.mistake_without_solution(frame));
-            return Err(mistake.map_or_else(
-                || failed.swap_remove(0).1,
-                |mistake| Error::Input(vec![mistake]),
-            ));
+            return Err(mistake.map_or_else(|| failed.swap_remove(0).1, Error::from));
         }
         let all = self.frame_numbers();
         let faults = failed.into_iter().flat_map(|(number, fault)| {

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use super::{held, misfit, solve};
+use super::{held, solve};
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::{Richardson, richardson};
@@ -149,7 +149,7 @@ fn deflection(mesh: &Mesh, traction: f64) -> Result<f64, Error> {
         .loads
         .push(("right".into(), Load::Traction([0.0, traction])));
     let energy = problem.finite_elements(mesh);
-    let model = problem.on(mesh, &energy).map_err(misfit)?;
+    let model = problem.on(mesh, &energy)?;
     let state = solve(&model, "Cook's membrane", 2)?;
     Ok(mesh.displacement_at(&state.displacement, [48.0, 60.0])[1])
 }

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use super::{held, hole, misfit, solve};
+use super::{held, hole, solve};
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
@@ -107,9 +107,9 @@ fn truth(body: &Body, cells: usize) -> Result<f64, Error> {
     let force = |cells: usize| {
         let mesh = (body.mesh)(cells, CellShape::Quad9);
         let energy = body.problem.finite_elements(&mesh);
-        let model = body.problem.on(&mesh, &energy).map_err(misfit)?;
+        let model = body.problem.on(&mesh, &energy)?;
         let state = solve(&model, body.name, 1)?;
-        Ok(model.reaction(&state, body.measured)[0])
+        Ok::<f64, Error>(model.reaction(&state, body.measured)[0])
     };
     let forces = [force(cells / 4)?, force(cells / 2)?, force(cells)?];
     Ok(richardson(forces).extrapolated)

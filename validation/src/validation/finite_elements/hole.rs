@@ -10,7 +10,7 @@
 use std::f64::consts::FRAC_PI_4;
 use std::path::Path;
 
-use super::{held, misfit, solve, stress};
+use super::{held, solve, stress};
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
@@ -101,7 +101,7 @@ fn concentration(mesh: &Mesh, radius: f64) -> Result<f64, Error> {
         ("right", [Some(STRAIN * LENGTH), None]),
     ]);
     let energy = problem.finite_elements(mesh);
-    let model = problem.on(mesh, &energy).map_err(misfit)?;
+    let model = problem.on(mesh, &energy)?;
     let state = solve(&model, "strip with a hole", 1)?;
     let mean = model.reaction(&state, "right")[0] / (problem.thickness * HALF);
     let (cell, local) = mesh.locate([0.0, radius]);

@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use super::{distorted, misfit, sheet, solve, stress};
+use super::{distorted, sheet, solve, stress};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, GAUSS_5, Mesh};
@@ -185,7 +185,7 @@ impl Solved {
         let field = Field::new(amplitude);
         let problem = sheet();
         let energy = problem.finite_elements(&mesh);
-        let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+        let mut model = problem.on(&mesh, &energy)?;
         model.impose_field("boundary", |point| field.displacement(point));
         model.add_forces(&forces(&mesh, &problem, field));
         let state = solve(&model, NAME, 1)?;
@@ -223,7 +223,7 @@ impl Pull {
             ..sheet()
         };
         let energy = problem.finite_elements(&mesh);
-        let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+        let mut model = problem.on(&mesh, &energy)?;
         model.add_forces(&forces(&mesh, &problem, field));
         let state = solve(&model, NAME, 1)?;
         let influence = model.influence(&state, "right", 0);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{distorted, held, largest_error, misfit, sheet, solve, stress};
+use super::{distorted, held, largest_error, sheet, solve, stress};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::material::curve::Mode;
@@ -70,7 +70,7 @@ fn patch(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
     let field = |[x, y]: [f64; 2]| [0.3 * x + 0.1 * y, -0.05 * x - 0.2 * y];
     let problem = sheet();
     let energy = problem.finite_elements(&mesh);
-    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let mut model = problem.on(&mesh, &energy)?;
     model.impose_field("boundary", field);
     let state = solve(&model, "patch test", 2)?;
     Ok(largest_error(&mesh, &state.displacement, field))
@@ -100,7 +100,7 @@ fn homogeneous(
     }
     let problem = held(&supports);
     let energy = problem.finite_elements(&mesh);
-    let model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let model = problem.on(&mesh, &energy)?;
     let state = solve(&model, mode.name(), 4)?;
     let field = largest_error(&mesh, &state.displacement, |[px, py]| [x * px, across * py]);
     let force = model.reaction(&state, "right")[0];
@@ -114,7 +114,7 @@ fn simple_shear(shape: CellShape, cells: [usize; 2], amount: f64) -> Result<f64,
     let mesh = distorted(SIZE, cells, shape);
     let problem = sheet();
     let energy = problem.finite_elements(&mesh);
-    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let mut model = problem.on(&mesh, &energy)?;
     let field = |[_, y]: [f64; 2]| [amount * y, 0.0];
     model.impose_field("boundary", field);
     let state = solve(&model, "simple shear", 2)?;
@@ -148,7 +148,7 @@ fn turn(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
     let support = Support::Rotation { centre, angle };
     problem.supports.push(("left".into(), support));
     let energy = problem.finite_elements(&mesh);
-    let model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let model = problem.on(&mesh, &energy)?;
     let state = solve(&model, "rigid turn", 4)?;
     let exact = |[x, y]: [f64; 2]| {
         let (dx, dy) = (x - centre[0], y - centre[1]);

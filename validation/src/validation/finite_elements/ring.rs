@@ -12,7 +12,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
-use super::{held, misfit, sheet, solve};
+use super::{held, sheet, solve};
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
@@ -159,7 +159,7 @@ impl Inflated {
         let load = Load::Pressure(pressure);
         problem.loads.push(("inside".into(), load));
         let energy = problem.finite_elements(mesh);
-        let model = problem.on(mesh, &energy).map_err(misfit)?;
+        let model = problem.on(mesh, &energy)?;
         let state = solve(&model, "ring", steps)?;
         let reactions = model.reactions(&state);
         let force = |group, axis: usize| reactions.at_group(group).force[axis];

@@ -51,7 +51,7 @@ impl Truth {
         };
         let energy = problem.finite_elements(&mesh);
         let discretised = problem.on(&mesh, &energy);
-        let discretised = discretised.map_err(|fault| Error::Input(vec![fault]))?;
+        let discretised = discretised?;
         let states = discretised.solve(&[1.0], NEWTON, &|_| ());
         let mut states = states.map_err(|end| Error::Solve {
             model: "finite elements".into(),

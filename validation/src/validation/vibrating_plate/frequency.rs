@@ -64,7 +64,7 @@ fn equivalent_length(model: &Model, held: &[bool]) -> Result<f64, Error> {
         loads: vec![("right".into(), Load::Traction([traction, 0.0]))],
     };
     let forces = problem.dead_forces(model.mesh);
-    let forces = forces.map_err(|found| Error::Input(vec![found]))?;
+    let forces = forces?;
     let rest = vec![0.0; held.len()];
     let field = Newton::new(model.energy, held).and_then(|mut newton| {
         let describe = |_| String::new();

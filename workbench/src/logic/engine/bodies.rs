@@ -234,8 +234,7 @@ impl Body {
     /// # Errors
     /// [`Error::Input`] where the mesh cannot be held so.
     pub fn model(&self, sheet: &Sheet, grip: Grip) -> Result<Problem<'_>, Error> {
-        let model = sheet.problem(grip).on(&self.mesh, self.potential());
-        model.map_err(|fault| Error::Input(vec![fault]))
+        Ok(sheet.problem(grip).on(&self.mesh, self.potential())?)
     }
 
     /// Follows the grip from where it was; the force along X in N where the quick path knows it.

@@ -33,7 +33,7 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
         .columns
         .split(',')
         .filter(|column| !column.trim().is_empty());
-    let columns = ChosenColumns::parse(columns).map_err(|fault| Error::Input(vec![fault]))?;
+    let columns = ChosenColumns::parse(columns)?;
     let mut edges = Vec::new();
     for (name, edge) in &question.edges {
         let condition = edge.condition(name)?;

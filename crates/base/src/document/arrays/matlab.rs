@@ -7,6 +7,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
+use super::super::binary::number;
 use super::super::converted::{Unconvertible, afford};
 use super::array::Array;
 use super::numpy::by_rows;
@@ -139,11 +140,17 @@ impl<'a> Elements<'a> {
     /// Numbers of any type.
     fn numbers(&mut self) -> Option<Vec<f64>> {
         let (kind, data) = self.next()?;
-        let size = match kind {
-            1 | 2 => 1,
-            3 | 4 => 2,
-            5..=7 => 4,
-            9 | 12 | 13 => 8,
+        let (size, kind) = match kind {
+            1 => (1, 'i'),
+            2 => (1, 'u'),
+            3 => (2, 'i'),
+            4 => (2, 'u'),
+            5 => (4, 'i'),
+            6 => (4, 'u'),
+            7 => (4, 'f'),
+            9 => (8, 'f'),
+            12 => (8, 'i'),
+            13 => (8, 'u'),
             _ => return None,
         };
         Some(
@@ -158,24 +165,6 @@ impl<'a> Elements<'a> {
 fn text(data: &[u8]) -> String {
     let data = data.split(|byte| *byte == 0).next().unwrap_or_default();
     String::from_utf8_lossy(data).into_owned()
-}
-
-fn number(kind: u32, bytes: &[u8], big_endian: bool) -> f64 {
-    let mut little = [0; 8];
-    little[..bytes.len()].copy_from_slice(bytes);
-    if big_endian {
-        little[..bytes.len()].reverse();
-    }
-    let whole = u64::from_le_bytes(little);
-    match kind {
-        1 => f64::from(whole as i8),
-        3 => f64::from(whole as i16),
-        5 => f64::from(whole as i32),
-        7 => f64::from(f32::from_bits(whole as u32)),
-        9 => f64::from_bits(whole),
-        12 => whole as i64 as f64,
-        _ => whole as f64,
-    }
 }
 
 /// Adds the arrays of a matrix or a structure; what is neither is passed over. `None` where it is damaged.

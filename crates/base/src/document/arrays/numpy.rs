@@ -3,6 +3,7 @@
 //! # References
 //! NumPy Enhancement Proposal 1; `numpy.lib.format`, versions 1 to 3.
 
+use super::super::binary::number;
 use super::super::converted::{Unconvertible, afford};
 use super::array::Array;
 
@@ -189,24 +190,6 @@ fn numbers<'a>(fields: &'a [Field], entry: &'a [u8]) -> impl Iterator<Item = f64
     fields.iter().map(move |field| {
         let (bytes, after) = rest.split_at(field.size);
         rest = after;
-        number(field, bytes)
+        number(field.kind, bytes, field.big_endian)
     })
-}
-
-fn number(field: &Field, bytes: &[u8]) -> f64 {
-    let mut little = [0; 8];
-    little[..bytes.len()].copy_from_slice(bytes);
-    if field.big_endian {
-        little[..bytes.len()].reverse();
-    }
-    let whole = u64::from_le_bytes(little);
-    match (field.kind, field.size) {
-        ('f', 4) => f64::from(f32::from_bits(whole as u32)),
-        ('f', _) => f64::from_bits(whole),
-        ('i', size) => {
-            let unused = 64 - 8 * size as u32;
-            ((whole << unused) as i64 >> unused) as f64
-        }
-        _ => whole as f64,
-    }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::solve::{Cholesky, FactorFault, SparseLu, SparseRows, SymmetricPattern};
+use crate::solve::{Cholesky, FactorFault, SparseLu, SparseRows};
 
 /// Step and multipliers of one projection.
 #[derive(Clone, Debug, PartialEq)]
@@ -208,17 +208,11 @@ impl Symmetric {
             lower
         };
         let columns: Vec<_> = free.iter().enumerate().map(column).collect();
-        let rows = columns
-            .iter()
-            .map(|column| column.iter().map(|(row, _)| *row).collect());
-        let mut cholesky = Cholesky::analyse(SymmetricPattern::new(rows))?;
-        let values: Vec<f64> = columns.iter().flatten().map(|(_, value)| *value).collect();
-        cholesky.factorise(&values)?;
         Ok(Self {
             unknowns,
             free,
             prescribed,
-            cholesky,
+            cholesky: Cholesky::of_columns(&columns)?,
         })
     }
 

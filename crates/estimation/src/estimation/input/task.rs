@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::knowledge::{EdgeCondition, Knowledge, Specimen, Unnamed};
 use super::observations::Observations;
 use super::outline::{Segment, parts};
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::markers::Marker;
 use crate::mesh::Mesh;
 
@@ -66,10 +66,9 @@ pub fn observe(
     markers: &[Marker],
     knowledge: &Knowledge,
 ) -> Result<(Vec<Edge>, Observations), Error> {
-    let input = |fault: Diagnostic| Error::Input(vec![fault]);
     let edges = Edge::of_boundary(mesh, knowledge)?;
-    knowledge.check().map_err(input)?;
-    let observations = Observations::new(mesh, markers, knowledge.noise).map_err(input)?;
+    knowledge.check()?;
+    let observations = Observations::new(mesh, markers, knowledge.noise)?;
     Ok((edges, observations))
 }
 
@@ -87,7 +86,7 @@ impl Edge {
     /// # Errors
     /// [`Error::Input`] when the mesh does not have them.
     pub fn of_boundary(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<Self>, Error> {
-        let segments = parts(mesh, &knowledge.edges).map_err(|fault| Error::Input(vec![fault]))?;
+        let segments = parts(mesh, &knowledge.edges)?;
         let edges = segments.into_iter();
         Ok(edges.map(|segment| Self::new(segment, knowledge)).collect())
     }

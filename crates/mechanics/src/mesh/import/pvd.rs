@@ -1,8 +1,9 @@
 //! ParaView's collections of files (`.pvd`).
 
 use super::unreadable::Unreadable;
+use super::vtu::attributes;
+use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use quick_xml::{Reader, XmlVersion};
 
 /// The times and the files that the text of a collection names, in its order.
 pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
@@ -21,16 +22,9 @@ pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
 }
 
 fn data_set(tag: &BytesStart) -> Result<(f64, String), Unreadable> {
+    let attributes = attributes(tag)?;
     let value = |name: &str| {
-        let attribute = tag.try_get_attribute(name).ok().flatten();
-        let text = attribute.and_then(|attribute| {
-            Some(
-                attribute
-                    .normalized_value(XmlVersion::Explicit1_0)
-                    .ok()?
-                    .into_owned(),
-            )
-        });
+        let text = attributes.get(name).cloned();
         text.ok_or_else(|| format!("has a DataSet without `{name}`"))
     };
     let time = value("timestep")?;

@@ -30,7 +30,7 @@ const MOST: usize = 5_000_000;
 const MOST_NODES: usize = 64;
 
 /// Attributes of a tag.
-type Attributes = BTreeMap<String, String>;
+pub type Attributes = BTreeMap<String, String>;
 
 /// An array as it stands in the file.
 struct DataArray {
@@ -89,7 +89,7 @@ fn split_appended(bytes: &[u8]) -> (&[u8], &[u8]) {
     }
 }
 
-fn attributes(tag: &BytesStart) -> Result<Attributes, Unreadable> {
+pub fn attributes(tag: &BytesStart) -> Result<Attributes, Unreadable> {
     let mut all = Attributes::new();
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute.map_err(|cause| format!("is not XML: {cause}"))?;

@@ -34,11 +34,10 @@ impl<const R: usize, const C: usize, T> Blocks<R, C, T> {
 impl<const R: usize, const C: usize> Blocks<R, C> {
     /// The same numbers in single precision.
     pub fn rounded(&self) -> Blocks<R, C, f32> {
-        let round = |block: &[[f64; C]; R]| block.map(|row| row.map(|value| value as f32));
         Blocks {
             starts: self.starts.clone(),
             columns: self.columns.clone(),
-            values: self.values.iter().map(round).collect(),
+            values: self.values.iter().map(rounded).collect(),
         }
     }
 
@@ -120,6 +119,11 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
         }
         product
     }
+}
+
+/// A block in single precision.
+pub fn rounded<const R: usize, const C: usize>(block: &[[f64; C]; R]) -> [[f32; C]; R] {
+    block.map(|row| row.map(|value| value as f32))
 }
 
 /// y ← y + A x of one block.

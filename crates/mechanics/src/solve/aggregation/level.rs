@@ -6,7 +6,7 @@
 use nalgebra::SMatrix;
 
 use super::aggregates::{Aggregates, STRONG};
-use super::blocks::{Blocks, add_product};
+use super::blocks::{Blocks, add_product, rounded};
 use super::prolongation::{Motions, smoothed, tentative};
 
 /// A level above the coarsest one, with N unknowns a node, and M on the next coarser one.
@@ -184,11 +184,13 @@ fn fill_gaps(matrix: &mut Blocks<3, 3>) {
         for place in matrix.starts[row]..matrix.starts[row + 1] {
             if matrix.columns[place] as usize == row {
                 let block = &mut matrix.values[place];
-                (0..3)
-                    .filter(|i| block[*i][*i] == 0.0)
-                    .collect::<Vec<_>>()
-                    .into_iter()
-                    .for_each(|i| block[i][i] = 1.0);
+                for (i, row) in block
+                    .iter_mut()
+                    .enumerate()
+                    .filter(|(i, row)| row[*i] == 0.0)
+                {
+                    row[i] = 1.0;
+                }
             }
         }
     }
@@ -201,10 +203,6 @@ fn inverse<const N: usize>(block: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     Some(std::array::from_fn(|row| {
         std::array::from_fn(|column| inverse[(row, column)])
     }))
-}
-
-fn rounded<const N: usize>(block: &[[f64; N]; N]) -> [[f32; N]; N] {
-    block.map(|row| row.map(|value| value as f32))
 }
 
 #[inline(always)]

@@ -2,6 +2,7 @@
 
 use super::Nodes;
 use crate::solve::aggregation::blocks::{Blocks, add_product};
+use crate::solve::grouped::grouped;
 use crate::solve::pattern::SymmetricPattern;
 use crate::solve::potential::{Evaluated, Potential};
 
@@ -210,28 +211,21 @@ fn has_both_unknowns_in_turn(unknowns: &[u32]) -> bool {
 /// The blocks on and below the diagonal of the nodes that elements couple, without values.
 fn pattern(count: usize, rows: &[u32], potential: &dyn Potential) -> Blocks<2, 2> {
     let (mut members, mut begins) = (Vec::<u32>::new(), vec![0]);
-    let mut around = vec![0; count + 1];
     for element in 0..potential.elements() {
         let begin = members.len();
         for unknown in potential.element_unknowns(element) {
             let row = rows[*unknown as usize / 2];
             if row != NONE && !members[begin..].contains(&row) {
                 members.push(row);
-                around[row as usize + 1] += 1;
             }
         }
         begins.push(members.len());
     }
-    for row in 0..count {
-        around[row + 1] += around[row];
-    }
-    let (mut next, mut elements) = (around.clone(), vec![0_u32; around[count]]);
-    for element in 0..potential.elements() {
-        for row in &members[begins[element]..begins[element + 1]] {
-            elements[next[*row as usize]] = element as u32;
-            next[*row as usize] += 1;
-        }
-    }
+    let all = (0..potential.elements()).flat_map(|element| {
+        let own = members[begins[element]..begins[element + 1]].iter();
+        own.map(move |row| (*row as usize, element as u32))
+    });
+    let (around, elements) = grouped(count, all);
     let (mut starts, mut columns) = (vec![0], Vec::new());
     let mut seen = vec![NONE; count];
     for row in 0..count as u32 {

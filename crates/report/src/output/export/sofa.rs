@@ -67,13 +67,13 @@ impl Scene<'_> {
     /// # Errors
     /// [`Error::Input`] when a support, a load or a term of the lattice cannot be expressed.
     pub fn input_file(&self) -> Result<InputFile, Error> {
-        self.check().map_err(|fault| Error::Input(vec![fault]))?;
+        self.check()?;
         let mesh = &self.springs.mesh;
         let times = KeyTimes::new(self.problem, self.factors);
         let held = Held::of(self.problem, mesh, &times);
-        let held = held.map_err(|fault| Error::Input(vec![fault]))?;
+        let held = held?;
         let forces = self.problem.dead_forces(mesh);
-        let forces = forces.map_err(|fault| Error::Input(vec![fault]))?;
+        let forces = forces?;
         let mut file = Xml::new();
         for line in self.head() {
             file.comment(&line);

@@ -126,49 +126,35 @@ impl Look {
         self.palette == Palette::Dark
     }
 
+    /// A colour on black or on white paper.
+    fn tone(self, on_black: [u8; 3], on_white: [u8; 3]) -> RGBColor {
+        let [red, green, blue] = if self.is_dark() { on_black } else { on_white };
+        RGBColor(red, green, blue)
+    }
+
     /// Behind everything.
     pub fn paper(self) -> RGBColor {
-        if self.is_dark() {
-            RGBColor(18, 20, 24)
-        } else {
-            WHITE
-        }
+        self.tone([18, 20, 24], [255; 3])
     }
 
     /// Text and axes.
     pub fn ink(self) -> RGBColor {
-        if self.is_dark() {
-            RGBColor(232, 232, 232)
-        } else {
-            RGBColor(38, 38, 38)
-        }
+        self.tone([232; 3], [38; 3])
     }
 
     /// Grid lines.
     pub fn pale(self) -> RGBColor {
-        if self.is_dark() {
-            RGBColor(58, 62, 70)
-        } else {
-            RGBColor(225, 225, 225)
-        }
+        self.tone([58, 62, 70], [225; 3])
     }
 
     /// A band behind lines.
     pub fn band(self) -> RGBColor {
-        if self.is_dark() {
-            RGBColor(34, 44, 58)
-        } else {
-            RGBColor(229, 237, 246)
-        }
+        self.tone([34, 44, 58], [229, 237, 246])
     }
 
     /// Outlines at rest.
     pub fn rest(self) -> RGBColor {
-        if self.is_dark() {
-            RGBColor(150, 150, 150)
-        } else {
-            RGBColor(120, 120, 120)
-        }
+        self.tone([150; 3], [120; 3])
     }
 
     /// A line's colour, which the data give for white paper.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::finding::none_of;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 
@@ -63,7 +62,7 @@ pub fn name(mesh: &mut Mesh, areas: &[(String, Area)]) -> Result<(), Error> {
             mesh.name_nodes(name, &nodes);
         }
     }
-    none_of(faults)
+    Error::refuse(faults)
 }
 
 #[cfg(test)]

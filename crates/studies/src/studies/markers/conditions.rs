@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::area::Area;
-use super::finding::none_of;
 use super::machine::{self, ForceColumn, FrameForces};
 use super::specimen_file::SpecimenFile;
 use crate::error::{Diagnostic, Error, suggestion};
@@ -98,7 +97,7 @@ impl Conditions {
                 faults.push(fault.hint("name it once"));
             }
         }
-        none_of(faults)
+        Error::refuse(faults)
     }
 
     /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.
@@ -199,9 +198,7 @@ impl Conditions {
     pub fn regressed_law(&self, card: &Card) -> Result<Option<RegressedLaw>, Error> {
         let keys: Vec<&str> = self.fit.iter().map(String::as_str).collect();
         let regressed = (!keys.is_empty()).then(|| RegressedLaw::of_card(card, &keys));
-        regressed
-            .transpose()
-            .map_err(|fault| Error::Input(vec![fault]))
+        Ok(regressed.transpose()?)
     }
 
     /// What the estimate of a frame takes; a law is regressed in frames with a force.

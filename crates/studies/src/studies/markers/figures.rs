@@ -176,7 +176,7 @@ impl Pictures<'_> {
                     "Standardised residuals of the markers",
                     "standardised residual [–]",
                     frame,
-                    residuals(estimate).map(|own| own.standardised),
+                    residuals(estimate).map(|[_, _, standardised, ..]| standardised),
                 ),
             ),
             Figure::new(
@@ -194,7 +194,7 @@ impl Pictures<'_> {
     }
 
     fn correction(&self, frame: &Frame) -> Figure {
-        let lengths = residuals(self.estimate).map(|own| own.residual[0].hypot(own.residual[1]));
+        let lengths = residuals(self.estimate).map(|[x, y, ..]| x.hypot(y));
         Figure::new(
             "correction.png",
             "How far the correction has moved the nodes of the given field.",

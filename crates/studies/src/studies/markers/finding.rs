@@ -1,19 +1,6 @@
 //! A finding on frames, reported once with the numbers of the frames that it is about.
 
-use crate::error::{Diagnostic, Error};
 use crate::results::{Finding, Found};
-
-/// Whether nothing is wrong.
-///
-/// # Errors
-/// [`Error::Input`] with all faults, if there are any.
-pub fn none_of(faults: Vec<Diagnostic>) -> Result<(), Error> {
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(Error::Input(faults))
-    }
-}
 
 /// A finding on one frame: its number, what was found, and what to do, which is the same for all findings of one kind.
 pub type OfFrame = (usize, Found);

@@ -1,6 +1,5 @@
 //! Whether measured forces have the sign that the strain of the markers shows.
 
-use super::finding::none_of;
 use super::machine::FrameForces;
 use crate::error::{Diagnostic, Error};
 use crate::estimation::MeasuredForce;
@@ -31,7 +30,7 @@ pub fn check(
         (expected * force.force < 0.0).then(|| wrong_sign(force, expected))
     });
     let faults: Vec<Diagnostic> = faults.collect();
-    none_of(faults)
+    Error::refuse(faults)
 }
 
 fn wrong_sign(force: &MeasuredForce, expected: f64) -> Diagnostic {

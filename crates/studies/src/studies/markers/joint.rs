@@ -134,8 +134,7 @@ impl JointStudy {
             0 => self.fit.iter().map(String::as_str).collect(),
             _ => vec!["all"],
         };
-        let law = RegressedLaw::of_card(&self.cards[index], &keys);
-        law.map_err(|fault| Error::Input(vec![fault]))
+        Ok(RegressedLaw::of_card(&self.cards[index], &keys)?)
     }
 
     fn frames(&self) -> Vec<JointFrame<'_>> {
@@ -201,10 +200,10 @@ impl Conditions {
     pub fn without_specimen(self, path: &Path) -> Result<Self, Error> {
         match &self.specimen {
             None => Ok(self),
-            Some(_) => Err(Error::Input(vec![
-                Diagnostic::error("", format!("{} has a [specimen]", path.display()))
-                    .hint("name the file with --specimen, or leave out that section"),
-            ])),
+            Some(_) => Err(Error::input(
+                format!("{} has a [specimen]", path.display()),
+                "name the file with --specimen, or leave out that section",
+            )),
         }
     }
 }

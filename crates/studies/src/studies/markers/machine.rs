@@ -93,7 +93,7 @@ pub fn forces(
 /// The forces of a column in N.
 fn newtons(table: &Table, wanted: &ForceColumn) -> Result<Vec<f64>, Error> {
     let name = wanted.column.trim_start_matches('-').trim();
-    let column = column_named(table, name).map_err(|fault| Error::Input(vec![fault]))?;
+    let column = column_named(table, name)?;
     table.check_numbers([column], "every row needs a force")?;
     let name = &table.columns[column].written;
     let Some(unit) = table.columns[column].unit.as_deref() else {

@@ -1,7 +1,6 @@
 //! The materials of a sheet whose displacements were measured.
 
 use super::conditions::Conditions;
-use super::finding::none_of;
 use crate::error::{Diagnostic, Error};
 use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw, PlaneState};
@@ -16,7 +15,7 @@ use crate::studies::regions::{SheetCards, divided, fault_of};
 /// [`Error::Input`] where it has no stress in it.
 pub fn in_plane(card: Card, stated: Option<PlaneState>) -> Result<Card, Error> {
     let plane = stated.unwrap_or(card.law.plane_state());
-    card_in_plane(card, plane).map_err(|fault| Error::Input(vec![fault]))
+    Ok(card_in_plane(card, plane)?)
 }
 
 /// The card, and those of regions that are taken from the conditions, in the plane state that is stated.
@@ -72,7 +71,7 @@ pub(super) fn check_regions(regions: &[(String, Card)], mesh: &Mesh) -> Result<(
         let (message, hint) = fault_of(name, &names[..index], mesh)?;
         Some(Diagnostic::error("", message).hint(hint))
     });
-    none_of(faults.collect())
+    Error::refuse(faults.collect())
 }
 
 /// The warning about parts of a mesh of which none has a card of its own.

@@ -1,6 +1,6 @@
 //! Quantities of a corrected frame that several files and pictures show: nominal stress, and residuals of markers.
 
-use crate::estimation::{FieldEstimate, StressEstimate};
+use crate::estimation::{FieldEstimate, MarkerEstimate, StressEstimate};
 use crate::markers::Frame;
 use crate::statistics::nearest;
 
@@ -48,34 +48,16 @@ pub fn nominal_stress(cell: &StressEstimate) -> [f64; 4] {
     nominal(cell.first_piola_kirchhoff_stress)
 }
 
-/// The residual of a marker, NaN where it does not lie on the mesh.
-pub struct Residual {
-    /// Measured less corrected displacement in mm.
-    pub residual: [f64; 2],
-    /// Its length in standard deviations.
-    pub standardised: f64,
-    /// The robust weight, 0 to 1.
-    pub trust: f64,
-    /// One for an outlier, zero otherwise.
-    pub outlier: f64,
-}
-
-/// The residuals of all markers of a frame.
-pub fn residuals(estimate: &FieldEstimate) -> impl Iterator<Item = Residual> {
-    estimate.markers.iter().map(|marker| match marker {
-        Some(marker) => Residual {
-            residual: marker.residual,
-            standardised: marker.standardised_residual,
-            trust: marker.trust,
-            outlier: f64::from(u8::from(marker.outlier)),
-        },
-        None => Residual {
-            residual: [f64::NAN; 2],
-            standardised: f64::NAN,
-            trust: f64::NAN,
-            outlier: f64::NAN,
-        },
-    })
+/// Of all markers of a frame: the residual along x and y in mm, its length in standard deviations, the robust weight, and one for an
+/// outlier, zero otherwise; NaN where a marker does not lie on the mesh.
+pub fn residuals(estimate: &FieldEstimate) -> impl Iterator<Item = [f64; 5]> {
+    let of = |marker: MarkerEstimate| {
+        let [x, y] = marker.residual;
+        let outlier = f64::from(u8::from(marker.outlier));
+        [x, y, marker.standardised_residual, marker.trust, outlier]
+    };
+    let markers = estimate.markers.iter();
+    markers.map(move |marker| marker.map_or([f64::NAN; 5], of))
 }
 
 /// The mean residual of every marker and its eight nearest neighbours in mm, which noise alone would make a third of its own

@@ -92,14 +92,10 @@ pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
     let mut text = String::from(
         "marker,X_mm,Y_mm,ux_mm,uy_mm,residual_x_mm,residual_y_mm,standardised_residual,trust,outlier\n",
     );
-    for (marker, left) in frame.markers.iter().zip(residuals(estimate)) {
-        let ([x, y], [ux, uy], [rx, ry]) = (marker.place, marker.displacement, left.residual);
-        let judged = [left.standardised, left.trust, left.outlier];
-        row(
-            &mut text,
-            &[marker.number],
-            &[&[x, y, ux, uy, rx, ry][..], &judged].concat(),
-        );
+    for (marker, residual) in frame.markers.iter().zip(residuals(estimate)) {
+        let measured = [marker.place, marker.displacement];
+        let values = [measured.as_flattened(), &residual].concat();
+        row(&mut text, &[marker.number], &values);
     }
     text
 }

@@ -18,7 +18,7 @@ use crate::statistics::larger;
 use crate::studies::markers::MarkerStudy;
 use crate::studies::pictures::Pictures;
 
-use super::quantities::{Residual, misfits, nominal, residuals};
+use super::quantities::{misfits, nominal, residuals};
 use super::{figures, headline, json, report, tables};
 
 /// The `kind` of these results.
@@ -207,16 +207,15 @@ fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
     let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
     let numbers = all.iter().map(|marker| marker.number as f64);
-    let of =
-        |name, value: fn(Residual) -> f64| Array::scalars(name, residuals(estimate).map(value));
-    let differences = residuals(estimate).flat_map(|left| left.residual);
+    let of = |name, place: usize| Array::scalars(name, residuals(estimate).map(|own| own[place]));
+    let differences = residuals(estimate).flat_map(|[x, y, ..]| [x, y]);
     let misfit = misfits(frame, estimate).into_iter().flatten();
     Grid::scattered(&places, &measured).with([
         Array::vectors("residual_mm", differences),
         Array::vectors("mean_residual_of_neighbours_mm", misfit),
-        of("standardised_residual", |left| left.standardised),
-        of("trust", |left| left.trust),
-        of("outlier", |left| left.outlier),
+        of("standardised_residual", 2),
+        of("trust", 3),
+        of("outlier", 4),
         Array::scalars("number", numbers),
     ])
 }

@@ -5,7 +5,7 @@ use crate::dynamics::{
     Integrator, Motion, MovingForce, MovingSupport, Start, Step, TimeFunction, TimeSettings,
     Viscosity, lumped_mass,
 };
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::mass_spring::{DashpotLaw, MassSpring, SpringLaw};
 use crate::material::Card;
 use crate::material::viscosity::ViscousMaterial;
@@ -228,7 +228,7 @@ impl MovingSheet {
             time: TimeFunction::Constant(1.0),
         };
         let loads = MovingForce {
-            force: problem.dead_forces(mesh).map_err(input)?,
+            force: problem.dead_forces(mesh)?,
             time: self.drive.factor.clone(),
         };
         let points = self.forces.iter().map(|own| MovingForce {
@@ -270,7 +270,7 @@ impl MovingSheet {
             until: self.drive.release.filter(|_| self.is_released(group)),
         });
         let mut moving: Vec<MovingSupport> = moving.collect();
-        for (unknown, by) in sorted.held_by(mesh).map_err(input)? {
+        for (unknown, by) in sorted.held_by(mesh)? {
             let number = order[by];
             let (node, axis) = (unknown / 2, unknown % 2);
             let (_, support) = &problem.supports[number];
@@ -309,11 +309,6 @@ impl MovingSheet {
     pub(super) fn has_force(&self) -> bool {
         self.drive.release != Some(0.0) && self.is_measured_held()
     }
-}
-
-/// A fault of supports or loads on a mesh.
-fn input(fault: Diagnostic) -> Error {
-    Error::Input(vec![fault])
 }
 
 /// How large a mesh is.

@@ -290,8 +290,7 @@ impl Specimen {
         if let Some((plate, _)) = self.plate() {
             return Ok(plate.on(mesh, energy));
         }
-        let model = self.problem.on(mesh, energy);
-        model.map_err(|fault| Error::Input(vec![fault]))
+        Ok(self.problem.on(mesh, energy)?)
     }
 
     /// All groups that are held, loaded or measured, in the order of the study.

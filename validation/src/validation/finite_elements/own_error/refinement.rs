@@ -9,7 +9,7 @@ use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::validation::case::{
     Block, Check, Figure, Outcome, check, line, mesh_figure, number, table,
 };
-use crate::validation::finite_elements::{held, misfit, solve};
+use crate::validation::finite_elements::{held, solve};
 
 /// The part of the squared error that is refined in a round.
 const SHARE: f64 = 0.5;
@@ -76,7 +76,7 @@ impl Round {
             ("right", [Some(STRETCH * SIZE[0]), Some(0.0)]),
         ]);
         let energy = problem.finite_elements(&mesh);
-        let model = problem.on(&mesh, &energy).map_err(misfit)?;
+        let model = problem.on(&mesh, &energy)?;
         let state = solve(&model, "local refinement", 1)?;
         let force = model.reaction(&state, "right")[0];
         Ok(Self {

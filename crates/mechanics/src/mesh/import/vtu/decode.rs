@@ -3,6 +3,7 @@
 use std::io::Read;
 
 use super::super::unreadable::Unreadable;
+use crate::document::binary;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
@@ -17,19 +18,8 @@ pub struct Numbers {
 impl Numbers {
     /// A number of a type from its bytes.
     pub fn number(self, kind: &str, bytes: &[u8]) -> f64 {
-        let mut own = [0; 8];
-        own[..bytes.len()].copy_from_slice(bytes);
-        if self.big_endian {
-            own[..bytes.len()].reverse();
-        }
-        let whole = u64::from_le_bytes(own);
-        let shift = 64 - 8 * bytes.len() as u32;
-        match kind {
-            "Float32" => f64::from(f32::from_bits(whole as u32)),
-            "Float64" => f64::from_bits(whole),
-            _ if kind.starts_with('U') => whole as f64,
-            _ => ((whole << shift) as i64 >> shift) as f64,
-        }
+        let first = kind.chars().next().unwrap_or_default();
+        binary::number(first.to_ascii_lowercase(), bytes, self.big_endian)
     }
 }
 
