@@ -1,25 +1,22 @@
 //! VTK files: one `.vtu` per grid, and one `.pvd` per series, which plays its grids.
-//!
-//! Arrays are compressed as ParaView writes them: blocks of zlib behind a head of their sizes, both in base64.
-//!
-//! # References
-//! VTK XML formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::{Compress, Compression, FlushCompress};
-use quick_xml::escape::escape;
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
 use rayon::prelude::*;
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
+    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+};
+use vtkio::xml::Compressor;
 
+use self::compressed::{COMPRESSOR, compressed};
+use crate::mesh::CellShape;
 use crate::results::{Array, Components, Grid, GridCell, GridSeries};
+
+mod compressed;
 
 /// A program for ParaView that shows the models of the folder that it is in, side by side.
 pub const VIEW: &str = include_str!("view.py");
-
-/// The level of zlib's compression: that of ParaView.
-const LEVEL: u32 = 5;
-/// Bytes of a block before compression.
-const BLOCK: usize = 1 << 15;
 
 /// The files of a series, one after the other: `NAME_001.vtu` and so on, and `NAME.pvd` where its grids have times. As many at once are
 /// made as there are threads.
@@ -41,139 +38,260 @@ pub fn files(series: &GridSeries) -> impl Iterator<Item = (String, Vec<u8>)> {
 
 /// A grid as a `.vtu` file.
 pub fn grid(grid: &Grid) -> Vec<u8> {
-    let places = grid.points.iter().flat_map(|[x, y]| [*x, *y, 0.0]);
-    let ends = grid.cells.iter().scan(0, |end, cell| {
-        *end += cell.points();
-        Some(*end as i64)
-    });
-    let kinds = grid.cells.iter().map(|cell| match cell {
-        GridCell::Vertex => 1,
-        GridCell::Line => 3,
-        GridCell::Mesh(shape) => shape.vtk_number(),
-    });
-    // Numbers of points have a sign, as VTK and meshio expect them.
-    let points = grid.connectivity.iter().map(|point| *point as i64);
-    let file = format!(
-        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\" \
-         header_type=\"UInt64\"><UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">{}{}<Points>{}</Points>\
-         <Cells>{}{}{}</Cells></Piece></UnstructuredGrid></VTKFile>",
-        grid.points.len(),
-        grid.cells.len(),
-        arrays("PointData", &grid.at_points),
-        arrays("CellData", &grid.in_cells),
-        data_array(
-            "Float64",
-            "Points",
-            &["X", "Y", "Z"],
-            places.flat_map(f64::to_le_bytes)
-        ),
-        data_array(
-            "Int64",
-            "connectivity",
-            &[],
-            points.flat_map(i64::to_le_bytes)
-        ),
-        data_array("Int64", "offsets", &[], ends.flat_map(i64::to_le_bytes)),
-        data_array("UInt8", "types", &[], kinds),
-    );
-    file.into_bytes()
+    let places = grid.points.iter();
+    let piece = UnstructuredGridPiece {
+        points: IOBuffer::F64(places.flat_map(|[x, y]| [*x, *y, 0.0]).collect()),
+        cells: cells(grid),
+        data: Attributes {
+            point: grid.at_points.iter().map(attribute).collect(),
+            cell: grid.in_cells.iter().map(attribute).collect(),
+        },
+    };
+    let file = Vtk {
+        version: Version::new_xml(1, 0),
+        title: String::new(),
+        byte_order: ByteOrder::LittleEndian,
+        data: DataSet::inline(piece),
+        file_path: None,
+    };
+    let mut bytes = Vec::new();
+    let file = file.try_into_xml_format(Compressor::None, 0);
+    file.and_then(|file| file.write(&mut bytes))
+        .expect("a grid with matching arrays can be written to memory");
+    finished(&bytes, grid)
 }
 
-/// Arrays with the names of those that programs show first.
-fn arrays(tag: &str, arrays: &[Array]) -> String {
-    let mut head = tag.to_owned();
-    for (role, components) in [
-        ("Scalars", Components::Scalar),
-        ("Vectors", Components::Vector),
-        ("Tensors", Components::Tensor),
-    ] {
-        let first = arrays.iter().find(|array| array.components == components);
-        head += &first.map_or(String::new(), |first| format!(" {role}=\"{}\"", first.name));
+/// The file with compressed arrays, which vtkio writes number by number, with the names of the components, which it does not write, and with
+/// numbers of points that have a sign, as VTK and meshio expect them.
+fn finished(file: &[u8], grid: &Grid) -> Vec<u8> {
+    let file = String::from_utf8_lossy(file);
+    let arrays = || grid.at_points.iter().chain(&grid.in_cells);
+    let named = |head: &str| {
+        let name = head.split("Name=\"").nth(1)?.split('"').next()?;
+        arrays().find(|array| array.name == name)
+    };
+    let mut whole = String::with_capacity(file.len() + 4096);
+    let mut parts = file.split("<DataArray ");
+    let first = parts.next().unwrap_or_default();
+    whole += &first.replacen("header_type=", &format!("{COMPRESSOR} header_type="), 1);
+    for part in parts {
+        let (head, rest) = part.split_once('>').unwrap_or((part, ""));
+        whole += "<DataArray ";
+        whole += &head
+            .trim_end_matches('/')
+            .replace("\"UInt64\"", "\"Int64\"");
+        let names = named(head).map_or(&[][..], |array| names(array.components));
+        for (index, name) in names.iter().enumerate() {
+            whole += &format!(" ComponentName{index}=\"{name}\"");
+        }
+        whole += if head.ends_with('/') { "/>" } else { ">" };
+        let (array, after) = rest.split_at(rest.find('<').unwrap_or(rest.len()));
+        match compressed(array).filter(|_| !head.ends_with('/')) {
+            Some(array) => whole += &array,
+            None => whole += array,
+        }
+        whole += after;
     }
-    let arrays: String = arrays.iter().map(array).collect();
-    format!("<{head}>{arrays}</{tag}>")
+    whole.into_bytes()
+}
+
+fn names(components: Components) -> &'static [&'static str] {
+    match components {
+        Components::Scalar => &[],
+        Components::Vector => &["X", "Y", "Z"],
+        Components::Tensor => &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"],
+        Components::Symmetric => &["XX", "YY", "ZZ", "XY", "YZ", "XZ"],
+        Components::Stretches => &["larger", "smaller", "thickness"],
+    }
+}
+
+fn cells(grid: &Grid) -> Cells {
+    let ends = grid.cells.iter().scan(0, |end, cell| {
+        *end += cell.points() as u64;
+        Some(*end)
+    });
+    let points = grid.connectivity.iter();
+    Cells {
+        types: grid.cells.iter().map(|cell| kind(*cell)).collect(),
+        cell_verts: VertexNumbers::XML {
+            connectivity: points.map(|point| *point as u64).collect(),
+            offsets: ends.collect(),
+        },
+    }
+}
+
+fn kind(cell: GridCell) -> CellType {
+    match cell {
+        GridCell::Vertex => CellType::Vertex,
+        GridCell::Line => CellType::Line,
+        GridCell::Mesh(CellShape::Triangle3) => CellType::Triangle,
+        GridCell::Mesh(CellShape::Triangle6) => CellType::QuadraticTriangle,
+        GridCell::Mesh(CellShape::Quad4) => CellType::Quad,
+        GridCell::Mesh(CellShape::Quad8) => CellType::QuadraticQuad,
+        GridCell::Mesh(CellShape::Quad9) => CellType::BiquadraticQuad,
+    }
 }
 
 /// Vectors and tensors in the plane become those of space.
-fn array(array: &Array) -> String {
-    let each = array.values.chunks_exact(array.components.count());
-    let (names, values): (&[_], Vec<f64>) = match array.components {
-        Components::Scalar => (&[], array.values.clone()),
-        Components::Stretches => (&["larger", "smaller", "thickness"], array.values.clone()),
-        Components::Vector => (
-            &["X", "Y", "Z"],
-            each.flat_map(|v| [v[0], v[1], 0.0]).collect(),
-        ),
-        Components::Tensor => (
-            &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"],
-            each.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, t[4]])
-                .collect(),
-        ),
-        Components::Symmetric => (
-            &["XX", "YY", "ZZ", "XY", "YZ", "XZ"],
-            each.flat_map(|t| [t[0], t[1], t[2], t[3], 0.0, 0.0])
-                .collect(),
-        ),
+fn attribute(array: &Array) -> Attribute {
+    let values = &array.values;
+    let (elem, data) = match array.components {
+        Components::Scalar => {
+            let lookup_table = None;
+            let num_comp = 1;
+            (
+                ElementType::Scalars {
+                    num_comp,
+                    lookup_table,
+                },
+                values.clone(),
+            )
+        }
+        Components::Vector => {
+            let planar = values.chunks_exact(2);
+            let whole = planar.flat_map(|v| [v[0], v[1], 0.0]);
+            (ElementType::Vectors, whole.collect())
+        }
+        Components::Stretches => (ElementType::Generic(3), values.clone()),
+        Components::Tensor => {
+            let fives = values.chunks_exact(5);
+            let whole = fives.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, t[4]]);
+            (ElementType::Tensors, whole.collect())
+        }
+        Components::Symmetric => {
+            let fours = values.chunks_exact(4);
+            let whole = fours.flat_map(|t| [t[0], t[1], t[2], t[3], 0.0, 0.0]);
+            (ElementType::Generic(6), whole.collect())
+        }
     };
-    let values = values.into_iter();
     // Displacements are read again with all digits; what follows from them is looked at.
-    if array.name.ends_with("displacement_mm") {
-        data_array(
-            "Float64",
-            array.name,
-            names,
-            values.flat_map(f64::to_le_bytes),
-        )
+    let data = if array.name.ends_with("displacement_mm") {
+        IOBuffer::F64(data)
     } else {
-        let values = values.flat_map(|value| (value as f32).to_le_bytes());
-        data_array("Float32", array.name, names, values)
-    }
-}
-
-/// An array of numbers of a type from their bytes; scalars have no names of components.
-fn data_array(kind: &str, name: &str, names: &[&str], bytes: impl Iterator<Item = u8>) -> String {
-    let mut head = format!("type=\"{kind}\" Name=\"{name}\" format=\"binary\"");
-    if !names.is_empty() {
-        head += &format!(" NumberOfComponents=\"{}\"", names.len());
-    }
-    for (index, name) in names.iter().enumerate() {
-        head += &format!(" ComponentName{index}=\"{name}\"");
-    }
-    let data = compressed(&bytes.collect::<Vec<u8>>());
-    format!("<DataArray {head}>{data}</DataArray>")
-}
-
-/// Compressed blocks in base64; their head has the number of blocks, the size of a block, that of the last one, and the compressed size of each.
-fn compressed(bytes: &[u8]) -> String {
-    let mut zlib = Compress::new(Compression::new(LEVEL), true);
-    let (mut sizes, mut blocks) = (Vec::new(), Vec::new());
-    for block in bytes.chunks(BLOCK) {
-        zlib.reset();
-        let start = blocks.len();
-        // Deflate adds five bytes to a stored block of this size, and zlib its own head and sum.
-        blocks.reserve(block.len() + 64);
-        zlib.compress_vec(block, &mut blocks, FlushCompress::Finish)
-            .expect("compression in memory does not fail");
-        sizes.push(blocks.len() - start);
-    }
-    let last = bytes.chunks(BLOCK).next_back().map_or(0, <[u8]>::len);
-    let head = [sizes.len(), BLOCK, last].into_iter().chain(sizes);
-    let head: Vec<u8> = head.flat_map(|size| (size as u64).to_le_bytes()).collect();
-    STANDARD.encode(head) + &STANDARD.encode(blocks)
+        IOBuffer::F32(data.into_iter().map(|value| value as f32).collect())
+    };
+    Attribute::DataArray(DataArray {
+        name: array.name.to_owned(),
+        elem,
+        data,
+    })
 }
 
 /// ParaView's collection of `.vtu` files by their names, with the stretch or the load factor as their times; with the number of the
 /// step where those fall or come again, because ParaView shows one file at each time, in the order of the times.
 pub fn collection(grids: &[(f64, String)]) -> Vec<u8> {
+    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     let rising = grids.windows(2).all(|pair| pair[0].0 < pair[1].0);
-    let steps = grids.iter().zip(1..).map(|((time, name), step)| {
-        let time = if rising { *time } else { f64::from(step) };
-        let name = escape(name.as_str());
-        format!("    <DataSet timestep=\"{time}\" part=\"0\" file=\"{name}.vtu\"/>\n")
-    });
-    let steps: String = steps.collect();
-    let file = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n{steps}  </Collection>\n</VTKFile>"
-    );
-    file.into_bytes()
+    let steps = grids.iter().enumerate();
+    let data_set = |writer: &mut Writer<Vec<u8>>, (step, (time, name)): (usize, &(f64, String))| {
+        let time = if rising { *time } else { (step + 1) as f64 };
+        let (time, file) = (time.to_string(), format!("{name}.vtu"));
+        let attributes = [
+            ("timestep", time.as_str()),
+            ("part", "0"),
+            ("file", file.as_str()),
+        ];
+        writer
+            .create_element("DataSet")
+            .with_attributes(attributes)
+            .write_empty()
+            .map(|_| ())
+    };
+    let document = |writer: &mut Writer<Vec<u8>>| {
+        writer.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
+        let attributes = [("type", "Collection"), ("version", "0.1")];
+        let file = writer.create_element("VTKFile").with_attributes(attributes);
+        file.write_inner_content(|writer| {
+            let collection = writer.create_element("Collection");
+            collection.write_inner_content(|writer| {
+                steps.clone().try_for_each(|step| data_set(writer, step))
+            })?;
+            Ok(())
+        })?;
+        Ok::<(), std::io::Error>(())
+    };
+    document(&mut writer).expect("writing to memory does not fail");
+    writer.into_inner()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tensors_have_nine_components_with_the_one_across_the_plane() {
+        let stress = Array::tensors("stress_MPa", [1.0, 2.0, 3.0, 4.0, 5.0]);
+        let Attribute::DataArray(DataArray { data, .. }) = attribute(&stress) else {
+            panic!("an array");
+        };
+        let expected = vec![1.0, 2.0, 0.0, 3.0, 4.0, 0.0, 0.0, 0.0, 5.0];
+        assert_eq!(data.into_vec::<f32>(), Some(expected));
+    }
+
+    #[test]
+    fn symmetric_tensors_have_six_named_components() {
+        let stress = Array::symmetric_tensors("stress_MPa", [[1.0, 2.0, 3.0, 4.0]]);
+        let grid = Grid::scattered(&[[1.0, 2.0]], &[0.5, 0.0]).with([stress]);
+        let text = String::from_utf8(super::grid(&grid)).unwrap();
+        let heads: Vec<_> = text.split("<DataArray ").skip(1).collect();
+        let stress = heads
+            .iter()
+            .find(|head| head.contains("stress_MPa"))
+            .unwrap();
+        let names = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+        for (index, name) in names.iter().enumerate() {
+            assert!(
+                stress.contains(&format!(" ComponentName{index}=\"{name}\"")),
+                "{stress}"
+            );
+        }
+        assert!(stress.contains("NumberOfComponents=\"6\""), "{stress}");
+        assert!(text.contains("vtkZLibDataCompressor"), "{text}");
+        let vtk = Vtk::parse_xml(text.as_bytes()).unwrap();
+        assert!(matches!(vtk.data, DataSet::UnstructuredGrid { .. }));
+    }
+
+    /// 4096 cells have an array of whole blocks.
+    #[test]
+    fn arrays_of_whole_blocks_are_read_again() {
+        for count in [4095, 4096, 4097] {
+            let points: Vec<[f64; 2]> = (0..count).map(|i| [f64::from(i), 0.0]).collect();
+            let field: Vec<f64> = (0..2 * count).map(|i| f64::from(i).sin()).collect();
+            let file = super::grid(&Grid::scattered(&points, &field));
+            let compressed = String::from_utf8_lossy(&file).contains("vtkZLibDataCompressor");
+            assert!(compressed, "{count}");
+            assert!(Vtk::parse_xml(&file[..]).is_ok());
+        }
+    }
+
+    #[test]
+    fn files_of_a_motion_have_stable_names_and_a_collection_of_their_times() {
+        let point = Grid::scattered(&[[1.0, 2.0]], &[0.5, 0.0]);
+        let grids = [(0.0, point.clone()), (0.25, point.clone())];
+        let files: Vec<_> = files(&GridSeries::instants("corrected", grids)).collect();
+        let names: Vec<&str> = files.iter().map(|(name, _)| &**name).collect();
+        assert_eq!(
+            names,
+            [
+                "corrected_00001.vtu",
+                "corrected_00002.vtu",
+                "corrected.pvd"
+            ]
+        );
+        let collection = String::from_utf8(files[2].1.clone()).unwrap();
+        assert!(
+            collection.contains("timestep=\"0.25\" part=\"0\" file=\"corrected_00002.vtu\""),
+            "{collection}"
+        );
+        let back = [0.5, 1.0, 0.5].map(|factor| (factor, "a".to_owned()));
+        let collection = String::from_utf8(super::collection(&back)).unwrap();
+        for step in 1..=3 {
+            assert!(
+                collection.contains(&format!("timestep=\"{step}\"")),
+                "{collection}"
+            );
+        }
+        let end = GridSeries::single("corrected_end", point);
+        assert_eq!(super::files(&end).count(), 1);
+    }
 }
