@@ -6,6 +6,7 @@ use clap::{ArgAction, Args};
 
 use super::choice::one_of;
 use super::fit::a_law;
+use super::parameter_bounds::pair;
 use super::terminal::{Outcome, print, save};
 use gelbench_base::document::{file, read_text};
 use gelbench_base::error::{Diagnostic, Error};
