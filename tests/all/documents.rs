@@ -112,6 +112,8 @@ fn workplace() -> TempDir {
         "materials/data",
         "validation",
         "validation/plate",
+        "validation/measured/rakes",
+        "validation/measured/tissue_biaxial",
     ] {
         fs::create_dir_all(folder.path().join(part)).unwrap();
         for entry in fs::read_dir(root().join(part)).unwrap() {

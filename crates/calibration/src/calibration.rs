@@ -13,6 +13,7 @@ mod fitted;
 mod least_squares;
 mod memory;
 mod mounted;
+mod nearest;
 mod ranking;
 mod regression;
 mod relaxation;
@@ -30,9 +31,8 @@ pub use data::{
     RestState, StrainColumn, TableReading, Test, TestData, Times,
 };
 pub use fit::fit;
-pub use fitted::{Fit, Relaxed};
+pub use fitted::{Fit, MountedFit, Relaxed};
 pub use memory::Memory;
-pub use mounted::MountedFit;
 pub use ranking::{best, rank};
 pub use regression::{MovedZero, Zero};
 pub use relaxation::{Terms, fit_relaxation};

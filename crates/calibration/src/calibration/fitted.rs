@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::data::{Observation, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
-use super::mounted::MountedFit;
 use super::settings::{FitSettings, MEASURE};
 use super::softened::Softened;
 use super::trust::Quality;
@@ -53,6 +52,22 @@ pub struct Relaxed {
     pub material: ViscousMaterial,
     /// The numbers of terms that were tried with their AICc.
     pub tried: Vec<(usize, f64)>,
+}
+
+/// A sheet that was solved on its mounting with the law.
+#[derive(Debug)]
+pub struct MountedFit {
+    /// The tests as they would be of the homogeneous middle.
+    pub(in crate::calibration) tests: Vec<TestData>,
+    /// The law's parameters by the homogeneous reading.
+    pub homogeneous: Vec<Parameter>,
+    /// By how much the stresses of the homogeneous reading deviate at most along both axes, in equibiaxial states up to the largest stretch
+    /// that both axes reached, in %.
+    pub bias_percent: [f64; 2],
+    /// By how much the forces changed at most when the cells were halved for the last fit, in % of the largest.
+    pub discretisation_percent: f64,
+    /// How often the sheet was solved with the law.
+    pub rounds: usize,
 }
 
 impl Fit {

@@ -1,6 +1,7 @@
 //! The parameters with the smallest sum of squares: models of tests, residuals, weights and starts.
 
 mod elastic;
+mod linear;
 mod misfit;
 mod search;
 mod zero;

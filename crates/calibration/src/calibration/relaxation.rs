@@ -6,9 +6,9 @@
 //! of which the data resolve nothing.
 
 use super::data::{Branches, TestData, Times};
-use super::fit::{check_measures, nearest};
 use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
+use super::nearest::{check_measures, nearest};
 use super::regression::Misfit;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::solution::Solution;

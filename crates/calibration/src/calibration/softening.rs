@@ -6,9 +6,9 @@
 use std::sync::Arc;
 
 use super::data::{Observation, TestData};
-use super::fit::{check_measures, nearest};
 use super::fitted::Fit;
 use super::least_squares::{Residuals, descend};
+use super::nearest::{check_measures, nearest};
 use super::regression::{Misfit, improved};
 use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};

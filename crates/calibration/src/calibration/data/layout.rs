@@ -4,7 +4,8 @@ use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
 use super::gross_rows::{gross_rows, torn_rows};
-use super::mounting::{Mounted, refuse_cauchy};
+use super::mounting::Mounted;
+use super::mounting_statements::refuse_cauchy;
 use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{Kind, Role, check_columns, of_kind};
@@ -182,14 +183,7 @@ impl Layout {
             let is_kept = rows.binary_search(&index).is_ok();
             if part.remarks.is_empty() && is_kept {
                 // The size of a biaxial strain: protocols begin where both are small.
-                along.push((
-                    index,
-                    if second.abs() > first.abs() {
-                        second
-                    } else {
-                        first
-                    },
-                ));
+                along.push((index, farthest([first, second])));
             }
             let observations = if is_kept { &mut kept } else { &mut left_out };
             observations.extend(self.observations(row, [first, second], &part));
@@ -227,10 +221,7 @@ impl Layout {
             head: head.written(),
             warnings: warnings.into_iter().flatten().collect(),
         };
-        Ok(match self.mounted.stated_stretches() {
-            [1.0, 1.0] => data,
-            stated => data.stretched(stated),
-        })
+        Ok(data.stretched(self.mounted.stated_stretches()))
     }
 
     /// The observations of a row with these strains.

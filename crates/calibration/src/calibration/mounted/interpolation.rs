@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Knots are added until no row is farther from one, as a share of the largest strains.
-const NEAR: f64 = 0.08;
+const NEAR: f64 = 0.07;
 /// Knots at most.
-const MOST_KNOTS: usize = 36;
+const MOST_KNOTS: usize = 40;
 
 /// Σ aᵢ |x − xᵢ|³ + a + b·x through values at knots xᵢ, x the strains over the largest ones, with Σ aᵢ = Σ aᵢ xᵢ = 0.
 ///

@@ -2,28 +2,14 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use crate::calibration::data::Mounting;
-use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::material::prestretched::PrestretchedLaw;
-use crate::material::sheet::Kinematics;
 use crate::mesh::{CellShape, Mesh, Shape};
-use crate::problem::{BoundaryProblem, Drive, Model, Support, sheet_energy::SheetEnergy};
-use crate::solve::tangent::inverted;
-use crate::solve::{Assembly, Convergence, Loading, Newton, NewtonSettings, Stage, State};
+use crate::problem::{BoundaryProblem, Drive, Support, sheet_energy::SheetEnergy};
 
 /// Cells across the sheet: the finite elements are quadratic.
 const CELLS: usize = 8;
-
-/// Strains of the bars that differ by less are reached by the tangent taken last.
-const NEARBY: f64 = 1e-5;
-
-const NEWTON: NewtonSettings = NewtonSettings {
-    tolerance: 1e-9,
-    max_iterations: 15,
-};
 
 /// What a mounted sheet shows when its bars, or the markers in its middle, are at some strains.
 #[derive(Clone, Debug)]
@@ -33,16 +19,16 @@ pub struct SheetState {
     /// λ − 1 of the markers in the middle along both axes, relative to the sheet as mounted.
     pub middle: [f64; 2],
     /// λ − 1 of the bars.
-    bars: [f64; 2],
+    pub bars: [f64; 2],
     /// The displacements of the nodes in mm.
-    field: Vec<f64>,
+    pub field: Vec<f64>,
 }
 
 /// The finite elements of a mounted sheet.
 pub struct MountedSheet {
-    mounting: Mounting,
-    mesh: Mesh,
-    energy: SheetEnergy,
+    pub mounting: Mounting,
+    pub mesh: Mesh,
+    pub energy: SheetEnergy,
 }
 
 /// The sides along both axes: from the first to the second one.
@@ -83,7 +69,7 @@ impl MountedSheet {
     }
 
     /// The groups that are moved along an axis by each of both bars.
-    fn groups(&self, axis: usize, end: usize) -> Vec<String> {
+    pub fn groups(&self, axis: usize, end: usize) -> Vec<String> {
         let side = SIDES[axis][end];
         match self.mounting.shape {
             Shape::SquareOnRakes(rakes) if self.mounting.slides => {
@@ -96,7 +82,7 @@ impl MountedSheet {
     }
 
     /// The problem with both pairs of bars at some strains: each bar is moved by half of the change of their distance.
-    fn problem(&self, law: &Arc<dyn HyperelasticLaw>, bars: [f64; 2]) -> BoundaryProblem {
+    pub fn problem(&self, law: &Arc<dyn HyperelasticLaw>, bars: [f64; 2]) -> BoundaryProblem {
         let mut supports = Vec::new();
         for axis in [0, 1] {
             for (end, sign) in [-0.5, 0.5].into_iter().enumerate() {
@@ -123,343 +109,8 @@ impl MountedSheet {
         }
     }
 
-    /// The states of some laws at strains of the bars, or of the markers where these were measured: for each strain one of each law. The laws
-    /// differ little from the first one. `starts` are states of a law like the first one at these strains, or none.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] with the strains at which there is none.
-    pub fn states(
-        &self,
-        laws: &[SheetLaw],
-        strains: &[[f64; 2]],
-        starts: &[SheetState],
-    ) -> Result<Vec<Vec<SheetState>>, Error> {
-        let bodies: Vec<Body> = laws.iter().map(|law| Body::new(self, law)).collect();
-        let size = strains
-            .len()
-            .div_ceil(2 * rayon::current_num_threads())
-            .max(1);
-        // Neighbours begin at each other's states: from ratio to ratio, the smallest strains first.
-        let mut order: Vec<usize> = (0..strains.len()).collect();
-        let place = |number: &usize| {
-            let [x, y] = strains[*number];
-            ((8.0 * y.atan2(x)).round(), x.hypot(y))
-        };
-        order.sort_by(|a, b| place(a).partial_cmp(&place(b)).expect("finite strains"));
-        let chunks = order.par_chunks(size).map(|chunk| {
-            let mut search = Search::new(self, &bodies)?;
-            let mut solved: Vec<(usize, Vec<SheetState>)> = Vec::new();
-            for number in chunk {
-                let target = strains[*number];
-                let far = |state: &&SheetState| {
-                    (state.middle[0] - target[0]).hypot(state.middle[1] - target[1])
-                };
-                let known = solved.iter().map(|(_, states)| &states[0]);
-                let nearest = known.min_by(|a, b| far(a).total_cmp(&far(b)));
-                let starts = [starts.get(*number), nearest, None];
-                let states = search.first(target, &starts.map(|own| own.cloned()));
-                let states = states.map_err(|fault| fault_at(target, fault))?;
-                solved.push((*number, states));
-            }
-            Ok(solved)
-        });
-        let all: Vec<Vec<(usize, Vec<SheetState>)>> = chunks.collect::<Result<_, Error>>()?;
-        let mut all: Vec<(usize, Vec<SheetState>)> = all.into_iter().flatten().collect();
-        all.sort_by_key(|(number, _)| *number);
-        Ok(all.into_iter().map(|(_, states)| states).collect())
-    }
-}
-
-/// A law, and the stretches of the sheet along both axes as it is mounted.
-#[derive(Clone, Debug)]
-pub struct SheetLaw {
-    pub law: Arc<dyn HyperelasticLaw>,
-    pub stretches: [f64; 2],
-}
-
-impl SheetLaw {
-    /// The stresses of a homogeneous sheet over the cross-sections as mounted, at strains from the mounted state on.
-    pub fn stresses(&self, strains: [f64; 2]) -> [f64; 2] {
-        let from_rest = [0, 1].map(|axis| self.stretches[axis] * (1.0 + strains[axis]) - 1.0);
-        let stresses = self.law.biaxial(from_rest);
-        [0, 1].map(|axis| self.stretches[axis] * stresses[axis])
-    }
-
-    /// The law from the mounted state on.
-    fn mounted(&self) -> Arc<dyn HyperelasticLaw> {
-        if self.stretches == [1.0; 2] {
-            return Arc::clone(&self.law);
-        }
-        Arc::new(PrestretchedLaw {
-            law: Arc::clone(&self.law),
-            stretches: self.stretches,
-        })
-    }
-}
-
-/// The energy of the sheet with a law.
-struct Body {
-    law: Arc<dyn HyperelasticLaw>,
-    energy: SheetEnergy,
-}
-
-impl Body {
-    fn new(sheet: &MountedSheet, law: &SheetLaw) -> Self {
-        let law = law.mounted();
-        Self {
-            energy: sheet.energy.with_law(Arc::clone(&law)),
-            law,
-        }
-    }
-
-    /// Whether the sheet is at rest as it is mounted.
-    fn is_at_rest(&self) -> bool {
-        self.law.stress(&Kinematics::rest()).1.norm() == 0.0
-    }
-}
-
-/// The search for the states of some laws.
-struct Search<'a> {
-    sheet: &'a MountedSheet,
-    bodies: &'a [Body],
-    newton: Newton,
-}
-
-impl<'a> Search<'a> {
-    fn new(sheet: &'a MountedSheet, bodies: &'a [Body]) -> Result<Self, Error> {
-        let first = &bodies[0];
-        let problem = sheet.problem(&first.law, [0.0; 2]);
-        let model = problem.on(&sheet.mesh, &first.energy);
-        let model = model.map_err(|fault| Error::Input(vec![fault]))?;
-        let newton = Newton::new(&*model.potential(1.0, &[]), &model.held());
-        Ok(Self {
-            sheet,
-            bodies,
-            newton: newton.map_err(|fault| fault_at([0.0; 2], fault))?,
-        })
-    }
-
-    /// The states of all laws at some strains from the first of some starts that leads there; `None` is the mounted sheet.
-    fn first(
-        &mut self,
-        strains: [f64; 2],
-        starts: &[Option<SheetState>],
-    ) -> Result<Vec<SheetState>, SolveFault> {
-        let mut found = self.states(strains, starts[0].as_ref());
-        for start in &starts[1..] {
-            if found.is_ok() {
-                break;
-            }
-            found = self.states(strains, start.as_ref());
-        }
-        found
-    }
-
-    /// The states of all laws at some strains: those of the others begin at that of the first one.
-    fn states(
-        &mut self,
-        strains: [f64; 2],
-        near: Option<&SheetState>,
-    ) -> Result<Vec<SheetState>, SolveFault> {
-        let (first, others) = self.bodies.split_first().expect("a law");
-        let state = self.state(first, strains, near)?;
-        let mut states = vec![state];
-        if self.sheet.mounting.markers.is_some() || states[0].field.iter().all(|u| *u == 0.0) {
-            for body in others {
-                let near = states[0].clone();
-                states.push(self.state(body, strains, Some(&near))?);
-            }
-        } else if !others.is_empty() {
-            let moved = self.moved(first, others, &states[0])?;
-            states.extend(moved);
-        }
-        Ok(states)
-    }
-
-    /// The states of laws that differ little from the one of a state between the same bars, by a step of Newton's method with its tangent.
-    fn moved(
-        &mut self,
-        first: &Body,
-        others: &[Body],
-        state: &SheetState,
-    ) -> Result<Vec<SheetState>, SolveFault> {
-        let mesh = &self.sheet.mesh;
-        let problem = |body: &Body| self.sheet.problem(&body.law, state.bars);
-        let model = problem(first);
-        let model = model
-            .on(mesh, &first.energy)
-            .expect("the groups of the shape");
-        let describe = |element| model.describe(element);
-        let potential = model.potential(1.0, &[]);
-        self.newton
-            .tangent
-            .at(&*potential, &state.field, &describe)?;
-        let mut moved = Vec::new();
-        for body in others {
-            let problem = problem(body);
-            let model = problem
-                .on(mesh, &body.energy)
-                .expect("the groups of the shape");
-            let mut residual = vec![0.0; state.field.len()];
-            let potential = model.potential(1.0, &[]);
-            Assembly::residual(&*potential, &state.field, &mut residual)
-                .map_err(|fault| inverted(fault, &describe))?;
-            let change = self.newton.tangent.changes(&[residual.clone()])?;
-            let pairs = state.field.iter().zip(&change[0]);
-            let mut field: Vec<f64> = pairs.map(|(at, by)| at + by).collect();
-            model.impose(1.0, &mut field);
-            let reached = Stage::first(1.0).reached(field, residual, Convergence::default());
-            moved.push(self.seen(&model, state.bars, reached));
-        }
-        Ok(moved)
-    }
-
-    /// The state at some strains of the bars, or of the markers where these were measured.
-    fn state(
-        &mut self,
-        body: &Body,
-        strains: [f64; 2],
-        near: Option<&SheetState>,
-    ) -> Result<SheetState, SolveFault> {
-        if self.sheet.mounting.markers.is_none() {
-            return self.at_bars(body, strains, near);
-        }
-        /// Strains of the markers are reached this closely.
-        const CLOSE: f64 = 1e-7;
-        const MOST: usize = 20;
-        // How the middle follows the bars: about as they are, and then by secants.
-        let mut bars = near.map_or(strains, |near| {
-            [0, 1].map(|axis| near.bars[axis] + strains[axis] - near.middle[axis])
-        });
-        let mut state = self.at_bars(body, bars, near)?;
-        let mut follows = [1.0; 2];
-        for _ in 0..MOST {
-            let missing = [0, 1].map(|axis| strains[axis] - state.middle[axis]);
-            if missing.iter().all(|one| one.abs() < CLOSE) {
-                return Ok(state);
-            }
-            let before = (bars, state.middle);
-            for axis in [0, 1] {
-                bars[axis] += missing[axis] / follows[axis];
-            }
-            state = self.at_bars(body, bars, Some(&state))?;
-            for axis in [0, 1] {
-                let moved = bars[axis] - before.0[axis];
-                if moved.abs() > CLOSE {
-                    let secant = (state.middle[axis] - before.1[axis]) / moved;
-                    follows[axis] = secant.clamp(0.3, 3.0);
-                }
-            }
-        }
-        Err(SolveFault::Stalled {
-            iterations: MOST,
-            residual: (strains[0] - state.middle[0])
-                .abs()
-                .max((strains[1] - state.middle[1]).abs()),
-            tolerance: CLOSE,
-        })
-    }
-
-    /// The state at some strains of the bars, from a state nearby, in shorter steps where it is not reached in one.
-    fn at_bars(
-        &mut self,
-        body: &Body,
-        bars: [f64; 2],
-        near: Option<&SheetState>,
-    ) -> Result<SheetState, SolveFault> {
-        const SHORTEST: f64 = 1.0 / 64.0;
-        let at_rest = vec![0.0; 2 * self.sheet.mesh.nodes.len()];
-        if bars == [0.0; 2] && body.is_at_rest() {
-            return Ok(SheetState {
-                stresses: [0.0; 2],
-                middle: [0.0; 2],
-                bars,
-                field: at_rest,
-            });
-        }
-        let (mut at, mut field) =
-            near.map_or(([0.0; 2], at_rest), |near| (near.bars, near.field.clone()));
-        let (begin, mut reached, mut step) = (at, 0.0, 1.0);
-        loop {
-            let share = f64::min(1.0, reached + step);
-            let target = [0, 1].map(|axis| begin[axis] + share * (bars[axis] - begin[axis]));
-            match self.step(body, target, at, &field) {
-                Ok(state) if share >= 1.0 => return Ok(state),
-                Ok(state) => (at, reached, field) = (target, share, state.field),
-                Err(fault) if step <= SHORTEST => return Err(fault),
-                Err(_) => step *= 0.5,
-            }
-        }
-    }
-
-    /// One equilibrium, from a field at other strains of the bars, by the tangent there; from the same strains by the tangent taken last.
-    fn step(
-        &mut self,
-        body: &Body,
-        bars: [f64; 2],
-        from: [f64; 2],
-        field: &[f64],
-    ) -> Result<SheetState, SolveFault> {
-        let mesh = &self.sheet.mesh;
-        let problem = self.sheet.problem(&body.law, bars);
-        let model = problem.on(mesh, &body.energy);
-        let model = model.expect("the groups of the shape");
-        let potential = model.potential(1.0, &[]);
-        let describe = |element| model.describe(element);
-        let mut moved = field.to_vec();
-        model.impose(1.0, &mut moved);
-        let mut residual = vec![0.0; moved.len()];
-        let is_near = (0..2).all(|axis| (bars[axis] - from[axis]).abs() < NEARBY);
-        if is_near {
-            let newton = &mut self.newton;
-            newton.solve_near(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
-        } else {
-            let motion: Vec<f64> = moved
-                .iter()
-                .zip(field)
-                .map(|(to, from)| to - from)
-                .collect();
-            let newton = &mut self.newton;
-            let change = newton
-                .tangent
-                .predict(&*potential, field, &motion, &describe)?;
-            moved = field
-                .iter()
-                .zip(change)
-                .map(|(from, by)| from + by)
-                .collect();
-            model.impose(1.0, &mut moved);
-            newton.solve(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
-        }
-        model.impose(1.0, &mut moved);
-        let state = Stage::first(1.0).reached(moved, residual, Convergence::default());
-        Ok(self.seen(&model, bars, state))
-    }
-
-    /// What is seen of an equilibrium.
-    fn seen(&self, model: &Model, bars: [f64; 2], state: State) -> SheetState {
-        let sheet = self.sheet;
-        let reactions = model.reactions(&state);
-        let stress = |axis: usize| {
-            let groups = sheet.groups(axis, 1);
-            let forces = groups
-                .iter()
-                .map(|group| reactions.at_group(group).force[axis]);
-            forces.sum::<f64>() / sheet.mounting.areas[axis]
-        };
-        let stresses = [stress(0), stress(1)];
-        SheetState {
-            stresses,
-            middle: sheet.middle(&state.displacement),
-            bars,
-            field: state.displacement,
-        }
-    }
-}
-
-impl MountedSheet {
     /// λ − 1 between the markers at the corners of a square in the middle along both axes.
-    fn middle(&self, field: &[f64]) -> [f64; 2] {
+    pub fn middle(&self, field: &[f64]) -> [f64; 2] {
         /// Of the least distance of the bars, where no markers were measured.
         const USUAL: f64 = 0.25;
         let [low, high] = self.mesh.bounding_box();
@@ -480,10 +131,29 @@ impl MountedSheet {
     }
 }
 
-fn fault_at([first, second]: [f64; 2], fault: SolveFault) -> Error {
-    Error::Solve {
-        model: "finite elements of the mounted sheet".into(),
-        step: format!("strains of {first:.4} and {second:.4}"),
-        fault,
+/// A law, and the stretches of the sheet along both axes as it is mounted.
+#[derive(Clone, Debug)]
+pub struct SheetLaw {
+    pub law: Arc<dyn HyperelasticLaw>,
+    pub stretches: [f64; 2],
+}
+
+impl SheetLaw {
+    /// The stresses of a homogeneous sheet over the cross-sections as mounted, at strains from the mounted state on.
+    pub fn stresses(&self, strains: [f64; 2]) -> [f64; 2] {
+        let from_rest = [0, 1].map(|axis| self.stretches[axis] * (1.0 + strains[axis]) - 1.0);
+        let stresses = self.law.biaxial(from_rest);
+        [0, 1].map(|axis| self.stretches[axis] * stresses[axis])
+    }
+
+    /// The law from the mounted state on.
+    pub fn mounted(&self) -> Arc<dyn HyperelasticLaw> {
+        if self.stretches == [1.0; 2] {
+            return Arc::clone(&self.law);
+        }
+        Arc::new(PrestretchedLaw {
+            law: Arc::clone(&self.law),
+            stretches: self.stretches,
+        })
     }
 }

@@ -7,8 +7,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 
+use super::sheet::{MountedSheet, SheetLaw, SheetState};
 use super::*;
 use crate::calibration::fit::fit;
+use crate::calibration::settings::MEASURE;
 use crate::document::Statements;
 use crate::material::parameters::StressMeasure;
 use crate::material::{FungDemiray, HyperelasticLaw};

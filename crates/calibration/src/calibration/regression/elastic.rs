@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::linear::{Bend, Linear};
 use super::misfit::{Estimated, Misfit, Response, Row, at_bound};
 use super::zero::Zero;
 use crate::calibration::data::{Observation, TestData};
@@ -38,39 +39,6 @@ pub struct Elastic<'a> {
     pub stiffness: f64,
     /// The least size of each parameter that counts.
     least: Vec<f64>,
-}
-
-/// A part of the stresses that is linear in the values: Σ ∂σᵢ/∂pⱼ (pⱼ − pⱼ₀).
-#[derive(Debug)]
-pub struct Linear {
-    /// p₀.
-    pub at: Vec<f64>,
-    /// The derivatives of each row in MPa.
-    rows: Vec<Vec<f64>>,
-    /// What is quadratic along one direction: Dᵢ (w · (p − p₀))².
-    bend: Option<Bend>,
-}
-
-#[derive(Debug)]
-struct Bend {
-    weights: Vec<f64>,
-    rows: Vec<f64>,
-}
-
-impl Linear {
-    /// What is added to the stress of a row.
-    fn at(&self, row: usize, values: &[f64]) -> f64 {
-        let sum = |slopes: &[f64]| -> f64 {
-            let changes = values.iter().zip(&self.at).map(|(now, at)| now - at);
-            slopes
-                .iter()
-                .zip(changes)
-                .map(|(slope, by)| slope * by)
-                .sum()
-        };
-        let bend = self.bend.as_ref();
-        sum(&self.rows[row]) + bend.map_or(0.0, |bend| bend.rows[row] * sum(&bend.weights).powi(2))
-    }
 }
 
 impl<'a> Elastic<'a> {

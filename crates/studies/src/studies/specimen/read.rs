@@ -31,12 +31,6 @@ const MEASURES: &[&str] = &[
     "length",
     "width",
     "hole_diameter",
-    "tines",
-    "tine_spacing",
-    "tine_inset",
-    "tine_diameter",
-    "arm_width",
-    "fillet",
     "file",
     "file_unit",
 ];

@@ -1,0 +1,66 @@
+//! Tests relative to another state of their sheet.
+
+use super::mounting::{Mounted, RestState};
+use super::test_data::{Observation, TestData};
+use crate::material::parameters::StressMeasure;
+
+impl Observation {
+    /// The same in a test whose sheet was stretched along an axis before: λ = g λ, and P = P/g, because the cross-section of an
+    /// incompressible sheet is g times as large at rest.
+    pub(in crate::calibration) fn stretched(
+        &self,
+        axis: usize,
+        stretch: f64,
+        measure: StressMeasure,
+    ) -> Self {
+        let mut moved = *self;
+        moved.strains[axis] = stretch * (1.0 + self.strains[axis]) - 1.0;
+        if axis == self.axis && measure == StressMeasure::Nominal {
+            moved.stress /= stretch;
+        }
+        moved
+    }
+}
+
+impl TestData {
+    /// The test of a homogeneous sheet that carries nothing as it is mounted.
+    pub(in crate::calibration) fn as_mounted(&self) -> Self {
+        let mounted = Mounted {
+            mounting: None,
+            rest_state: RestState::AsMounted,
+            ..self.mounted
+        };
+        Self {
+            mounted,
+            ..self.clone()
+        }
+    }
+
+    /// The test of a sheet that was stretched along both axes before.
+    #[must_use]
+    pub(in crate::calibration) fn stretched(&self, [first, second]: [f64; 2]) -> Self {
+        if [first, second] == [1.0; 2] {
+            return self.clone();
+        }
+        let measure = self.stress_measure;
+        self.with_observations(|one| {
+            one.stretched(0, first, measure)
+                .stretched(1, second, measure)
+        })
+    }
+
+    /// The test with other observations.
+    #[must_use]
+    pub(in crate::calibration) fn with_observations(
+        &self,
+        change: impl Fn(&Observation) -> Observation,
+    ) -> Self {
+        let mut all = self.clone();
+        for one in all.observations.iter_mut().chain(&mut all.left_out) {
+            *one = change(one);
+        }
+        let stresses = all.observations.iter().map(|one| one.stress.abs());
+        all.largest_stress = stresses.fold(0.0, f64::max);
+        all
+    }
+}

@@ -1,0 +1,342 @@
+//! A sheet on its mounting, solved with one law after the other until law and sheet settle.
+
+use super::interpolation::Interpolation;
+use super::middle::Middle;
+use super::sheet::{MountedSheet, SheetLaw, SheetState};
+use crate::calibration::data::{Mounting, Observation, TestData};
+use crate::calibration::fitted::Fit;
+use crate::calibration::nearest::{About, nearest};
+use crate::calibration::regression::Zero;
+use crate::calibration::settings::{FitSettings, MEASURE, Weighting};
+use crate::error::Error;
+use crate::material::parameters::StressMeasure;
+use crate::material::registry::Law;
+use crate::statistics;
+
+/// Rounds of solving and fitting at most.
+const MOST_ROUNDS: usize = 20;
+/// Forces that change by less, as a share of the largest one, are settled.
+pub const SETTLED: f64 = 2e-4;
+
+/// A law that has settled with the sheet.
+pub struct Reached {
+    law: &'static Law,
+    /// Its values, and behind them those of the state at rest.
+    pub values: Vec<f64>,
+    /// What the middle of the sheet carries by them.
+    pub middle: Middle,
+    /// How often the sheet was solved.
+    pub rounds: usize,
+    /// By how much forces still change, as a share of the largest.
+    pub change: f64,
+}
+
+impl Reached {
+    fn new(law: &'static Law, values: &[f64], middle: Middle) -> Self {
+        Self {
+            law,
+            values: values.to_vec(),
+            middle,
+            rounds: 0,
+            change: f64::INFINITY,
+        }
+    }
+}
+
+/// The values of a fit: those of the law, and behind them those of the state at rest.
+pub fn values_of(fit: &Fit) -> Vec<f64> {
+    let of_law = fit.law_parameters().iter().map(|parameter| parameter.value);
+    of_law
+        .chain(fit.quality.zeros.iter().map(|zero| zero.value))
+        .collect()
+}
+
+/// A sheet that is solved for one law after the other.
+pub struct Solved {
+    zeros: Vec<Zero>,
+    /// The stretches as mounted that are stated.
+    stated: [f64; 2],
+    /// The tests from the mounted state on.
+    tests: Vec<TestData>,
+    sheet: MountedSheet,
+    interpolation: Interpolation,
+    /// Those of the last law, at the knots.
+    states: Vec<SheetState>,
+}
+
+impl Solved {
+    pub fn new(tests: &[TestData], mounting: Mounting, homogeneous: &Fit) -> Self {
+        let stated = tests[0].mounted.stated_stretches();
+        let back = stated.map(f64::recip);
+        let tests: Vec<TestData> = tests.iter().map(|test| test.stretched(back)).collect();
+        let rows = tests.iter().flat_map(|test| &test.observations);
+        let strains: Vec<[f64; 2]> = rows.map(|one| one.strains).collect();
+        let zeros = homogeneous.quality.zeros.iter();
+        Self {
+            zeros: zeros.map(|zero| zero.zero).collect(),
+            stated,
+            sheet: MountedSheet::new(mounting, 0),
+            interpolation: Interpolation::new(&strains),
+            states: Vec::new(),
+            tests,
+        }
+    }
+
+    /// The middle of a neo-Hookean sheet, whose modulus hardly matters.
+    pub fn neo_hookean(&mut self, tests: &[TestData]) -> Result<Middle, Error> {
+        let neo_hooke = named("neo-hooke");
+        let modulus = nearest(neo_hooke, tests, &FitSettings::default())?.parameters[0].value;
+        let (law, _) = neo_hooke.with_values(&[modulus], StressMeasure::Nominal, MEASURE);
+        let laws = [SheetLaw {
+            law: law.into(),
+            stretches: [1.0; 2],
+        }];
+        let states = self.sheet.states(&laws, self.interpolation.knots(), &[])?;
+        let scale = ([0.0; 2], self.largest_stress());
+        let middle = Middle::new(&self.interpolation, &laws, &[], &states, scale);
+        self.states = states.into_iter().flatten().collect();
+        Ok(middle)
+    }
+
+    /// The values of a law that is near to the middle of an isotropic one, and near to this law itself at the strains around the tines, which no
+    /// homogeneous test has: extrapolated to them, laws that are alike in the middle differ by orders of magnitude.
+    pub fn extended(
+        &self,
+        isotropic: &Reached,
+        law: &'static Law,
+        settings: &FitSettings,
+    ) -> Result<Vec<f64>, Error> {
+        /// Strains around the tines over those of the middle.
+        const MULTIPLES: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
+        let (at, _) = self.sheet_law(isotropic.law, &isotropic.values);
+        let mut tests = self.of_middle(&isotropic.middle);
+        let beyond = tests.iter().map(|test| {
+            let mut beyond = test.clone();
+            let protocols = test.protocols();
+            let largest = protocols.iter().flat_map(|rows| {
+                let size = |one: &Observation| one.strains[0].hypot(one.strains[1]);
+                let far = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+                far.map(|one| one.strains)
+            });
+            let strains = largest.flat_map(|far| MULTIPLES.map(|times| far.map(|x| times * x)));
+            beyond.observations = strains
+                .flat_map(|strains| {
+                    let stresses = at.law.biaxial(strains);
+                    [0, 1].map(|axis| Observation {
+                        strains,
+                        axis,
+                        stress: stresses[axis],
+                    })
+                })
+                .collect();
+            let stresses = beyond.observations.iter().map(|one| one.stress.abs());
+            beyond.largest_stress = stresses.fold(0.0, f64::max);
+            beyond
+        });
+        let beyond: Vec<TestData> = beyond.collect();
+        tests.extend(beyond);
+        let relative = FitSettings {
+            weighting: Weighting::Relative,
+            ..settings.clone()
+        };
+        Ok(values_of(&nearest(law, &tests, &relative)?))
+    }
+
+    /// The values of a law that settle with the sheet. They change by a share of their size, which becomes larger where the sum of squares
+    /// falls and smaller where it does not.
+    pub fn settled(
+        &mut self,
+        law: &'static Law,
+        mut values: Vec<f64>,
+        settings: &FitSettings,
+    ) -> Result<Reached, Error> {
+        const SHARES: [f64; 2] = [0.5, 4.0];
+        /// A sum of squares that is larger by less is as good: it is not quite what the fit makes the least.
+        const AS_GOOD: f64 = 1.02;
+        /// Forces that change by less, as a share of the largest one, do so linearly.
+        const CLOSE: f64 = 0.01;
+        let mut share = SHARES[0];
+        let mut best: Option<(f64, Reached)> = None;
+        let mut other: Option<(Vec<f64>, Middle)> = None;
+        for rounds in 1..=MOST_ROUNDS {
+            let found = self.middle(law, &values);
+            let before = best.as_ref().map_or(f64::INFINITY, |(square, _)| *square);
+            let square = found.as_ref();
+            let square = square.map_or(f64::INFINITY, |middle| middle.square(&self.tests));
+            if square <= AS_GOOD * before || best.is_none() {
+                let middle = found?;
+                share = (2.0 * share).min(SHARES[1]);
+                // Between values that are close, differences are rounding.
+                let last = best.take().map(|(_, last)| last);
+                other = last
+                    .filter(|last| last.change > CLOSE)
+                    .map(|last| (last.values, last.middle));
+                best = Some((square, Reached::new(law, &values, middle)));
+            } else {
+                share *= 0.5;
+                other = found.ok().map(|middle| (values.clone(), middle)).or(other);
+            }
+            let (_, reached) = best.as_mut().expect("a round");
+            let tests = self.of_middle(&reached.middle);
+            let others = other
+                .as_ref()
+                .map(|(values, middle)| (values, self.of_modelled(&reached.middle, middle)));
+            let about = About {
+                other: others
+                    .as_ref()
+                    .map(|(values, tests)| (&values[..], &tests[..])),
+                ..self.about(law, (&reached.middle, &tests), &reached.values, settings)
+            };
+            values = about.within(share)?;
+            (reached.change, reached.rounds) =
+                (reached.middle.change(&reached.values, &values), rounds);
+            if reached.change <= SETTLED {
+                break;
+            }
+        }
+        Ok(best.expect("a round").1)
+    }
+
+    /// The law and the stretches as mounted of some values, and what the load cells read without load in MPa.
+    fn sheet_law(&self, law: &Law, values: &[f64]) -> (SheetLaw, [f64; 2]) {
+        let (of_law, of_zeros) = values.split_at(values.len() - self.zeros.len());
+        let (law, _) = law.with_values(of_law, StressMeasure::Nominal, MEASURE);
+        let (mut stretches, mut read) = (self.stated, [0.0; 2]);
+        for (zero, value) in self.zeros.iter().zip(of_zeros) {
+            match zero {
+                Zero::Stretch { axis } => stretches[*axis] = *value,
+                Zero::Force { axis, .. } => read[*axis] = zero.by(*value),
+                Zero::Record { .. } => {}
+            }
+        }
+        let law = law.into();
+        (SheetLaw { law, stretches }, read)
+    }
+
+    /// What the middle of the sheet carries by some values, with the derivatives by each of them.
+    fn middle(&mut self, law: &Law, values: &[f64]) -> Result<Middle, Error> {
+        let (unmoved, read) = self.sheet_law(law, values);
+        let mut laws = vec![unmoved];
+        let steps = self.steps(values);
+        for (index, step) in steps.iter().enumerate() {
+            let mut moved = values.to_vec();
+            moved[index] += step.unwrap_or(0.0);
+            laws.push(self.sheet_law(law, &moved).0);
+        }
+        let solved = self
+            .sheet
+            .states(&laws, self.interpolation.knots(), &self.states)?;
+        let states = solved.iter().map(|states| states[0].clone());
+        self.states = states.collect();
+        let scale = (read, self.largest_stress());
+        Ok(Middle::new(
+            &self.interpolation,
+            &laws,
+            &steps,
+            &solved,
+            scale,
+        ))
+    }
+
+    /// The steps of differences by some values; `None` for a zero of force, which the sheet does not depend on.
+    fn steps(&self, values: &[f64]) -> Vec<Option<f64>> {
+        const SHARE: f64 = 1e-4;
+        const LEAST: f64 = 1e-2;
+        let of_law = values.len() - self.zeros.len();
+        let of_laws = values[..of_law].iter().map(|value| {
+            let size = if *value == 0.0 { LEAST } else { value.abs() };
+            Some(SHARE * size)
+        });
+        let of_zeros = self.zeros.iter();
+        let of_zeros = of_zeros.map(|zero| match zero {
+            Zero::Force { .. } => None,
+            Zero::Stretch { .. } | Zero::Record { .. } => Some(SHARE),
+        });
+        of_laws.chain(of_zeros).collect()
+    }
+
+    /// The tests as they would be of a middle.
+    pub fn of_middle(&self, middle: &Middle) -> Vec<TestData> {
+        self.tests_of(|one| middle.of(one))
+    }
+
+    /// The tests as they would be of a middle if another one had been measured.
+    fn of_modelled(&self, middle: &Middle, other: &Middle) -> Vec<TestData> {
+        self.tests_of(|one| {
+            let stress = other.modelled(one);
+            middle.of(&Observation { stress, ..*one })
+        })
+    }
+
+    fn tests_of(&self, change: impl Fn(&Observation) -> Observation) -> Vec<TestData> {
+        let tests = self.tests.iter();
+        tests
+            .map(|test| test.with_observations(&change).stretched(self.stated))
+            .collect()
+    }
+
+    /// The law about some values with the tests of a middle.
+    pub fn about<'a>(
+        &self,
+        law: &'static Law,
+        (middle, tests): (&'a Middle, &'a [TestData]),
+        start: &'a [f64],
+        settings: &'a FitSettings,
+    ) -> About<'a, impl Fn(&Observation) -> Vec<f64> + use<'a>> {
+        let [first, second] = self.stated.map(f64::recip);
+        let nominal = StressMeasure::Nominal;
+        About {
+            law,
+            tests,
+            start,
+            derivatives: move |one: &Observation| {
+                let mounted = one.stretched(0, first, nominal);
+                middle.derivatives(&mounted.stretched(1, second, nominal))
+            },
+            other: None,
+            settings,
+        }
+    }
+
+    /// The middle of a law that has settled by cells of half the size, with the derivatives of the large ones, and by how much the forces
+    /// change, as a share of the largest.
+    pub fn halved(&mut self, reached: &Reached) -> Result<(Middle, f64), Error> {
+        let fine = self.sheet.halved();
+        let law = [self.sheet_law(reached.law, &reached.values).0];
+        let knots = self.interpolation.knots();
+        let coarse = self.sheet.states(&law, knots, &self.states)?.concat();
+        let states = fine.states(&law, knots, &self.sheet.on(&fine, &coarse))?;
+        let pairs = states.iter().zip(&coarse);
+        let changes = pairs.map(|(fine, coarse)| {
+            let along = |axis: usize| (fine[0].stresses[axis] - coarse.stresses[axis]).abs();
+            along(0).max(along(1))
+        });
+        let change = changes.fold(0.0, f64::max) / self.largest_stress();
+        Ok((reached.middle.with_states(&law, &states), change))
+    }
+
+    fn largest_stress(&self) -> f64 {
+        let largest = self.tests.iter().map(|test| test.largest_stress);
+        largest.fold(0.0, f64::max)
+    }
+
+    /// By how much the stresses of the homogeneous reading deviate along both axes in %.
+    pub fn bias(&self, homogeneous: &Fit, fit: &Fit) -> [f64; 2] {
+        let farthest = |axis: usize| {
+            let rows = self.tests.iter().flat_map(|test| &test.observations);
+            rows.map(|one| one.strains[axis]).fold(0.0, f64::max)
+        };
+        let strain = farthest(0).min(farthest(1));
+        let laws = [homogeneous, fit].map(|fit| self.sheet_law(fit.law, &values_of(fit)).0);
+        let off = |step: u8, axis: usize| {
+            let at = [f64::from(step) / 10.0 * strain; 2];
+            let [read, solved] = [&laws[0], &laws[1]].map(|law| law.stresses(at)[axis]);
+            100.0 * (read / solved - 1.0)
+        };
+        [0, 1].map(|axis| statistics::farthest((1..=10).map(|step| off(step, axis))))
+    }
+}
+/// A law of the registry.
+pub fn named(name: &str) -> &'static Law {
+    Law::named(name).expect("a law of the registry")
+}
