@@ -26,8 +26,7 @@ use crate::document::Bound;
 ///
 /// Q is positive definite, which makes Ψ convex in E. Turned by 90° and with a₁ and a₂ exchanged, the law is the same.
 /// Normal stresses of a sheet that is stretched along its axes depend on θ and a₄ through three coefficients of E₁₁² and
-/// E₂₂² alone: fits to tests without shear hold θ = 0 and a₄ = √(a₁ a₂)/4, as if the sheet were isotropic, unless a bound or a
-/// value is stated for them.
+/// E₂₂² alone: fits to tests without shear hold θ = 0 and a₄ = 10 unless a bound or a value is stated for them.
 ///
 /// **Limits.** Small strain: an orthotropic sheet with C₁₁₁₁ = c a₁, C₂₂₂₂ = c a₂, C₁₁₂₂ = c a₃, C₁₂₁₂ = c a₄.
 /// **Not covered.** Terms of shear beside normal strain. The thickness follows from the constant volume and has no energy.
@@ -50,18 +49,14 @@ impl Fung {
         let number = |key, bound| parameters.number(key, bound, [0.1, 500.0]);
         let [a1, a2] = ["a1", "a2"].map(|key| number(key, Bound::Positive));
         let mut a3 = number("a3", Bound::Any);
-        let mut a4 = number("a4", Bound::Positive);
+        let a4 = number("a4", Bound::Positive);
         let angle = parameters.angle("angle", [-FRAC_PI_4, FRAC_PI_4]);
-        parameters.hold_without_shear(&[("a4", 0.0), ("angle", 0.0)]);
-        let mean = (a1 * a2).sqrt();
-        let most = (1.0 - 1e-9) * mean;
+        parameters.hold_without_shear(&[("a4", 10.0), ("angle", 0.0)]);
+        let most = (1.0 - 1e-9) * (a1 * a2).sqrt();
         if a3.abs() > most {
             let hint = "a3² must be less than a1 a2, or some strain lowers the energy";
             parameters.fault("a3", "is larger than a1 and a2 allow", hint);
             a3 = parameters.replace("a3", a3.clamp(-most, most));
-        }
-        if a4 == 0.0 {
-            a4 = parameters.replace("a4", 0.25 * mean);
         }
         let a = [a1, a2, a3, a4];
         AnisotropicSheet::boxed(Self { c, a }, angle)
