@@ -9,7 +9,7 @@ use super::super::blocks::Block;
 use super::super::cells::Mesh;
 use super::super::strips::count;
 
-/// Where the tines of the four sides are, in the order of [`SIDES`].
+/// A rectangular sheet with tines near its four sides: left, right, bottom and top.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rakes {
     /// Length and width of the sheet in mm.
