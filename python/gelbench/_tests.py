@@ -375,10 +375,10 @@ def _limits(key: str, pair: Any) -> list[float]:
 def _limit(value: Any, argument: str) -> float:
     if not isinstance(value, (str, SupportsUnits)):
         return float(array_of(value, argument))
-    for unit in ("MPa", "rad"):
+    for unit in ("MPa", "rad", ""):
         with suppress(InputError):
             return number(value, unit, argument)
-    return number(value, "", argument)
+    raise fault(argument, f"is {value!r}", 'give a stress such as "20 kPa", an angle such as "30 deg", or a plain number')
 
 
 def _are_tests(data: Any) -> bool:
