@@ -314,10 +314,8 @@ def biaxial(
     ...            length=8, width=8, thickness=0.8, rest_state="estimated")
     """
     stretches = rest_state if isinstance(rest_state, str) else ",".join(str(float(one)) for one in rest_state)
-    said = {"mounting": mounting, "markers": markers}
-    said |= {"rest_state": None if stretches == "as-mounted" else stretches}
-    said |= {"force_zero": None if force_zero == "as-measured" else force_zero}
-    return fit(data, law, **{key: value for key, value in said.items() if value is not None}, **{"test": "biaxial", **more})
+    said: dict[str, Any] = {"test": "biaxial", "mounting": mounting, "markers": markers, "rest_state": stretches, "force_zero": force_zero}
+    return fit(data, law, **{key: value for key, value in said.items() if value is not None}, **more)
 
 
 def _history(law: str | None, relaxation: bool | int, softening: bool) -> str | None:
