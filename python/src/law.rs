@@ -119,7 +119,12 @@ impl HyperelasticLaw for PythonLaw {
         true
     }
 
-    fn responses(&self, gradients: [&[f64]; 4], mut responses: [&mut [f64]; COMPONENTS]) -> bool {
+    fn responses(
+        &self,
+        gradients: [&[f64]; 4],
+        mut responses: [&mut [f64]; COMPONENTS],
+        _tangents: bool,
+    ) -> bool {
         let Some((states, derivatives)) = self.at_all(gradients) else {
             return false;
         };
@@ -192,9 +197,14 @@ impl HyperelasticLaw for Watched {
         self.law.stresses(gradients, stresses)
     }
 
-    fn responses(&self, gradients: [&[f64]; 4], responses: [&mut [f64]; COMPONENTS]) -> bool {
+    fn responses(
+        &self,
+        gradients: [&[f64]; 4],
+        responses: [&mut [f64]; COMPONENTS],
+        tangents: bool,
+    ) -> bool {
         self.watch.check();
-        self.law.responses(gradients, responses)
+        self.law.responses(gradients, responses, tangents)
     }
 
     fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {

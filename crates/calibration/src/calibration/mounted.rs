@@ -35,7 +35,14 @@ mod solved;
 #[cfg(test)]
 mod tests;
 
-use solved::{SETTLED, Solved, named, values_of};
+use solved::{Solved, named, values_of};
+
+/// Knots of the sheet are no farther apart, as a share of the largest strains.
+const NEAR: f64 = 0.07;
+/// Forces that change by less, as a share of the largest one, are settled.
+const SETTLED: f64 = 2e-4;
+/// Forces that change by less lead to the settled ones.
+const NEARLY: f64 = 0.02;
 
 /// The mounting of some tests, which must all have the same one.
 ///
@@ -54,6 +61,36 @@ pub fn mounting(tests: &[TestData]) -> Result<Option<Mounting>, Error> {
     Ok(first.and_then(|mounted| mounted.mounting))
 }
 
+/// Values of a law, and of the state at rest, from which both settle. Their state at rest is held as it is mounted: a stretch as mounted
+/// takes up what an isotropic law lacks, and leads far away.
+fn begin(
+    law: &'static Law,
+    tests: &[TestData],
+    mounting: Mounting,
+    settings: &FitSettings,
+) -> Result<Vec<f64>, Error> {
+    let plain = FitSettings {
+        bounds: Vec::new(),
+        ..settings.clone()
+    };
+    let as_mounted: Vec<TestData> = tests.iter().map(TestData::as_mounted).collect();
+    let on_few_knots = |tests: &[TestData]| Solved::new(tests, mounting, 4.0 * NEAR);
+    let mut sheet = on_few_knots(&as_mounted);
+    // A stiffening law without directions leads to the strains of the middle, at which any law is sought.
+    let neo_hooke = sheet.neo_hookean(&as_mounted)?;
+    let isotropic = named("fung-demiray");
+    let begin = nearest(isotropic, &sheet.of_middle(&neo_hooke), &plain)?;
+    let isotropic = sheet.settled(isotropic, values_of(&begin), &plain, NEARLY)?;
+    let begin = sheet.extended(&isotropic, law, settings)?;
+    let mut values = sheet.settled(law, begin, settings, NEARLY)?.values;
+    if tests[0].mounted.estimates_stretches() {
+        values.extend([1.0; 2]);
+        let mut sheet = on_few_knots(tests);
+        values = sheet.settled(law, values, settings, NEARLY)?.values;
+    }
+    Ok(values)
+}
+
 /// The law that is nearest to tests of a sheet on its mounting.
 ///
 /// # Errors
@@ -65,18 +102,9 @@ pub fn nearest_mounted(
     settings: &FitSettings,
 ) -> Result<Fit, Error> {
     let homogeneous = nearest(law, tests, settings)?;
-    let mut sheet = Solved::new(tests, mounting, &homogeneous);
-    let plain = FitSettings {
-        bounds: Vec::new(),
-        ..settings.clone()
-    };
-    // A stiffening law without directions leads to the strains of the middle, at which any law is sought.
-    let neo_hooke = sheet.neo_hookean(tests)?;
-    let isotropic = named("fung-demiray");
-    let begin = nearest(isotropic, &sheet.of_middle(&neo_hooke), &plain)?;
-    let isotropic = sheet.settled(isotropic, values_of(&begin), &plain)?;
-    let begin = sheet.extended(&isotropic, law, settings)?;
-    let reached = sheet.settled(law, begin, settings)?;
+    let begin = begin(law, tests, mounting, settings)?;
+    let mut sheet = Solved::new(tests, mounting, NEAR);
+    let reached = sheet.settled(law, begin, settings, SETTLED)?;
     let (fine, discretisation) = sheet.halved(&reached)?;
     let values = reached.values;
     let tests = sheet.of_middle(&fine);

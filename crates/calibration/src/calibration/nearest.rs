@@ -185,7 +185,7 @@ fn size(parameter: &Parameter, value: f64, stiffness: f64) -> f64 {
     let least = if parameter.is_stress() {
         0.02 * stiffness
     } else if from > 0.0 {
-        from
+        (from * to).sqrt()
     } else {
         0.5 * (to - from)
     };

@@ -266,7 +266,12 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
         self.stresses_at(gradients, stresses)
     }
 
-    fn responses(&self, gradients: [&[f64]; 4], responses: [&mut [f64]; COMPONENTS]) -> bool {
+    fn responses(
+        &self,
+        gradients: [&[f64]; 4],
+        responses: [&mut [f64]; COMPONENTS],
+        _tangents: bool,
+    ) -> bool {
         self.responses_at(gradients, responses)
     }
 

@@ -37,7 +37,12 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
         })
     }
 
-    fn responses(&self, gradients: [&[f64]; 4], made: [&mut [f64]; COMPONENTS]) -> bool {
+    fn responses(
+        &self,
+        gradients: [&[f64]; 4],
+        made: [&mut [f64]; COMPONENTS],
+        _tangents: bool,
+    ) -> bool {
         Arch::new().dispatch(PointLoop {
             law: self,
             gradients,

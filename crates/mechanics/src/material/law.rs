@@ -53,18 +53,30 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     }
 
     /// Energy, P and the components of ∂P/∂F on and below the diagonal, column by column, at many points at once;
-    /// returns whether J is positive at all of them.
+    /// returns whether J is positive at all of them. Where no tangents are asked for, they may be left as they are.
     ///
     /// All slices have the same length.
-    fn responses(&self, gradients: [&[f64]; 4], mut responses: [&mut [f64]; COMPONENTS]) -> bool {
+    fn responses(
+        &self,
+        gradients: [&[f64]; 4],
+        mut responses: [&mut [f64]; COMPONENTS],
+        tangents: bool,
+    ) -> bool {
         for point in 0..gradients[0].len() {
             let h = gradients.map(|component| component[point]);
             let Ok(kinematics) = Kinematics::new(&h.into()) else {
                 return false;
             };
-            let response = self.response(&kinematics).components();
-            for (component, value) in responses.iter_mut().zip(response) {
-                component[point] = value;
+            let mut set = |values: &[f64]| {
+                for (component, value) in responses.iter_mut().zip(values) {
+                    component[point] = *value;
+                }
+            };
+            if tangents {
+                set(&self.response(&kinematics).components());
+            } else {
+                let (energy, p) = self.stress(&kinematics);
+                set(&[energy, p[0], p[1], p[2], p[3]]);
             }
         }
         true

@@ -162,6 +162,11 @@ impl Parameter {
     pub fn is_stress(&self) -> bool {
         self.dimension == Dimension::Stress
     }
+
+    /// Whether stresses grow with it without limit, as with exponents.
+    pub fn is_exponent(&self) -> bool {
+        self.dimension == Dimension::Ratio && self.usual[0] > 0.0
+    }
 }
 
 /// Entries that a law reads from a card.

@@ -28,7 +28,8 @@ impl SheetEnergy {
         mut take: Take<'_>,
     ) -> Evaluated {
         let (mut energy, mut stiffness) = (0.0, Vec::new());
-        self.in_blocks(u, |points, cells| {
+        let tangents = take.is_some();
+        self.in_blocks(u, tangents, |points, cells| {
             let mut place = 0;
             for cell in cells {
                 let own = (place..).zip(self.cell_points(cell));
@@ -49,6 +50,7 @@ impl SheetEnergy {
     fn in_blocks(
         &self,
         u: &[f64],
+        tangents: bool,
         mut take: impl FnMut(&mut Points, Range<usize>),
     ) -> Result<(), Inadmissible> {
         let mut points = Points::new();
@@ -65,11 +67,11 @@ impl SheetEnergy {
                 last += 1;
             }
             let law = self.laws().of(first);
-            if !points.evaluate(law) {
+            if !points.evaluate(law, tangents) {
                 let faulty = (first..last).find(|cell| {
                     let mut alone = Points::new();
                     alone.push(self, *cell, u);
-                    !alone.evaluate(law)
+                    !alone.evaluate(law, tangents)
                 });
                 return Err(Inadmissible {
                     element: faulty.unwrap_or(first),
@@ -109,16 +111,18 @@ impl Points {
         }
     }
 
-    /// Evaluates a law at all points; returns whether all of them are admissible.
-    fn evaluate(&mut self, law: &dyn HyperelasticLaw) -> bool {
+    /// Evaluates a law, and its tangents if they are asked for, at all points; returns whether all of them are admissible.
+    fn evaluate(&mut self, law: &dyn HyperelasticLaw, tangents: bool) -> bool {
         let count = self.gradients[0].len();
         for component in &mut self.responses {
             component.resize(count, 0.0);
         }
         let gradients = self.gradients.each_ref().map(|own| &own[..]);
         let responses = self.responses.each_mut().map(|own| &mut own[..]);
-        let positive = law.responses(gradients, responses);
-        positive && self.responses.iter().flatten().all(|own| own.is_finite())
+        let positive = law.responses(gradients, responses, tangents);
+        let evaluated = if tangents { COMPONENTS } else { 5 };
+        let mut values = self.responses[..evaluated].iter().flatten();
+        positive && values.all(|own| own.is_finite())
     }
 
     /// Adds the forces of a cell whose points begin at a place.

@@ -1,6 +1,6 @@
 //! Tests relative to another state of their sheet.
 
-use super::mounting::{Mounted, RestState};
+use super::mounting::RestState;
 use super::test_data::{Observation, TestData};
 use crate::material::parameters::StressMeasure;
 
@@ -23,17 +23,13 @@ impl Observation {
 }
 
 impl TestData {
-    /// The test of a homogeneous sheet that carries nothing as it is mounted.
+    /// The test of a sheet that carries nothing as it is mounted, where its state at rest is estimated.
     pub(in crate::calibration) fn as_mounted(&self) -> Self {
-        let mounted = Mounted {
-            mounting: None,
-            rest_state: RestState::AsMounted,
-            ..self.mounted
-        };
-        Self {
-            mounted,
-            ..self.clone()
+        let mut test = self.clone();
+        if test.mounted.estimates_stretches() {
+            test.mounted.rest_state = RestState::AsMounted;
         }
+        test
     }
 
     /// The test of a sheet that was stretched along both axes before.

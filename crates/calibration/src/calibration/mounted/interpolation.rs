@@ -2,8 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Knots are added until no row is farther from one, as a share of the largest strains.
-const NEAR: f64 = 0.07;
 /// Strains, as a share of the largest ones, below which there are no knots.
 const LEAST: f64 = 0.03;
 /// Knots at most.
@@ -40,9 +38,10 @@ fn scales(strains: &[[f64; 2]]) -> [f64; 2] {
 }
 
 impl Interpolation {
-    /// With knots among some strains, of which the first is the largest: each next one is the farthest from all before. Next to no strain,
-    /// a sheet has forces of the size of their rounding: there the functions are extrapolated.
-    pub fn new(strains: &[[f64; 2]]) -> Self {
+    /// With knots among some strains, of which the first is the largest: each next one is the farthest from all before, until no one is
+    /// farther from a knot than `near`, a share of the largest strains. Next to no strain, a sheet has forces of the size of their rounding:
+    /// there the functions are extrapolated.
+    pub fn new(strains: &[[f64; 2]], near: f64) -> Self {
         let scales = scales(strains);
         let size = |one: &[f64; 2]| (one[0] / scales[0]).hypot(one[1] / scales[1]);
         let distance = |a: &[f64; 2], b: &[f64; 2]| size(&[a[0] - b[0], a[1] - b[1]]);
@@ -65,7 +64,7 @@ impl Interpolation {
             }
             let farthest = far.iter().zip(&strains).max_by(|a, b| a.0.total_cmp(b.0));
             next = farthest
-                .filter(|(far, _)| **far > NEAR)
+                .filter(|(far, _)| **far > near)
                 .map(|(_, one)| *one);
         }
         Self::of(knots, scales)
@@ -134,7 +133,7 @@ mod tests {
             .iter()
             .flat_map(|ray| (0..=60).map(|i| ray.map(|x| 0.2 * x * f64::from(i) / 60.0)))
             .collect();
-        let interpolation = Interpolation::new(&strains);
+        let interpolation = Interpolation::new(&strains, 0.07);
         assert!(interpolation.knots().len() <= MOST_KNOTS);
         let function = |[x, y]: [f64; 2]| 0.3 + x - 2.0 * y + 8.0 * x * y + (4.0 * x).exp();
         let values = interpolation.knots().iter().map(|knot| function(*knot));
@@ -149,7 +148,7 @@ mod tests {
     #[test]
     fn knots_on_a_line_suffice_for_what_lies_on_it() {
         let strains: Vec<[f64; 2]> = (0..=50).map(|i| [0.004 * f64::from(i); 2]).collect();
-        let interpolation = Interpolation::new(&strains);
+        let interpolation = Interpolation::new(&strains, 0.07);
         let values = interpolation.knots().iter().map(|knot| knot[0].exp());
         let coefficients = interpolation.coefficients(values.collect());
         for one in &strains {

@@ -8,9 +8,9 @@ use super::sheet::{MountedSheet, SheetLaw, SheetState};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
-use crate::problem::{Model, sheet_energy::SheetEnergy};
+use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::tangent::inverted;
-use crate::solve::{Assembly, Convergence, Loading, Newton, NewtonSettings, Stage, State};
+use crate::solve::{Assembly, Loading, Newton, NewtonSettings};
 
 /// Strains of the bars that differ by less are reached by the tangent taken last.
 const NEARBY: f64 = 1e-5;
@@ -94,6 +94,8 @@ struct Search<'a> {
     sheet: &'a MountedSheet,
     bodies: &'a [Body],
     newton: Newton,
+    /// The strains of the bars in the state whose tangent was factorised last.
+    factorised: Option<[f64; 2]>,
 }
 
 impl<'a> Search<'a> {
@@ -107,6 +109,7 @@ impl<'a> Search<'a> {
             sheet,
             bodies,
             newton: newton.map_err(|fault| fault_at([0.0; 2], fault))?,
+            factorised: None,
         })
     }
 
@@ -165,6 +168,7 @@ impl<'a> Search<'a> {
         self.newton
             .tangent
             .at(&*potential, &state.field, &describe)?;
+        self.factorised = Some(state.bars);
         let mut moved = Vec::new();
         for body in others {
             let problem = problem(body);
@@ -175,12 +179,11 @@ impl<'a> Search<'a> {
             let potential = model.potential(1.0, &[]);
             Assembly::residual(&*potential, &state.field, &mut residual)
                 .map_err(|fault| inverted(fault, &describe))?;
-            let change = self.newton.tangent.changes(&[residual.clone()])?;
+            let change = self.newton.tangent.changes(&[residual])?;
             let pairs = state.field.iter().zip(&change[0]);
             let mut field: Vec<f64> = pairs.map(|(at, by)| at + by).collect();
             model.impose(1.0, &mut field);
-            let reached = Stage::first(1.0).reached(field, residual, Convergence::default());
-            moved.push(self.seen(&model, state.bars, reached));
+            moved.push(self.seen(body, state.bars, field));
         }
         Ok(moved)
     }
@@ -238,7 +241,7 @@ impl<'a> Search<'a> {
         bars: [f64; 2],
         near: Option<&SheetState>,
     ) -> Result<SheetState, SolveFault> {
-        const SHORTEST: f64 = 1.0 / 64.0;
+        const SHORTEST: f64 = 1.0 / 16.0;
         let at_rest = vec![0.0; 2 * self.sheet.mesh.nodes.len()];
         if bars == [0.0; 2] && body.is_at_rest() {
             return Ok(SheetState {
@@ -280,17 +283,20 @@ impl<'a> Search<'a> {
         let mut moved = field.to_vec();
         model.impose(1.0, &mut moved);
         let mut residual = vec![0.0; moved.len()];
-        let is_near = (0..2).all(|axis| (bars[axis] - from[axis]).abs() < NEARBY);
-        if is_near {
-            let newton = &mut self.newton;
+        let is_near =
+            |other: [f64; 2]| (0..2).all(|axis| (bars[axis] - other[axis]).abs() < NEARBY);
+        let factorised = self.factorised.take();
+        let newton = &mut self.newton;
+        if factorised.is_some_and(is_near) {
             newton.solve_near(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
+        } else if is_near(from) {
+            newton.solve(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
         } else {
             let motion: Vec<f64> = moved
                 .iter()
                 .zip(field)
                 .map(|(to, from)| to - from)
                 .collect();
-            let newton = &mut self.newton;
             let change = newton
                 .tangent
                 .predict(&*potential, field, &motion, &describe)?;
@@ -303,27 +309,30 @@ impl<'a> Search<'a> {
             newton.solve(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
         }
         model.impose(1.0, &mut moved);
-        let state = Stage::first(1.0).reached(moved, residual, Convergence::default());
-        Ok(self.seen(&model, bars, state))
+        self.factorised = Some(bars);
+        Ok(self.seen(body, bars, moved))
     }
 
     /// What is seen of an equilibrium.
-    fn seen(&self, model: &Model, bars: [f64; 2], state: State) -> SheetState {
+    fn seen(&self, body: &Body, bars: [f64; 2], field: Vec<f64>) -> SheetState {
         let sheet = self.sheet;
-        let reactions = model.reactions(&state);
+        let mut forces = vec![0.0; field.len()];
+        let admissible = Assembly::residual(&body.energy, &field, &mut forces).is_ok();
         let stress = |axis: usize| {
-            let groups = sheet.groups(axis, 1);
-            let forces = groups
-                .iter()
-                .map(|group| reactions.at_group(group).force[axis]);
-            forces.sum::<f64>() / sheet.mounting.areas[axis]
+            let nodes = sheet.pulled[axis].iter();
+            let force: f64 = nodes.map(|node| forces[2 * node + axis]).sum();
+            force / sheet.mounting.areas[axis]
         };
-        let stresses = [stress(0), stress(1)];
+        let stresses = if admissible {
+            [stress(0), stress(1)]
+        } else {
+            [f64::NAN; 2]
+        };
         SheetState {
             stresses,
-            middle: sheet.middle(&state.displacement),
+            middle: sheet.middle(&field),
             bars,
-            field: state.displacement,
+            field,
         }
     }
 }

@@ -29,10 +29,25 @@ pub struct MountedSheet {
     pub mounting: Mounting,
     pub mesh: Mesh,
     pub energy: SheetEnergy,
+    /// The nodes by which the second bar of each axis pulls.
+    pub pulled: [Vec<usize>; 2],
 }
 
 /// The sides along both axes: from the first to the second one.
 const SIDES: [[&str; 2]; 2] = [["left", "right"], ["bottom", "top"]];
+
+/// The groups that are moved along an axis by each of both bars.
+fn groups(mounting: &Mounting, axis: usize, end: usize) -> Vec<String> {
+    let side = SIDES[axis][end];
+    match mounting.shape {
+        Shape::SquareOnRakes(rakes) if mounting.slides => {
+            let tines = 1..=rakes.tines;
+            tines.map(|tine| format!("{side}-tine-{tine}")).collect()
+        }
+        Shape::SquareOnRakes(_) => vec![format!("{side}-tines")],
+        _ => vec![side.to_owned()],
+    }
+}
 
 impl MountedSheet {
     /// The sheet of a mounting whose cells are halved so many times.
@@ -46,10 +61,13 @@ impl MountedSheet {
             .mesh_halved(cells, halvings, CellShape::Quad9);
         let nothing: Arc<dyn HyperelasticLaw> = Arc::new(crate::material::NeoHooke { c10: 1.0 });
         let energy = SheetEnergy::of_mesh(nothing, &mesh, mounting.thickness);
+        let nodes = |name: &String| mesh.groups()[name].nodes.clone();
+        let pulled = [0, 1].map(|axis| groups(&mounting, axis, 1).iter().flat_map(nodes).collect());
         Self {
             mounting,
             mesh,
             energy,
+            pulled,
         }
     }
 
@@ -68,19 +86,6 @@ impl MountedSheet {
         states.iter().map(on_mesh).collect()
     }
 
-    /// The groups that are moved along an axis by each of both bars.
-    pub fn groups(&self, axis: usize, end: usize) -> Vec<String> {
-        let side = SIDES[axis][end];
-        match self.mounting.shape {
-            Shape::SquareOnRakes(rakes) if self.mounting.slides => {
-                let tines = 1..=rakes.tines;
-                tines.map(|tine| format!("{side}-tine-{tine}")).collect()
-            }
-            Shape::SquareOnRakes(_) => vec![format!("{side}-tines")],
-            _ => vec![side.to_owned()],
-        }
-    }
-
     /// The problem with both pairs of bars at some strains: each bar is moved by half of the change of their distance.
     pub fn problem(&self, law: &Arc<dyn HyperelasticLaw>, bars: [f64; 2]) -> BoundaryProblem {
         let mut supports = Vec::new();
@@ -96,7 +101,7 @@ impl MountedSheet {
                     displacement[axis] = Some(moved);
                     Support::Displacement(displacement)
                 };
-                let groups = self.groups(axis, end).into_iter();
+                let groups = groups(&self.mounting, axis, end).into_iter();
                 supports.extend(groups.map(|group| (group, support)));
             }
         }

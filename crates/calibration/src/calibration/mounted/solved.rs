@@ -15,8 +15,6 @@ use crate::statistics;
 
 /// Rounds of solving and fitting at most.
 const MOST_ROUNDS: usize = 20;
-/// Forces that change by less, as a share of the largest one, are settled.
-pub const SETTLED: f64 = 2e-4;
 
 /// A law that has settled with the sheet.
 pub struct Reached {
@@ -65,18 +63,19 @@ pub struct Solved {
 }
 
 impl Solved {
-    pub fn new(tests: &[TestData], mounting: Mounting, homogeneous: &Fit) -> Self {
+    /// Of some tests, with knots no farther apart than `near` asks, a share of the largest strains.
+    pub fn new(tests: &[TestData], mounting: Mounting, near: f64) -> Self {
+        let zeros = Zero::of(tests);
         let stated = tests[0].mounted.stated_stretches();
         let back = stated.map(f64::recip);
         let tests: Vec<TestData> = tests.iter().map(|test| test.stretched(back)).collect();
         let rows = tests.iter().flat_map(|test| &test.observations);
         let strains: Vec<[f64; 2]> = rows.map(|one| one.strains).collect();
-        let zeros = homogeneous.quality.zeros.iter();
         Self {
-            zeros: zeros.map(|zero| zero.zero).collect(),
+            zeros,
             stated,
             sheet: MountedSheet::new(mounting, 0),
-            interpolation: Interpolation::new(&strains),
+            interpolation: Interpolation::new(&strains, near),
             states: Vec::new(),
             tests,
         }
@@ -99,56 +98,78 @@ impl Solved {
     }
 
     /// The values of a law that is near to the middle of an isotropic one, and near to this law itself at the strains around the tines, which no
-    /// homogeneous test has: extrapolated to them, laws that are alike in the middle differ by orders of magnitude.
+    /// homogeneous test has: extrapolated to them, laws that are alike in the middle differ by orders of magnitude. Exponents are halved until
+    /// the sheet has forces of the size of those of the isotropic law.
     pub fn extended(
-        &self,
+        &mut self,
         isotropic: &Reached,
         law: &'static Law,
         settings: &FitSettings,
     ) -> Result<Vec<f64>, Error> {
-        /// Strains around the tines over those of the middle.
-        const MULTIPLES: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
-        let (at, _) = self.sheet_law(isotropic.law, &isotropic.values);
-        let mut tests = self.of_middle(&isotropic.middle);
-        let beyond = tests.iter().map(|test| {
-            let mut beyond = test.clone();
-            let protocols = test.protocols();
-            let largest = protocols.iter().flat_map(|rows| {
-                let size = |one: &Observation| one.strains[0].hypot(one.strains[1]);
-                let far = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-                far.map(|one| one.strains)
-            });
-            let strains = largest.flat_map(|far| MULTIPLES.map(|times| far.map(|x| times * x)));
-            beyond.observations = strains
-                .flat_map(|strains| {
-                    let stresses = at.law.biaxial(strains);
-                    [0, 1].map(|axis| Observation {
-                        strains,
-                        axis,
-                        stress: stresses[axis],
-                    })
-                })
-                .collect();
-            let stresses = beyond.observations.iter().map(|one| one.stress.abs());
-            beyond.largest_stress = stresses.fold(0.0, f64::max);
-            beyond
-        });
-        let beyond: Vec<TestData> = beyond.collect();
-        tests.extend(beyond);
+        const MOST_HALVINGS: usize = 6;
+        /// Times the sum of squares of the isotropic law.
+        const ALIKE: f64 = 10.0;
         let relative = FitSettings {
             weighting: Weighting::Relative,
             ..settings.clone()
         };
-        Ok(values_of(&nearest(law, &tests, &relative)?))
+        let mut tests = self.of_middle(&isotropic.middle);
+        tests.extend(self.beyond(isotropic, &tests));
+        let fit = nearest(law, &tests, &relative)?;
+        let mut values = values_of(&fit);
+        let square = isotropic.middle.square(&self.tests);
+        for _ in 0..MOST_HALVINGS {
+            let middle = self.middle(law, &values);
+            if middle.is_ok_and(|middle| middle.square(&self.tests) < ALIKE * square) {
+                break;
+            }
+            for (value, parameter) in values.iter_mut().zip(fit.law_parameters()) {
+                if parameter.is_exponent() {
+                    *value *= 0.5;
+                }
+            }
+        }
+        Ok(values)
     }
 
-    /// The values of a law that settle with the sheet. They change by a share of their size, which becomes larger where the sum of squares
+    /// Tests of a law at some strains around the tines for each protocol of some tests.
+    fn beyond(&self, isotropic: &Reached, tests: &[TestData]) -> Vec<TestData> {
+        /// Strains around the tines over the largest ones of the middle.
+        const MULTIPLES: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
+        let (at, _) = self.sheet_law(isotropic.law, &isotropic.values);
+        let size = |one: &Observation| one.strains[0].hypot(one.strains[1]);
+        let of_test = tests.iter().map(|test| {
+            let protocols = test.protocols();
+            let largest = protocols
+                .iter()
+                .filter_map(|rows| rows.iter().max_by(|a, b| size(a).total_cmp(&size(b))));
+            let strains =
+                largest.flat_map(|far| MULTIPLES.map(|times| far.strains.map(|x| times * x)));
+            let observations = strains.flat_map(|strains| {
+                let stresses = at.law.biaxial(strains);
+                [0, 1].map(|axis| Observation {
+                    strains,
+                    axis,
+                    stress: stresses[axis],
+                })
+            });
+            TestData {
+                observations: observations.collect(),
+                ..test.clone()
+            }
+            .with_observations(|one| *one)
+        });
+        of_test.collect()
+    }
+
+    /// The values of a law that settle with the sheet, until forces change by less than a share of the largest one. They change by a share of their size, which becomes larger where the sum of squares
     /// falls and smaller where it does not.
     pub fn settled(
         &mut self,
         law: &'static Law,
         mut values: Vec<f64>,
         settings: &FitSettings,
+        until: f64,
     ) -> Result<Reached, Error> {
         const SHARES: [f64; 2] = [0.5, 4.0];
         /// A sum of squares that is larger by less is as good: it is not quite what the fit makes the least.
@@ -190,7 +211,7 @@ impl Solved {
             values = about.within(share)?;
             (reached.change, reached.rounds) =
                 (reached.middle.change(&reached.values, &values), rounds);
-            if reached.change <= SETTLED {
+            if reached.change <= until {
                 break;
             }
         }
