@@ -15,7 +15,8 @@ use super::{fit_message, interrupt};
 use gelbench_base::document::Statements;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_calibration::calibration::{
-    self, Base, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData, Weighting,
+    self, Base, Criterion, Fit, FitSettings, Memory, PRECONDITIONED, Provenance, Terms, TestData,
+    Weighting,
 };
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::card::FitRecord;
@@ -32,8 +33,8 @@ pub struct FitArguments {
     /// The law
     #[arg(long, group = "laws", value_parser = a_law())]
     law: Option<&'static Law>,
-    /// Fit all laws, rank them by AICc, and write the first one that is stable over the data and whose parameters are all identifiable: none
-    /// is at a bound or has an interval that holds zero
+    /// Fit all laws, rank them by AICc, or by how well they predict protocols of a biaxial test that they were not fitted to, and write the
+    /// first one that is stable over the data and whose parameters are all identifiable: none is at a bound or has an interval that holds zero
     #[arg(long, group = "laws")]
     all: bool,
     /// Also fit a Prony series, to tests with a column of times (relaxation, creep, cycles, several rates), with this
@@ -200,10 +201,11 @@ fn found(
             progress.tell("all laws");
             let (fits, reasons) = calibration::rank(tests, settings);
             print(&fit_message::ranking(&fits, &reasons))?;
-            let nearest = fits.first().map(|fit| (fit.law.name, fit.quality.aicc));
+            let criterion = Criterion::of(&fits);
+            let first = fits.first().map(|fit| (fit.law.name, criterion.value(fit)));
             let best = calibration::best(fits);
-            if let (Some(best), Some(nearest)) = (&best, nearest) {
-                print(&fit_message::chosen(best, nearest))?;
+            if let (Some(best), Some(first)) = (&best, first) {
+                print(&fit_message::chosen(best, criterion, first))?;
             }
             best.ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
         }

@@ -1,6 +1,6 @@
 //! What the command prints about fits.
 
-use gelbench_calibration::calibration::{Fit, Test, TestData};
+use gelbench_calibration::calibration::{Criterion, Fit, Test, TestData};
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::material::curve::{Mode, samples};
@@ -24,6 +24,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         }
     }
     text += &mounted(fit);
+    text += &protocols(fit);
     text += &relaxation(fit);
     text += &softening(fit);
     text += &parameters(fit);
@@ -62,6 +63,27 @@ fn mounted(fit: &Fit) -> String {
         text += &format!(
             "  as mounted   {} if the sheet were homogeneous and at rest as mounted, R² {r_squared:.6}\n",
             values(parameters)
+        );
+    }
+    text
+}
+
+/// How well the law predicts protocols that it was not fitted to, and which further one would tell most.
+fn protocols(fit: &Fit) -> String {
+    let Some(protocols) = &fit.protocols else {
+        return String::new();
+    };
+    let each = protocols.left_out_percent.iter();
+    let each: Vec<String> = each.map(|own| format!("{own:.2}")).collect();
+    let mut text = format!(
+        "  left out     each protocol is predicted by the law fitted to the others to {} % of the largest stress\n",
+        each.join(", ")
+    );
+    if let Some(further) = protocols.further {
+        let ([x, y], [today, then]) = (further.stretches, further.standard_error_percent);
+        text += &format!(
+            "  further      a protocol up to stretches of {x:.3} and {y:.3} would tell most: {} ± {today:.1} % today, ± {then:.1} % with it\n",
+            further.key
         );
     }
     text
@@ -263,9 +285,9 @@ fn criterion(aicc: f64) -> String {
     }
 }
 
-/// Why a law is written that is not the nearest one, of that name and AICc; nothing where it is.
-pub fn chosen(best: &Fit, (nearest, aicc): (&str, f64)) -> String {
-    if best.law.name == nearest {
+/// Why a law is written that is not the first one, of that name and value of the criterion; nothing where it is.
+pub fn chosen(best: &Fit, criterion: Criterion, (first, value): (&str, f64)) -> String {
+    if best.law.name == first {
         return String::new();
     }
     let reason = if best.quality.is_stable() && best.quality.is_identifiable() {
@@ -274,27 +296,37 @@ pub fn chosen(best: &Fit, (nearest, aicc): (&str, f64)) -> String {
         "the first that is stable over the data"
     };
     format!(
-        "{} is written, {reason}; its AICc is {:.1} above that of {nearest}\n\n",
+        "{} is written, {reason}; its {} above that of {first}\n\n",
         best.law.name,
-        best.quality.aicc - aicc
+        match criterion {
+            Criterion::Aicc => format!("AICc is {:.1}", best.quality.aicc - value),
+            Criterion::LeftOut => format!(
+                "error of protocols that were left out is {:.2} %",
+                criterion.value(best) - value
+            ),
+        }
     )
 }
 
-/// The laws by AICc.
+/// The laws by their criterion.
 pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
     let mut text = String::from(
-        "law                     parameters          AICc   RMSE [MPa]  NMAD [%]  largest rel. [%]  stable over the data  all parameters identifiable\n",
+        "law                     parameters          AICc   RMSE [MPa]  NMAD [%]  largest rel. [%]  left out [%]  stable over the data  all parameters identifiable\n",
     );
     for fit in fits {
         let quality = &fit.quality;
         text += &format!(
-            "{:<24}{:>10}{:>14}{:>13.4e}{:>10.3}{:>18.2}  {:<20}  {}\n",
+            "{:<24}{:>10}{:>14}{:>13.4e}{:>10.3}{:>18.2}{:>14}  {:<20}  {}\n",
             fit.law.name,
             fit.parameters.len(),
             criterion(quality.aicc),
             quality.rmse,
             quality.nmad_percent,
             quality.largest_relative_error_percent,
+            fit.protocols.as_ref().map_or("–".to_owned(), |own| format!(
+                "{:.2}",
+                own.all_left_out_percent()
+            )),
             if quality.is_stable() { "yes" } else { "no" },
             if quality.is_identifiable() {
                 "yes"

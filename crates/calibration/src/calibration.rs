@@ -14,6 +14,7 @@ mod least_squares;
 mod memory;
 mod mounted;
 mod nearest;
+mod protocols;
 mod ranking;
 mod regression;
 mod relaxation;
@@ -33,7 +34,8 @@ pub use data::{
 pub use fit::fit;
 pub use fitted::{Fit, MountedFit, Relaxed};
 pub use memory::Memory;
-pub use ranking::{best, rank};
+pub use protocols::{FurtherProtocol, Protocols};
+pub use ranking::{Criterion, best, rank};
 pub use regression::{MovedZero, Zero};
 pub use relaxation::{Terms, fit_relaxation};
 pub use settings::{Bounds, FitSettings, Weighting};

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::data::{Observation, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
+use super::protocols::Protocols;
 use super::settings::{FitSettings, MEASURE};
 use super::softened::Softened;
 use super::trust::Quality;
@@ -43,6 +44,8 @@ pub struct Fit {
     pub at_rest_as_mounted: Option<(Vec<Parameter>, f64)>,
     /// The mounting of a sheet that was solved with the law.
     pub mounted: Option<MountedFit>,
+    /// What the protocols of a biaxial test say of the law.
+    pub protocols: Option<Protocols>,
 }
 
 /// The relaxation of a fit.
@@ -74,6 +77,13 @@ impl Fit {
     /// The parameters of the law.
     pub fn law_parameters(&self) -> &[Parameter] {
         &self.parameters[..self.of_law]
+    }
+
+    /// The values that were fitted: those of the law, and behind them those of the state at rest.
+    pub(in crate::calibration) fn values(&self) -> Vec<f64> {
+        let of_law = self.law_parameters().iter().map(|own| own.value);
+        let of_zeros = self.quality.zeros.iter().map(|zero| zero.value);
+        of_law.chain(of_zeros).collect()
     }
 
     /// The stress measure of the data.

@@ -35,7 +35,7 @@ mod solved;
 #[cfg(test)]
 mod tests;
 
-use solved::{Solved, named, values_of};
+use solved::{Solved, named};
 
 /// Knots of the sheet are no farther apart, as a share of the largest strains.
 const NEAR: f64 = 0.07;
@@ -80,7 +80,7 @@ fn begin(
     let neo_hooke = sheet.neo_hookean(&as_mounted)?;
     let isotropic = named("fung-demiray");
     let begin = nearest(isotropic, &sheet.of_middle(&neo_hooke), &plain)?;
-    let isotropic = sheet.settled(isotropic, values_of(&begin), &plain, NEARLY)?;
+    let isotropic = sheet.settled(isotropic, begin.values(), &plain, NEARLY)?;
     let begin = sheet.extended(&isotropic, law, settings)?;
     let mut values = sheet.settled(law, begin, settings, NEARLY)?.values;
     if tests[0].mounted.estimates_stretches() {

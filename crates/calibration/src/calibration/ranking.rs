@@ -5,13 +5,40 @@ use rayon::prelude::*;
 use super::data::TestData;
 use super::fit::fit;
 use super::fitted::Fit;
+use super::protocols::Protocols;
 use super::settings::{FitSettings, MEASURE};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
 
-/// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that
-/// cannot be fitted are left out, with the reasons.
+/// By what laws are ranked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// By AICc.
+    Aicc,
+    /// By the error with which protocols of a biaxial test are predicted by the law fitted to the others.
+    LeftOut,
+}
+
+impl Criterion {
+    /// That of some fits: protocols that were left out, where all laws have them.
+    pub fn of(fits: &[Fit]) -> Self {
+        if fits.iter().all(|fit| fit.protocols.is_some()) {
+            Self::LeftOut
+        } else {
+            Self::Aicc
+        }
+    }
+
+    /// Its value for a fit: the smaller the better.
+    pub fn value(self, fit: &Fit) -> f64 {
+        let protocols = fit.protocols.as_ref().filter(|_| self == Self::LeftOut);
+        protocols.map_or(fit.quality.aicc, Protocols::all_left_out_percent)
+    }
+}
+
+/// All laws that keep their volume and can be fitted to some tests, the best one by their [`Criterion`] first; laws that cannot be fitted are
+/// left out, with the reasons.
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
     // A fibre law needs to see two directions.
     let axis = |axis: usize| {
@@ -41,7 +68,8 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
             Err(reason) => reasons.push(reason.to_string()),
         }
     }
-    fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));
+    let criterion = Criterion::of(&fits);
+    fits.sort_by(|a, b| criterion.value(a).total_cmp(&criterion.value(b)));
     (fits, reasons)
 }
 

@@ -151,6 +151,7 @@ impl<R: Response> Solution<R> {
             softened: None,
             at_rest_as_mounted: None,
             mounted: None,
+            protocols: None,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::calibration::{Fit, MovedZero, Softened, TestData, Zero};
+use crate::calibration::{Fit, MovedZero, Protocols, Softened, TestData, Zero};
 use crate::material::curve::samples;
 use crate::material::parameters::Parameter;
 
@@ -62,6 +62,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "parameters": values_json(parameters),
             "r_squared": r_squared,
         })),
+        "protocols": fit.protocols.as_ref().map(protocols_json),
         "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
         "points": quality.points,
         "sum_of_squares_MPa2": quality.sum_of_squares,
@@ -83,6 +84,20 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "stretch_and_nominal_stress_MPa": sample.points,
         })).collect::<Vec<_>>(),
         "warnings": quality.warnings,
+    })
+}
+
+/// What the protocols of a biaxial test say of a law.
+fn protocols_json(protocols: &Protocols) -> Value {
+    json!({
+        "left_out_percent": protocols.left_out_percent,
+        "all_left_out_percent": protocols.all_left_out_percent(),
+        "further": protocols.further.map(|further| json!({
+            "stretches": further.stretches,
+            "parameter": further.key,
+            "standard_error_percent": further.standard_error_percent[0],
+            "standard_error_with_it_percent": further.standard_error_percent[1],
+        })),
     })
 }
 

@@ -41,14 +41,6 @@ impl Reached {
     }
 }
 
-/// The values of a fit: those of the law, and behind them those of the state at rest.
-pub fn values_of(fit: &Fit) -> Vec<f64> {
-    let of_law = fit.law_parameters().iter().map(|parameter| parameter.value);
-    of_law
-        .chain(fit.quality.zeros.iter().map(|zero| zero.value))
-        .collect()
-}
-
 /// A sheet that is solved for one law after the other.
 pub struct Solved {
     zeros: Vec<Zero>,
@@ -116,7 +108,7 @@ impl Solved {
         let mut tests = self.of_middle(&isotropic.middle);
         tests.extend(self.beyond(isotropic, &tests));
         let fit = nearest(law, &tests, &relative)?;
-        let mut values = values_of(&fit);
+        let mut values = fit.values();
         let square = isotropic.middle.square(&self.tests);
         for _ in 0..MOST_HALVINGS {
             let middle = self.middle(law, &values);
@@ -348,7 +340,7 @@ impl Solved {
             rows.map(|one| one.strains[axis]).fold(0.0, f64::max)
         };
         let strain = farthest(0).min(farthest(1));
-        let laws = [homogeneous, fit].map(|fit| self.sheet_law(fit.law, &values_of(fit)).0);
+        let laws = [homogeneous, fit].map(|fit| self.sheet_law(fit.law, &fit.values()).0);
         let off = |step: u8, axis: usize| {
             let at = [f64::from(step) / 10.0 * strain; 2];
             let [read, solved] = [&laws[0], &laws[1]].map(|law| law.stresses(at)[axis]);

@@ -1,0 +1,291 @@
+//! What the protocols of a biaxial test say of a law: how well those that it was not fitted to are predicted, and which further one would
+//! make it known best.
+//!
+//! ```text
+//! C' = C − C Jᵀ (σ² 1 + J C Jᵀ)⁻¹ J C,   J = ∂r/∂p of the further protocol, σ² the variance of the weighted residuals r
+//! ```
+//!
+//! # References
+//! A. C. Atkinson, A. N. Donev, Optimum Experimental Designs, Oxford 1992
+
+use nalgebra::DMatrix;
+
+use super::data::{Observation, Test, TestData};
+use super::fitted::Fit;
+use super::least_squares::{LEAST_SIZE, jacobian, sum_of_squares};
+use super::nearest::About;
+use super::regression::{Elastic, Misfit, Response, Zero};
+
+/// What the protocols of a biaxial test say of a law.
+#[derive(Clone, Debug)]
+pub struct Protocols {
+    /// The root of the mean square of the errors with which each protocol is predicted by the law fitted to the others, in % of the largest
+    /// stress of all.
+    pub left_out_percent: Vec<f64>,
+    /// The protocol that would narrow the widest interval most; `None` where there are no intervals.
+    pub further: Option<FurtherProtocol>,
+}
+
+/// A protocol that was not measured, with as many rows as those that were.
+#[derive(Clone, Copy, Debug)]
+pub struct FurtherProtocol {
+    /// The largest stretches along both axes.
+    pub stretches: [f64; 2],
+    /// The parameter whose standard error is the largest share of its value.
+    pub key: &'static str,
+    /// Its standard error in % of its value, today and with the protocol.
+    pub standard_error_percent: [f64; 2],
+}
+
+impl Protocols {
+    /// The root of the mean square of all errors of prediction in % of the largest stress.
+    pub fn all_left_out_percent(&self) -> f64 {
+        let squares = self.left_out_percent.iter().map(|own| own * own);
+        (squares.sum::<f64>() / self.left_out_percent.len() as f64).sqrt()
+    }
+
+    /// Of a fit to biaxial tests of several protocols.
+    pub(in crate::calibration) fn of(fit: &Fit, tests: &[TestData]) -> Option<Self> {
+        let tests = fit.mounted.as_ref().map_or(tests, |own| &own.tests);
+        let is_biaxial = tests.iter().all(|test| test.test == Test::Biaxial);
+        let of_record = |zero: &Zero| matches!(zero, Zero::Record { .. });
+        if !is_biaxial || Zero::of(tests).iter().any(of_record) {
+            return None;
+        }
+        let protocols: Vec<TestData> = tests.iter().flat_map(TestData::by_protocol).collect();
+        let left_out = |number| left_out(fit, &protocols, number);
+        let left_out: Option<Vec<f64>> = (0..protocols.len()).map(left_out).collect();
+        Some(Self {
+            left_out_percent: left_out.filter(|all| all.len() > 1)?,
+            further: further(fit, &protocols),
+        })
+    }
+}
+
+fn largest_stress(tests: &[TestData]) -> f64 {
+    let stresses = tests.iter().map(|test| test.largest_stress);
+    stresses.fold(0.0, f64::max)
+}
+
+/// The error with which a protocol is predicted by the law fitted to the others in % of the largest stress.
+fn left_out(fit: &Fit, protocols: &[TestData], number: usize) -> Option<f64> {
+    let mut others = protocols.to_vec();
+    let own = [others.remove(number)];
+    let start = fit.values();
+    let about = About {
+        law: fit.law,
+        tests: &others,
+        start: &start,
+        derivatives: |_: &Observation| vec![0.0; start.len()],
+        other: None,
+        settings: &fit.settings,
+    };
+    let values = about.within(f64::INFINITY).ok()?;
+    let response = Elastic::new(fit.law, &own).with_zeros();
+    let predicted = response.predicted(&values).concat();
+    let measured = response.moved_tests(&values);
+    let pairs = measured[0].observations.iter().zip(&predicted);
+    let square: f64 = pairs
+        .map(|(one, stress)| (one.stress - stress).powi(2))
+        .sum();
+    let error = (square / predicted.len() as f64).sqrt();
+    Some(100.0 * error / largest_stress(protocols))
+}
+
+/// The most useful further protocol.
+fn further(fit: &Fit, protocols: &[TestData]) -> Option<FurtherProtocol> {
+    /// Shares of the largest strains of both axes.
+    const RATIOS: [[f64; 2]; 9] = [
+        [1.0, 1.0],
+        [1.0, 0.75],
+        [0.75, 1.0],
+        [1.0, 0.5],
+        [0.5, 1.0],
+        [1.0, 0.25],
+        [0.25, 1.0],
+        [1.0, 0.0],
+        [0.0, 1.0],
+    ];
+    let quality = &fit.quality;
+    let noise = quality.noise.as_ref().filter(|_| quality.has_intervals())?;
+    let covariance = noise.covariance();
+    let share = |index: usize| {
+        let own = &quality.estimates[index];
+        own.standard_error / own.value.abs()
+    };
+    let known = (0..fit.parameters.len()).filter(|index| share(*index).is_finite());
+    let widest = known.max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
+    let free = (0..quality.fixed.len()).filter(|index| !quality.fixed[*index]);
+    let row = free.clone().position(|index| index == widest)?;
+    let variance = variance(fit, protocols, free.clone().count());
+    let narrowed = |ratio: [f64; 2]| {
+        let protocol = [protocol(fit, protocols, ratio)?];
+        let response = Elastic::new(fit.law, &protocol).with_zeros();
+        let misfit = Misfit::new(response, fit.settings.weighting);
+        let least = vec![LEAST_SIZE; quality.fixed.len()];
+        let slopes = jacobian(&misfit, &fit.values(), &quality.fixed, &least)?;
+        let slopes = slopes.select_columns(&free.clone().collect::<Vec<_>>());
+        let across = &covariance * slopes.transpose();
+        let size = slopes.nrows();
+        let inverse = (&slopes * &across + variance * DMatrix::identity(size, size)).cholesky()?;
+        let gained = across.row(row) * inverse.solve(&across.transpose()).column(row);
+        let left = (1.0 - gained[(0, 0)] / covariance[(row, row)])
+            .max(0.0)
+            .sqrt();
+        let largest = Observation::farthest_strains(&protocol[0].observations);
+        Some((left, largest.map(|strain| 1.0 + strain)))
+    };
+    let all = RATIOS.into_iter().filter_map(narrowed);
+    let (left, stretches) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let percent = 100.0 * share(widest);
+    Some(FurtherProtocol {
+        stretches,
+        key: fit.parameters[widest].key,
+        standard_error_percent: [percent, left * percent],
+    })
+}
+
+/// The variance of the weighted residuals, as that of so many independent ones as they are worth.
+fn variance(fit: &Fit, protocols: &[TestData], values: usize) -> f64 {
+    let response = Elastic::new(fit.law, protocols).with_zeros();
+    let misfit = Misfit::new(response, fit.settings.weighting);
+    let rows = misfit.rows.len();
+    let freedom = rows.saturating_sub(values).max(1) as f64;
+    let worth = fit.quality.verdict.map_or(1.0, |verdict| {
+        (verdict.effective_points / rows as f64).clamp(f64::MIN_POSITIVE, 1.0)
+    });
+    sum_of_squares(&misfit, &fit.values()) / freedom / worth
+}
+
+/// A protocol up to shares of the largest strains, or to the largest stress, whose stresses are those of the law.
+fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestData> {
+    let rows = protocols
+        .iter()
+        .map(|own| own.observations.len())
+        .sum::<usize>();
+    let rows = (rows / protocols.len() / 2).max(2);
+    let all = protocols.iter().flat_map(|own| &own.observations);
+    let largest = [0, 1].map(|axis| {
+        let strains = all.clone().map(|one| one.strains[axis]);
+        ratio[axis] * strains.fold(0.0, f64::max)
+    });
+    let most = largest_stress(protocols);
+    let of_rows = |stress: f64| {
+        let observations = (1..=rows).flat_map(|row| {
+            let share = row as f64 / rows as f64;
+            let strains = largest.map(|strain| share * strain);
+            [0, 1].map(|axis| Observation {
+                strains,
+                axis,
+                stress,
+            })
+        });
+        TestData {
+            observations: observations.collect(),
+            left_out: Vec::new(),
+            largest_stress: most,
+            ..protocols[0].clone()
+        }
+    };
+    // What is measured is linear in the stress of the law at the strains from rest.
+    let [zero, unit] = [0.0, most].map(|stress| [of_rows(stress)]);
+    let values = fit.values();
+    let moved = [&zero, &unit].map(|own| {
+        let response = Elastic::new(fit.law, own).with_zeros();
+        let rows = &response.moved_tests(&values)[0].observations;
+        let stresses: Vec<f64> = rows.iter().map(|one| one.stress).collect();
+        (stresses, response.predicted(&values).concat())
+    });
+    let [(at_zero, predicted), (at_unit, _)] = moved;
+    let mut protocol = zero[0].clone();
+    for (row, one) in protocol.observations.iter_mut().enumerate() {
+        one.stress = most * (predicted[row] - at_zero[row]) / (at_unit[row] - at_zero[row]);
+    }
+    let is_too_large = |pair: &&[Observation]| pair.iter().any(|one| one.stress > 1.001 * most);
+    let pairs = protocol.observations.chunks(2);
+    let within = pairs.take_while(|pair| !is_too_large(pair)).count();
+    protocol.observations.truncate(2 * within);
+    (within > 1).then_some(protocol)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::{FitSettings, fit};
+    use crate::document::Statements;
+    use crate::material::parameters::{StrainMeasure, StressMeasure};
+    use crate::material::registry::Law;
+
+    /// Records of a law at strain ratios of both axes, with noise of 0.3 % of the largest stress that repeats.
+    fn record(name: &str, values: &[f64], ratios: &[[f64; 2]]) -> TestData {
+        let law = Law::named(name).unwrap();
+        let law = law
+            .with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal)
+            .0;
+        let mut text = "# test: biaxial\n# strain measure: nominal\nstrain_1 [-],strain_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n".to_owned();
+        let most = law.biaxial([0.2; 2])[0];
+        let mut state = 1_u32;
+        let mut noise = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            0.003 * most * (f64::from(state >> 8) / f64::from(1 << 23) - 1.0)
+        };
+        for ratio in ratios {
+            for row in 0..=20 {
+                let strains = ratio.map(|own| 0.2 * own * f64::from(row) / 20.0);
+                let stress = law.biaxial(strains);
+                let [first, second] = [stress[0] + noise(), stress[1] + noise()];
+                text += &format!("{},{},{first},{second}\n", strains[0], strains[1]);
+            }
+        }
+        TestData::parse("a.csv", &text, &Statements::new()).unwrap()
+    }
+
+    const TISSUE: [f64; 5] = [0.01, 0.05, 3.0, 0.1, 0.6];
+
+    fn protocols(law: &str, ratios: &[[f64; 2]]) -> Protocols {
+        let tests = [record("holzapfel-gasser-ogden", &TISSUE, ratios)];
+        let fit = fit(Law::named(law).unwrap(), &tests, &FitSettings::default()).unwrap();
+        fit.protocols.unwrap()
+    }
+
+    /// The right law predicts what it did not see within its noise; an isotropic one does not.
+    #[test]
+    fn protocols_that_are_left_out_tell_laws_apart() {
+        let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
+        let [right, wrong] =
+            ["holzapfel-gasser-ogden", "fung-demiray"].map(|law| protocols(law, &ratios));
+        assert_eq!(right.left_out_percent.len(), 3);
+        assert!(right.all_left_out_percent() < 1.0, "{right:?}");
+        assert!(wrong.all_left_out_percent() > 4.0, "{wrong:?}");
+    }
+
+    /// What is predicted for a further protocol is what comes of it.
+    #[test]
+    fn a_further_protocol_narrows_the_widest_interval_as_predicted() {
+        let ratios = vec![[1.0, 1.0], [1.0, 0.75]];
+        let before = protocols("holzapfel-gasser-ogden", &ratios)
+            .further
+            .unwrap();
+        let [today, then] = before.standard_error_percent;
+        assert!(then < 0.7 * today, "{before:?}");
+        let share = before.stretches.map(|stretch| (stretch - 1.0) / 0.2);
+        let tests = [record(
+            "holzapfel-gasser-ogden",
+            &TISSUE,
+            &[&ratios[..], &[share]].concat(),
+        )];
+        let law = Law::named("holzapfel-gasser-ogden").unwrap();
+        let after = fit(law, &tests, &FitSettings::default()).unwrap();
+        let index = after
+            .parameters
+            .iter()
+            .position(|own| own.key == before.key)
+            .unwrap();
+        let own = &after.quality.estimates[index];
+        let percent = 100.0 * own.standard_error / own.value;
+        assert!(
+            percent < 1.5 * then && percent > then / 1.5,
+            "{percent} {before:?}"
+        );
+    }
+}
