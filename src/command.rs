@@ -40,6 +40,7 @@ mod correct;
 mod export;
 mod fit;
 mod fit_message;
+mod group;
 mod identify;
 mod identity;
 mod interrupt;

@@ -6,6 +6,7 @@ use clap::Subcommand;
 
 use super::convert::{ConvertArguments, convert};
 use super::fit::{FitArguments, fit, load, refit};
+use super::group::{GroupArguments, group};
 use super::message;
 use super::new_card::{CheckCards, NEW_HELP, NewCard, check_cards, new_card};
 use super::terminal::{Outcome, print, save, together};
@@ -59,6 +60,11 @@ pub enum Materials {
     /// Fit a law to measured curves and write a card, a picture and the figures
     #[command(after_help = FIT_HELP)]
     Fit(Box<FitArguments>),
+    /// Fit a law to every specimen of a group: mean law, spread between specimens, and the difference from another group
+    #[command(
+        after_help = "Sample: gelbench materials group c1.csv c2.csv c3.csv --against t1.csv t2.csv t3.csv --names control,treated --law yeoh"
+    )]
+    Group(Box<GroupArguments>),
     /// Refit a card to the data that it names, and report whether the parameters agree
     #[command(after_help = "Sample: gelbench materials refit treloar-ogden-3")]
     Refit {
@@ -102,6 +108,7 @@ pub fn run(command: Materials) -> Outcome {
         Materials::New(options) => new_card(&options),
         Materials::Check(options) => check_cards(&options),
         Materials::Fit(arguments) => fit(*arguments),
+        Materials::Group(arguments) => group(*arguments),
         Materials::Refit { card } => refit(&card),
         Materials::Convert(arguments) => convert(*arguments),
     }

@@ -236,3 +236,81 @@ fn a_stated_parameter_is_held_and_stands_on_the_card() {
         assert!(told.contains(why), "{told}");
     }
 }
+
+/// Two groups of uniaxial tests: means, spread and difference in one table, a picture, and a card of each mean law, which a fit of its data
+/// is again; a single specimen and tests of two kinds are refused.
+#[test]
+fn groups_of_specimens_are_averaged_and_compared() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let write = |name: &str, head: &str, c10: f64| {
+        let rows = (0..=20).map(|row| {
+            let stretch = 1.0 + 0.05 * f64::from(row);
+            let noise = 1e-4 * f64::from((row * 7) % 5 - 2);
+            let stress = 2.0 * c10 * (stretch - stretch.powi(-2)) + noise;
+            format!("{stretch},{stress}\n")
+        });
+        let text = format!(
+            "# test: {head}\nstretch [-],nominal_stress [MPa]\n{}",
+            rows.collect::<String>()
+        );
+        std::fs::write(folder.path().join(name), text).unwrap();
+    };
+    for (number, c10) in [0.09, 0.1, 0.11, 0.14, 0.15, 0.16].into_iter().enumerate() {
+        write(&format!("{number}.csv"), "uniaxial", c10);
+    }
+    write("planar.csv", "planar", 0.1);
+    let group = |files: &[&str]| {
+        let more = [
+            "--names",
+            "control,treated",
+            "--law",
+            "neo-hooke",
+            "--output",
+            "out",
+        ];
+        gelbench(
+            folder.path(),
+            &[&["materials", "group"], files, &more].concat(),
+        )
+    };
+    group(&[
+        "0.csv",
+        "1.csv",
+        "2.csv",
+        "--against",
+        "3.csv",
+        "4.csv",
+        "5.csv",
+    ])
+    .code(0);
+    let text = std::fs::read_to_string(folder.path().join("out/group.json")).unwrap();
+    let figures: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for (number, c10) in [0.1, 0.15].into_iter().enumerate() {
+        let own = &figures["groups"][number];
+        let mean = own["mean_law"][0]["value"].as_f64().unwrap();
+        assert!((mean - c10).abs() < 1e-3 * c10, "{mean}");
+        let last = &own["states"][19];
+        let between = last["between_specimens_MPa"].as_f64().unwrap();
+        let right = 2.0 * 0.01 * (2.0 - 0.25);
+        assert!((between - right).abs() < 0.02 * right, "{between} {right}");
+    }
+    for file in ["group.csv", "group.png", "group-control.csv"] {
+        assert!(folder.path().join("out").join(file).exists(), "{file}");
+    }
+    gelbench(
+        folder.path(),
+        &["materials", "refit", "out/group-treated.toml"],
+    )
+    .code(0);
+    for (files, told) in [
+        (&["0.csv", "planar.csv"][..], "a test of another kind"),
+        (
+            &["0.csv", "1.csv", "--against", "2.csv"],
+            "2 values required",
+        ),
+    ] {
+        let run = group(files).code(2);
+        let printed = crate::common::words(&run.get_output().stderr);
+        assert!(printed.contains(told), "{printed}");
+    }
+}

@@ -10,6 +10,7 @@ mod card_text;
 mod data;
 mod fit;
 mod fitted;
+mod group;
 mod least_squares;
 mod memory;
 mod mounted;
@@ -33,6 +34,7 @@ pub use data::{
 };
 pub use fit::fit;
 pub use fitted::{Fit, MountedFit, Relaxed};
+pub use group::{Group, GroupState};
 pub use memory::Memory;
 pub use protocols::{FurtherProtocol, Protocols};
 pub use ranking::{Criterion, best, rank};

@@ -1,0 +1,263 @@
+//! Groups of specimens: the mean law, how much specimens differ, and the difference of two groups.
+//!
+//! Parameters that a test hardly determines cannot be averaged. What is averaged are the stresses of the fitted laws, each with its own
+//! uncertainty, at strains that all specimens have reached ([`RandomEffects`]); the mean law is fitted to their means.
+
+use rayon::prelude::*;
+
+use super::data::{Mounted, Observation, Test, TestData, Times};
+use super::fit::fit;
+use super::fitted::Fit;
+use super::nearest::{check_measures, nearest};
+use super::settings::FitSettings;
+use crate::error::Error;
+use crate::material::registry::Law;
+use crate::statistics::{RandomEffects, normal_reach};
+
+/// A law fitted to every specimen of a group.
+#[derive(Debug)]
+pub struct Group {
+    /// The fits, in the order of the specimens.
+    pub fits: Vec<Fit>,
+    /// Their tests as they were fitted.
+    pub tests: Vec<TestData>,
+}
+
+/// What is averaged: a stress at strains.
+#[derive(Clone, Copy, Debug)]
+pub struct GroupState {
+    /// The strains, and the axis of the stress.
+    pub strains: [f64; 2],
+    /// 0 or 1.
+    pub axis: usize,
+    /// The stresses of the group in MPa.
+    pub stress: RandomEffects,
+}
+
+impl Group {
+    /// Strains of each protocol at which stresses are averaged.
+    pub const STEPS: u8 = 20;
+
+    /// Fits a law to the test of each specimen.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for fewer than two specimens or tests of different kinds; as [`fit`] for each.
+    pub fn new(
+        law: &'static Law,
+        tests: &[TestData],
+        settings: &FitSettings,
+    ) -> Result<Self, Error> {
+        check_measures(tests)?;
+        let first = &tests[0];
+        if let Some(other) = tests.iter().find(|own| own.test != first.test) {
+            let message = format!(
+                "{} is a test of another kind than {}: {} and {}",
+                other.name,
+                first.name,
+                other.test.name(),
+                first.test.name()
+            );
+            return Err(Error::input(
+                message,
+                "compare specimens by tests of one kind",
+            ));
+        }
+        if tests.len() < 2 {
+            let message = format!("{} alone is no group", first.name);
+            let hint = "how much specimens differ takes two at least, each in a file of its own";
+            return Err(Error::input(message, hint));
+        }
+        let all: Vec<Result<Fit, Error>> = tests
+            .par_iter()
+            .map(|test| fit(law, std::slice::from_ref(test), settings))
+            .collect();
+        let fits = all.into_iter().collect::<Result<Vec<Fit>, Error>>()?;
+        let pairs = fits.iter().zip(tests);
+        let fitted = pairs.flat_map(|(fit, test)| fit.fitted_tests(std::slice::from_ref(test)));
+        Ok(Self {
+            tests: fitted.collect(),
+            fits,
+        })
+    }
+
+    /// The largest strains along both axes that all specimens reached.
+    fn reached(&self) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let of_test = |test: &TestData| {
+                let rows = test.observations.iter();
+                rows.map(|one| one.strains[axis]).fold(0.0, f64::max)
+            };
+            self.tests.iter().map(of_test).fold(f64::INFINITY, f64::min)
+        })
+    }
+
+    /// Where stresses are compared: protocols in three ratios of the largest strains of biaxial tests, the test's own strains of others.
+    fn places(reached: [f64; 2], test: Test) -> Vec<Observation> {
+        const RATIOS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
+        let ratios = match test {
+            Test::Biaxial => &RATIOS[..],
+            _ => &RATIOS[..1],
+        };
+        let steps = |ratio: &[f64; 2]| {
+            let ratio = *ratio;
+            (1..=Self::STEPS).map(move |step| {
+                let share = f64::from(step) / f64::from(Self::STEPS);
+                [0, 1].map(|axis| share * ratio[axis] * reached[axis])
+            })
+        };
+        let axes = if test == Test::Biaxial { 0..2 } else { 0..1 };
+        let strains = ratios.iter().flat_map(steps);
+        strains
+            .flat_map(|strains| {
+                axes.clone().map(move |axis| Observation {
+                    strains,
+                    axis,
+                    stress: 0.0,
+                })
+            })
+            .collect()
+    }
+
+    /// The stresses of the group where all specimens of this and of another group have been.
+    pub fn states(&self, other: Option<&Self>) -> Vec<GroupState> {
+        let mut reached = self.reached();
+        if let Some(other) = other {
+            let of_other = other.reached();
+            reached = [0, 1].map(|axis| reached[axis].min(of_other[axis]));
+        }
+        let places = Self::places(reached, self.tests[0].test);
+        let of_fit = |(fit, test): (&Fit, &TestData)| -> Vec<[f64; 2]> {
+            let halves = fit.half_widths(test, &places).into_iter();
+            let pairs = places.iter().zip(halves);
+            pairs
+                .map(|(one, half)| {
+                    // Without intervals the spread alone speaks.
+                    let error = if half.is_finite() {
+                        half / normal_reach()
+                    } else {
+                        0.0
+                    };
+                    [test.stress_of(&*fit.fitted, one), error]
+                })
+                .collect()
+        };
+        let specimens: Vec<Vec<[f64; 2]>> = self.fits.iter().zip(&self.tests).map(of_fit).collect();
+        let state = |(number, one): (usize, &Observation)| {
+            let stresses: Vec<[f64; 2]> = specimens.iter().map(|own| own[number]).collect();
+            GroupState {
+                strains: one.strains,
+                axis: one.axis,
+                stress: RandomEffects::new(&stresses).expect("two specimens at least"),
+            }
+        };
+        places.iter().enumerate().map(state).collect()
+    }
+
+    /// The mean stresses of some states as a test.
+    pub fn mean_test(&self, name: &str, states: &[GroupState]) -> TestData {
+        let observations = states.iter().map(|state| Observation {
+            strains: state.strains,
+            axis: state.axis,
+            stress: state.stress.mean,
+        });
+        TestData {
+            name: name.to_owned(),
+            observations: observations.collect(),
+            left_out: Vec::new(),
+            found_zero: None,
+            times: Times::None,
+            mounted: Mounted::default(),
+            head: [("specimen", format!("mean of {} specimens", self.fits.len()))]
+                .map(|(key, value)| (key.to_owned(), value))
+                .into(),
+            warnings: Vec::new(),
+            remarks: Vec::new(),
+            ..self.tests[0].clone()
+        }
+        .with_observations(|one| *one)
+    }
+
+    /// The law of the mean stresses.
+    ///
+    /// # Errors
+    /// As [`fit`].
+    pub fn mean_law(&self, states: &[GroupState], settings: &FitSettings) -> Result<Fit, Error> {
+        nearest(
+            self.fits[0].law,
+            &[self.mean_test("mean", states)],
+            settings,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Statements;
+    use crate::material::parameters::{StrainMeasure, StressMeasure};
+
+    fn specimen(number: u32, mu: f64) -> TestData {
+        let law = Law::named("holzapfel-gasser-ogden").unwrap();
+        let k1 = 0.05 * (1.0 + 0.2 * f64::from(number % 3));
+        let values = [mu, k1, 3.0, 0.1, 0.6];
+        let (law, _) = law.with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal);
+        let mut text = "# test: biaxial\n# strain measure: nominal\nstrain_1 [-],strain_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n".to_owned();
+        let mut state = 7 * number + 1;
+        for ratio in [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]] {
+            for row in 0..=15 {
+                let strains = ratio.map(|own| 0.2 * own * f64::from(row) / 15.0);
+                let stress = law.biaxial(strains).map(|stress| {
+                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    stress + 1e-4 * (f64::from(state >> 8) / f64::from(1 << 23) - 1.0)
+                });
+                text += &format!(
+                    "{},{},{},{}\n",
+                    strains[0], strains[1], stress[0], stress[1]
+                );
+            }
+        }
+        TestData::parse(&format!("{number}.csv"), &text, &Statements::new()).unwrap()
+    }
+
+    fn group(numbers: std::ops::Range<u32>, mu: f64) -> Group {
+        let tests: Vec<TestData> = numbers.map(|number| specimen(number, mu)).collect();
+        let law = Law::named("holzapfel-gasser-ogden").unwrap();
+        Group::new(law, &tests, &FitSettings::default()).unwrap()
+    }
+
+    /// The mean stress of three specimens, their spread, and what stiffer matrices add.
+    #[test]
+    fn mean_spread_and_difference_of_groups() {
+        let (first, second) = (group(0..3, 0.01), group(3..6, 0.02));
+        let states = [first.states(Some(&second)), second.states(Some(&first))];
+        let law = Law::named("holzapfel-gasser-ogden").unwrap();
+        let right = |mu: f64, strains: [f64; 2], axis: usize| {
+            let each = (0..3).map(|number| {
+                let values = [mu, 0.05 * (1.0 + 0.2 * f64::from(number)), 3.0, 0.1, 0.6];
+                let law = law
+                    .with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal)
+                    .0;
+                law.biaxial(strains)[axis]
+            });
+            each.collect::<Vec<f64>>()
+        };
+        for (one, two) in states[0].iter().zip(&states[1]) {
+            let stresses = right(0.01, one.strains, one.axis);
+            let mean = stresses.iter().sum::<f64>() / 3.0;
+            let square: f64 = stresses.iter().map(|own| (own - mean).powi(2)).sum();
+            let between = (square / 2.0).sqrt();
+            let scale = 2e-4 + 0.02 * mean;
+            assert!((one.stress.mean - mean).abs() < scale, "{one:?} {mean}");
+            assert!(
+                (one.stress.between - between).abs() < scale,
+                "{one:?} {between}"
+            );
+            let more = right(0.02, one.strains, one.axis).iter().sum::<f64>() / 3.0 - mean;
+            let [low, high] = one.stress.difference(&two.stress).interval;
+            assert!(low < more && more < high, "{low} {more} {high}");
+        }
+        let mean = first.mean_law(&states[0], &FitSettings::default()).unwrap();
+        let mu = mean.parameters[0].value;
+        assert!((mu - 0.01).abs() < 1e-3, "{mu}");
+    }
+}

@@ -1,0 +1,146 @@
+//! Groups of specimens as figures and as a picture.
+
+use serde_json::{Value, json};
+
+use super::stress_unit::readable;
+use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
+use crate::calibration::{Fit, Group, GroupState};
+use crate::document::write_records;
+
+/// A group with its name, its states and its mean law.
+pub struct NamedGroup<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The group.
+    pub group: &'a Group,
+    /// Its stresses.
+    pub states: &'a [GroupState],
+    /// The law of its mean stresses.
+    pub mean: &'a Fit,
+}
+
+/// A table of all states, one record each: strains, mean with its interval and spread of each group, and the difference of two.
+pub fn group_table(groups: &[NamedGroup]) -> String {
+    let mut head: Vec<String> = ["stretch_1 [-]", "stretch_2 [-]", "axis [-]"]
+        .map(str::to_owned)
+        .into();
+    for NamedGroup { name, .. } in groups {
+        let columns = ["mean", "mean_low", "mean_high", "between"];
+        head.extend(columns.map(|own| format!("{name}_{own} [MPa]")));
+    }
+    if groups.len() == 2 {
+        let columns = ["difference", "difference_low", "difference_high"];
+        head.extend(columns.map(|own| format!("{own} [MPa]")));
+    }
+    let rows = groups[0].states.iter().enumerate().map(|(row, state)| {
+        let mut record: Vec<String> = state
+            .strains
+            .map(|strain| (1.0 + strain).to_string())
+            .into();
+        record.push((state.axis + 1).to_string());
+        for group in groups {
+            let stress = group.states[row].stress;
+            let [low, high] = stress.estimate().interval;
+            record.extend([stress.mean, low, high, stress.between].map(|own| own.to_string()));
+        }
+        if let [first, second] = groups {
+            let own = first.states[row]
+                .stress
+                .difference(&second.states[row].stress);
+            let [low, high] = own.interval;
+            record.extend([own.value, low, high].map(|own| own.to_string()));
+        }
+        record
+    });
+    write_records([head].into_iter().chain(rows))
+}
+
+/// All figures of groups.
+pub fn group_json(groups: &[NamedGroup]) -> Value {
+    let of_group = |own: &NamedGroup| {
+        json!({
+            "name": own.name,
+            "law": own.mean.law.name,
+            "mean_law": own.mean.parameters.iter().map(|one| json!({
+                "key": one.key, "value": one.value, "unit": one.unit(),
+            })).collect::<Vec<_>>(),
+            "specimens": own.group.fits.iter().zip(&own.group.tests).map(|(fit, test)| json!({
+                "file": test.name,
+                "verdict": fit.quality.verdict.map(|verdict| verdict.answer.words()),
+                "r_squared": fit.quality.r_squared,
+                "parameters": fit.parameters.iter().map(|one| (one.key.to_owned(), json!(one.value))).collect::<serde_json::Map<_, _>>(),
+            })).collect::<Vec<_>>(),
+            "states": own.states.iter().map(|state| json!({
+                "stretches": state.strains.map(|strain| 1.0 + strain),
+                "axis": state.axis + 1,
+                "mean_MPa": state.stress.mean,
+                "interval_95_percent_MPa": state.stress.estimate().interval,
+                "between_specimens_MPa": state.stress.between,
+            })).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "gelbench": env!("CARGO_PKG_VERSION"),
+        "groups": groups.iter().map(of_group).collect::<Vec<_>>(),
+    })
+}
+
+/// The mean stresses along both axes of the first protocol with their 95 % bands, and dashed by how much specimens differ.
+pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
+    let axes = groups[0].states.iter().map(|state| state.axis).max();
+    let axes = 0..=axes.unwrap_or(0);
+    let states = || groups.iter().flat_map(|own| own.states);
+    let highest = states().map(|state| state.stress.estimate().interval[1]);
+    let unit = readable(highest.fold(0.0, f64::max));
+    let count = axes.clone().count();
+    let charts = axes.map(|axis| {
+        let mut lines = curves(groups, axis);
+        unit.scale(&mut lines);
+        let title = match count {
+            1 => format!("mean of specimens, {}", groups[0].mean.law.name),
+            _ => format!("mean of specimens along axis {}, both axes alike", axis + 1),
+        };
+        let y = Axis::linear(&format!("nominal stress [{}]", unit.name));
+        (LineChart::new(title, Axis::stretch(), y, lines), 380)
+    });
+    Drawing::Charts(charts.collect())
+}
+
+fn curves(groups: &[NamedGroup], axis: usize) -> Vec<Line> {
+    let (mut bands, mut lines) = (Vec::new(), Vec::new());
+    for (own, colour) in groups.iter().zip(PALETTE) {
+        // The first protocol, from rest on.
+        let along = own.states.iter().filter(|state| state.axis == axis);
+        let protocol: Vec<&GroupState> = along.take(Group::STEPS.into()).collect();
+        let curve = |value: &dyn Fn(&GroupState) -> f64| {
+            let point = |state: &&GroupState| [1.0 + state.strains[axis], value(state)];
+            let points = protocol.iter().map(point);
+            [[1.0, 0.0]].into_iter().chain(points).collect::<Vec<_>>()
+        };
+        let [low, high] = [0, 1].map(|end| curve(&|state| state.stress.estimate().interval[end]));
+        let outline = low.into_iter().chain(high.into_iter().rev());
+        bands.push(Line::new(
+            format!("{}: 95 % of the mean", own.name),
+            outline,
+            colour,
+            Stroke::Filled,
+        ));
+        for side in [-1.0, 1.0] {
+            let name = if side > 0.0 {
+                format!("{}: standard deviation", own.name)
+            } else {
+                String::new()
+            };
+            let spread = curve(&|state| state.stress.mean + side * state.stress.between);
+            lines.push(Line::new(name, spread, colour, Stroke::Dashed));
+        }
+        let name = format!("{}, {} specimens", own.name, own.group.fits.len());
+        lines.push(Line::new(
+            name,
+            curve(&|state| state.stress.mean),
+            colour,
+            Stroke::Solid,
+        ));
+    }
+    bands.into_iter().chain(lines).collect()
+}

@@ -1,0 +1,158 @@
+//! `gelbench materials group`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::fit::a_law;
+use super::parameter_bounds::{bounds, pair, stated};
+use super::progress::tell_files;
+use super::terminal::{Outcome, Printed, print, print_report, together, warn};
+use super::test_reading::ReadingArguments;
+use super::{fit_message, interrupt};
+use gelbench_base::error::Error;
+use gelbench_calibration::calibration::{
+    Conversion, Fit, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
+    card_text,
+};
+use gelbench_mechanics::material::registry::Law;
+use gelbench_report::output::{ResultFolder, write_picture};
+use gelbench_report::results::{NamedGroup, group_json, group_picture, group_table};
+
+#[derive(Args)]
+pub struct GroupArguments {
+    /// Files of test data, one a specimen
+    #[arg(required = true, num_args = 2..)]
+    data: Vec<PathBuf>,
+    /// The specimens of another group, with which the first one is compared
+    #[arg(long, num_args = 2.., value_name = "DATA")]
+    against: Vec<PathBuf>,
+    /// The law
+    #[arg(long, value_parser = a_law())]
+    law: &'static Law,
+    /// Names of the groups
+    #[arg(long, value_delimiter = ',', default_value = "first,second")]
+    names: Vec<String>,
+    /// Keep a parameter within limits, in MPa, rad or as a ratio
+    #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
+    bounds: Vec<String>,
+    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio
+    #[arg(long = "fix", value_name = "KEY=VALUE", value_parser = pair)]
+    fixed: Vec<(String, String)>,
+    /// Name of the written files
+    #[arg(long, default_value = "group")]
+    name: String,
+    /// Write into this folder
+    #[arg(long, value_name = "FOLDER", default_value = "output/materials")]
+    output: PathBuf,
+    #[command(flatten)]
+    reading: ReadingArguments,
+    #[command(flatten)]
+    printed: Printed,
+}
+
+/// A group, its states and its mean law.
+struct Averaged {
+    group: Group,
+    states: Vec<GroupState>,
+    mean: Fit,
+}
+
+/// Fits every specimen, averages, compares and writes.
+pub fn group(arguments: GroupArguments) -> Outcome {
+    arguments.printed.choose();
+    let settings = FitSettings {
+        weighting: Weighting::Absolute,
+        bounds: [bounds(&arguments.bounds)?, stated(&arguments.fixed)?].concat(),
+        ..FitSettings::default()
+    };
+    let reading = arguments.reading.reading()?;
+    let fitted = |files: &[PathBuf]| {
+        let tests = together(files.iter().map(|path| TestData::read(path, &reading)))?;
+        tests.iter().for_each(|test| warn(&test.warnings));
+        Group::new(arguments.law, &tests, &settings)
+    };
+    let mut groups = vec![fitted(&arguments.data)?];
+    if !arguments.against.is_empty() {
+        groups.push(fitted(&arguments.against)?);
+    }
+    if arguments.names.len() < groups.len() {
+        let message = format!(
+            "--names has {} for {} groups",
+            arguments.names.len(),
+            groups.len()
+        );
+        return Err(Error::input(message, "such as --names control,treated"));
+    }
+    let all = averaged(groups, &settings)?;
+    let names = arguments.names.iter();
+    let named: Vec<NamedGroup> = names
+        .zip(&all)
+        .map(|(name, own)| NamedGroup {
+            name,
+            group: &own.group,
+            states: &own.states,
+            mean: &own.mean,
+        })
+        .collect();
+    let files = [arguments.data, arguments.against].concat();
+    write((&arguments.output, &arguments.name), &files, &named)?;
+    print_report(|| group_json(&named))?;
+    print(&fit_message::groups(&named))?;
+    Ok(0)
+}
+
+/// The groups with their states and mean laws.
+fn averaged(groups: Vec<Group>, settings: &FitSettings) -> Result<Vec<Averaged>, Error> {
+    let states: Vec<Vec<GroupState>> = match &groups[..] {
+        [first, second] => vec![first.states(Some(second)), second.states(Some(first))],
+        others => others.iter().map(|own| own.states(None)).collect(),
+    };
+    let pairs = groups.into_iter().zip(states);
+    pairs
+        .map(|(group, states)| {
+            Ok(Averaged {
+                mean: group.mean_law(&states, settings)?,
+                group,
+                states,
+            })
+        })
+        .collect()
+}
+
+/// Writes figures, table and picture, and of each group the mean as test data with its card.
+fn write(
+    (folder, name): (&Path, &str),
+    files: &[PathBuf],
+    groups: &[NamedGroup],
+) -> Result<(), Error> {
+    let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    let mut results = ResultFolder::open(folder, &format!("materials group {name}"), &inputs)?;
+    interrupt::guard(&results);
+    results.add(&format!("{name}.csv"), group_table(groups).as_bytes())?;
+    for own in groups {
+        let stem = format!("{name}-{}", own.name);
+        let test = own.group.mean_test(own.name, own.states);
+        let data = format!("{stem}.csv");
+        let conversion = Conversion {
+            stress: test.stress_measure,
+            strain: StrainColumn::Stretch,
+            unit: "MPa".to_owned(),
+        };
+        results.add(&data, conversion.table(&test)?.as_bytes())?;
+        let provenance = Provenance {
+            files: vec![data],
+            reading: Default::default(),
+            base_card: None,
+        };
+        let card = card_text(own.mean, &[test], &provenance);
+        results.add(&format!("{stem}.toml"), card.as_bytes())?;
+    }
+    let text = format!("{:#}\n", group_json(groups));
+    results.add(&format!("{name}.json"), text.as_bytes())?;
+    let picture = group_picture(groups);
+    let warning = write_picture(&mut results, &format!("{name}.png"), &picture)?.err();
+    tell_files(&results.finish()?);
+    warn(warning.as_slice());
+    Ok(())
+}
