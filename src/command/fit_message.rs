@@ -52,7 +52,7 @@ fn mounted(fit: &Fit) -> String {
     if let Some(mounted) = &fit.mounted {
         let [first, second] = mounted.bias_percent;
         text += &format!(
-            "  mounting     sheet and law solved together {} times; halved cells change the forces by {:.2} %, which is taken into account\n",
+            "  mounting     sheet and law solved together {} times; smaller cells change the forces by {:.2} %, which is taken into account\n",
             mounted.rounds, mounted.discretisation_percent
         );
         text += &format!(

@@ -67,7 +67,7 @@ pub struct MountedFit {
     /// By how much the stresses of the homogeneous reading deviate at most along both axes, in equibiaxial states up to the largest stretch
     /// that both axes reached, in %.
     pub bias_percent: [f64; 2],
-    /// By how much the forces changed at most when the cells were halved for the last fit, in % of the largest.
+    /// By how much the forces changed at most in the extrapolation from cells and halved cells for the last fit, in % of the largest.
     pub discretisation_percent: f64,
     /// How often the sheet was solved with the law.
     pub rounds: usize,

@@ -41,8 +41,6 @@ use solved::{Solved, named};
 const NEAR: f64 = 0.07;
 /// Forces that change by less, as a share of the largest one, are settled.
 const SETTLED: f64 = 2e-4;
-/// Forces that change by less lead to the settled ones.
-const NEARLY: f64 = 0.02;
 
 /// The mounting of some tests, which must all have the same one.
 ///
@@ -80,13 +78,13 @@ fn begin(
     let neo_hooke = sheet.neo_hookean(&as_mounted)?;
     let isotropic = named("fung-demiray");
     let begin = nearest(isotropic, &sheet.of_middle(&neo_hooke), &plain)?;
-    let isotropic = sheet.settled(isotropic, begin.values(), &plain, NEARLY)?;
+    let isotropic = sheet.nearly_settled(isotropic, begin.values(), &plain)?;
     let begin = sheet.extended(&isotropic, law, settings)?;
-    let mut values = sheet.settled(law, begin, settings, NEARLY)?.values;
+    let mut values = sheet.nearly_settled(law, begin, settings)?.values;
     if tests[0].mounted.estimates_stretches() {
         values.extend([1.0; 2]);
         let mut sheet = on_few_knots(tests);
-        values = sheet.settled(law, values, settings, NEARLY)?.values;
+        values = sheet.nearly_settled(law, values, settings)?.values;
     }
     Ok(values)
 }
@@ -105,7 +103,7 @@ pub fn nearest_mounted(
     let begin = begin(law, tests, mounting, settings)?;
     let mut sheet = Solved::new(tests, mounting, NEAR);
     let reached = sheet.settled(law, begin, settings, SETTLED)?;
-    let (fine, discretisation) = sheet.halved(&reached)?;
+    let (fine, discretisation) = sheet.extrapolated(&reached)?;
     let values = reached.values;
     let tests = sheet.of_middle(&fine);
     let mut fit = sheet.about(law, (&fine, &tests), &values, settings).fit()?;

@@ -92,8 +92,8 @@ pub struct About<'a, D> {
     pub law: &'static Law,
     pub tests: &'a [TestData],
     pub start: &'a [f64],
-    /// The derivatives of what is linear at an observation.
-    pub derivatives: D,
+    /// The derivatives of what is linear at an observation, and how many times larger what was measured is.
+    pub linear: D,
     /// Other values, and the tests that would have been measured by them.
     pub other: Option<(&'a [f64], &'a [TestData])>,
     pub settings: &'a FitSettings,
@@ -107,7 +107,7 @@ struct Model<'a> {
     sizes: Vec<f64>,
 }
 
-impl<D: Fn(&Observation) -> Vec<f64>> About<'_, D> {
+impl<D: Fn(&Observation) -> (Vec<f64>, f64)> About<'_, D> {
     fn model(&self) -> Result<Model<'_>, Error> {
         let response = Elastic::new(self.law, self.tests).with_zeros();
         let parameters = response.build(&[]).1.parameters;
@@ -119,7 +119,7 @@ impl<D: Fn(&Observation) -> Vec<f64>> About<'_, D> {
             .map(|(own, value)| size(own, *value, stiffness))
             .collect();
         sizes.resize(bounds.len(), SIZE_OF_ZERO);
-        let mut response = response.with_linear(self.start.to_vec(), &self.derivatives);
+        let mut response = response.with_linear(self.start.to_vec(), &self.linear);
         if let Some((values, tests)) = self.other {
             let other = Elastic::new(self.law, tests).with_zeros();
             response = response.bent(values, &other, &sizes);

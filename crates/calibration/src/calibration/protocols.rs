@@ -76,7 +76,7 @@ fn left_out(fit: &Fit, protocols: &[TestData], number: usize) -> Option<f64> {
         law: fit.law,
         tests: &others,
         start: &start,
-        derivatives: |_: &Observation| vec![0.0; start.len()],
+        linear: |_: &Observation| (vec![0.0; start.len()], 1.0),
         other: None,
         settings: &fit.settings,
     };

@@ -55,7 +55,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
         "mounting": fit.mounted.as_ref().map(|mounted| json!({
             "homogeneous_parameters": values_json(&mounted.homogeneous),
             "homogeneous_bias_percent": mounted.bias_percent,
-            "forces_of_halved_cells_percent": mounted.discretisation_percent,
+            "forces_of_smaller_cells_percent": mounted.discretisation_percent,
             "rounds": mounted.rounds,
         })),
         "homogeneous_at_rest_as_mounted": fit.at_rest_as_mounted.as_ref().map(|(parameters, r_squared)| json!({

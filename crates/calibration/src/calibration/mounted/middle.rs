@@ -22,6 +22,8 @@ pub struct Middle {
     /// of force.
     of_middle: Interpolation,
     slopes: Vec<Option<[Vec<f64>; 2]>>,
+    /// The same of c.
+    factors_of_middle: [Vec<f64>; 2],
     /// The derivatives of the forces over the cross-sections at the knots by each value.
     forces: Vec<Vec<[f64; 2]>>,
     largest: f64,
@@ -109,6 +111,8 @@ impl Middle {
             }),
             factors: [0, 1]
                 .map(|axis| coefficients(of_bars, &|knot| differences.factor(knot, axis))),
+            factors_of_middle: [0, 1]
+                .map(|axis| coefficients(&of_middle, &|knot| differences.factor(knot, axis))),
             slopes: slopes.collect(),
             forces: forces.collect(),
             law: laws[0].clone(),
@@ -125,6 +129,7 @@ impl Middle {
         Self {
             of_middle: self.of_middle.clone(),
             slopes: self.slopes.clone(),
+            factors_of_middle: self.factors_of_middle.clone(),
             forces: self.forces.clone(),
             ..own
         }
@@ -151,8 +156,8 @@ impl Middle {
     }
 
     /// The derivatives of an observation of the middle by each value, less those that the law has there, relative to the cross-section at
-    /// rest.
-    pub fn derivatives(&self, one: &Observation) -> Vec<f64> {
+    /// rest, and how many times larger the measured stress is.
+    pub fn linear(&self, one: &Observation) -> (Vec<f64>, f64) {
         let axis = one.axis;
         let basis = self.of_middle.basis(one.strains);
         let stress = self.law.stresses(one.strains)[axis];
@@ -161,7 +166,9 @@ impl Middle {
             let own = slopes.as_ref();
             own.map_or(0.0, |own| size * basis.value(&own[axis]))
         };
-        self.slopes.iter().map(slope).collect()
+        let factor = basis.value(&self.factors_of_middle[axis]);
+        let measured = 1.0 + factor * stress.signum();
+        (self.slopes.iter().map(slope).collect(), measured)
     }
 
     /// The sum of squares of the measured less the modelled stresses of some tests in MPa².

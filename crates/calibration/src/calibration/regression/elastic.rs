@@ -113,11 +113,21 @@ impl<'a> Elastic<'a> {
         }
     }
 
-    /// The same with a part that is linear in the values about some of them; `derivatives` are those at an observation of a test.
-    pub fn with_linear(self, at: Vec<f64>, derivatives: impl Fn(&Observation) -> Vec<f64>) -> Self {
+    /// The same with a part that is linear in the values about some of them; `linear` are its derivatives at an observation of a test, and
+    /// how many times larger what was measured is.
+    pub fn with_linear(
+        mut self,
+        at: Vec<f64>,
+        linear: impl Fn(&Observation) -> (Vec<f64>, f64),
+    ) -> Self {
+        let (rows, factors): (Vec<Vec<f64>>, Vec<f64>) =
+            self.observations.iter().map(linear).unzip();
+        for (point, factor) in self.points.iter_mut().zip(factors) {
+            point.factor = factor;
+        }
         let linear = Linear {
             at,
-            rows: self.observations.iter().map(derivatives).collect(),
+            rows,
             bend: None,
         };
         Self {
@@ -189,6 +199,7 @@ fn point(test: usize, data: &TestData, bin: &[Observation]) -> (Row, Observation
         position: data.drawn_strain(&observation),
         stress: observation.stress,
         count: bin.len() as f64,
+        factor: 1.0,
         weight: 1.0,
     };
     (row, observation)
@@ -256,6 +267,23 @@ impl Response for Elastic<'_> {
             [] => point.stress,
             _ => self.moved(values, point.test, observation).stress,
         }
+    }
+
+    fn scale(&self, values: &[f64], row: usize) -> f64 {
+        let measure = self.tests[self.points[row].test].stress_measure;
+        let unit = Observation {
+            stress: 1.0,
+            ..self.observations[row]
+        };
+        let of_zeros = values.iter().skip(self.law_values);
+        let pairs = self.zeros.iter().zip(of_zeros);
+        pairs.fold(1.0, |scale, (zero, value)| match zero {
+            Zero::Stretch { axis } => {
+                let stretch = 1.0 + zero.by(*value);
+                scale / unit.stretched(*axis, stretch, measure).stress
+            }
+            Zero::Record { .. } | Zero::Force { .. } => scale,
+        })
     }
 
     /// A value that a bound holds may lie elsewhere, as far as the data say: the others are as uncertain as if it were free. Only what

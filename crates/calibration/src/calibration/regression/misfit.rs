@@ -25,6 +25,8 @@ pub struct Row {
     pub stress: f64,
     /// How many observations it is the mean of.
     pub count: f64,
+    /// What was measured over what stands for it: the noise of the latter is so many times smaller.
+    pub factor: f64,
     /// The weight of its residual: that of one observation times √count.
     pub weight: f64,
 }
@@ -90,6 +92,11 @@ pub trait Response: Clone + Sync {
         f64::NAN
     }
 
+    /// What the test measured of a row over [`Self::measured`], where there are zeros.
+    fn scale(&self, _values: &[f64], _row: usize) -> f64 {
+        1.0
+    }
+
     /// Whether a value is the logarithm of a parameter.
     fn is_logarithmic(&self, _value: usize) -> bool {
         false
@@ -139,7 +146,7 @@ impl<R: Response> Misfit<R> {
     fn weighted(mut self, stresses: Vec<f64>) -> Self {
         for (row, stress) in self.rows.iter_mut().zip(stresses) {
             let data = &self.response.data()[row.test];
-            row.weight = self.weighting.weight_of(data, stress) * row.count.sqrt();
+            row.weight = row.factor * self.weighting.weight_of(data, stress) * row.count.sqrt();
         }
         self
     }
@@ -168,12 +175,17 @@ impl<R: Response> Residuals for Misfit<R> {
         let has_zeros = !self.response.zeros().is_empty();
         let rows = self.rows.iter().zip(stresses).enumerate();
         for (residual, (index, (row, stress))) in residuals.iter_mut().zip(rows) {
-            let measured = if has_zeros {
-                self.response.measured(values, index)
+            // The noise is that of what the test measured: divided by a value, it would make its derivative a noise too.
+            let (measured, scale) = if has_zeros {
+                let response = &self.response;
+                (
+                    response.measured(values, index),
+                    response.scale(values, index),
+                )
             } else {
-                row.stress
+                (row.stress, 1.0)
             };
-            *residual = row.weight * (measured - stress);
+            *residual = row.weight * scale * (measured - stress);
         }
         residuals.iter().all(|residual| residual.is_finite())
     }

@@ -98,6 +98,7 @@ impl Response for Viscous<'_> {
             position: number as f64,
             stress: state.observation.stress,
             count: state.count,
+            factor: 1.0,
             weight: 1.0,
         };
         states.enumerate().map(row).collect()

@@ -94,6 +94,7 @@ impl Response for Softens<'_> {
                 position: number as f64,
                 stress: one.stress,
                 count: 1.0,
+                factor: 1.0,
                 weight: 1.0,
             })
         });
