@@ -1,0 +1,560 @@
+//! The pattern of a first image followed through later ones.
+
+use nalgebra::Matrix2;
+
+use super::defects::{dead, repaired, saturated, told};
+use super::gradient::Reference;
+use super::grey::GreyImage;
+use super::grid::{Follower, Grid};
+use super::noise::{Classes, Noise};
+use super::region::Region;
+use super::seed::Pyramid;
+use super::spline::Spline;
+use super::subset::{Match, Subset};
+use super::warp::{Order, Warp};
+use crate::error::{Diagnostic, Error};
+
+use rayon::prelude::*;
+
+/// How a pattern is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Distance of the points in pixels.
+    pub spacing: usize,
+    /// Width of the subsets in pixels; by the pattern where it is not given.
+    pub subset: Option<usize>,
+    /// The degree of the displacement in a subset.
+    pub order: Order,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            spacing: 8,
+            subset: None,
+            order: Order::Affine,
+        }
+    }
+}
+
+/// A point of the first image in a later one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracked {
+    /// Its place in the first image in pixels.
+    pub place: [f64; 2],
+    /// Its displacement in pixels.
+    pub displacement: [f64; 2],
+    /// ∂u/∂X.
+    pub gradient: Matrix2<f64>,
+    /// The covariance of the displacement in pixels².
+    pub covariance: Matrix2<f64>,
+    /// The part of the pattern's variance that is found again.
+    pub similarity: f64,
+}
+
+/// What is known of a point in the image before.
+#[derive(Clone, Copy, Debug)]
+struct State {
+    warp: Warp,
+    /// The covariance that has been gathered on the way over other images.
+    covariance: Matrix2<f64>,
+    similarity: f64,
+}
+
+/// The pattern of a first image.
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    reference: Reference,
+    grid: Grid,
+    centres: Vec<Option<[usize; 2]>>,
+    half: usize,
+    order: Order,
+    noise: Noise,
+    white: f32,
+    dead: Vec<usize>,
+    before: Option<(GreyImage, Vec<Option<State>>)>,
+    warnings: Vec<Diagnostic>,
+}
+
+/// The most seeds of separate parts of a specimen.
+const MOST_SEEDS: usize = 12;
+
+impl Tracker {
+    /// From the first image, another one of the series, in which dead pixels are the same, and the specimen's region.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the sizes differ, or where the region has no pattern.
+    pub fn new(
+        first: &GreyImage,
+        other: &GreyImage,
+        region: &Region,
+        settings: Settings,
+    ) -> Result<Self, Error> {
+        check_size(first, other)?;
+        let usable_at_all = region.flags().to_vec();
+        let noise = Noise::of_image(first, &usable_at_all);
+        let dead = dead(first, other, &noise);
+        let image = repaired(first, &dead);
+        let saturated = saturated(&image);
+        let mut usable = usable_at_all;
+        let pixels = usable.iter().filter(|flag| **flag).count();
+        let within = |list: &[usize]| list.iter().filter(|index| region.flags()[**index]).count();
+        let warnings = told(within(&dead), within(&saturated), pixels);
+        dead.iter()
+            .chain(&saturated)
+            .for_each(|index| usable[*index] = false);
+        let grid = Grid::new(first.size(), settings.spacing.max(1), |x, y| {
+            region.has(x, y)
+        });
+        let reference = Reference::new(image, usable, &noise);
+        let half = match settings.subset {
+            Some(width) => width / 2,
+            None => half_width(&reference, &grid, settings.order, &noise),
+        };
+        let has_pattern = |point: &[usize; 2]| {
+            Subset::new(&reference, *point, half, settings.order, &noise).is_some()
+        };
+        let centres = grid
+            .points
+            .par_iter()
+            .map(|point| has_pattern(point).then_some(*point));
+        let centres: Vec<Option<[usize; 2]>> = centres.collect();
+        if centres.iter().flatten().count() < 3 {
+            let message = "the specimen shows no pattern that could be followed";
+            let hint = "take sharper images of a speckled specimen, or check the mask or outline";
+            return Err(Error::input(message, hint));
+        }
+        Ok(Self {
+            white: first.white(),
+            reference,
+            grid,
+            centres,
+            half,
+            order: settings.order,
+            noise,
+            dead,
+            before: None,
+            warnings,
+        })
+    }
+
+    /// What a user must know.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Width of the subsets in pixels.
+    pub fn subset(&self) -> usize {
+        2 * self.half + 1
+    }
+
+    /// The noise of the pixels; after the first image has been followed, from what remains between both.
+    pub fn noise(&self) -> &Noise {
+        &self.noise
+    }
+
+    /// The places of all points in pixels.
+    pub fn places(&self) -> &[[usize; 2]] {
+        &self.grid.points
+    }
+
+    /// The first image and its gradients.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// A later image without its dead pixels.
+    pub fn repaired(&self, image: &GreyImage) -> GreyImage {
+        repaired(image, &self.dead)
+    }
+
+    fn follower(&self) -> Follower<'_> {
+        Follower {
+            reference: &self.reference,
+            centres: &self.centres,
+            neighbours: &self.grid.neighbours,
+            half: self.half,
+            order: self.order,
+            noise: &self.noise,
+        }
+    }
+
+    /// Follows all points into the next image; a point that is not found there is `None`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where its size is another one, or where no point is found.
+    pub fn follow(&mut self, image: &GreyImage) -> Result<Vec<Option<Tracked>>, Error> {
+        check_size(&self.reference.image, image)?;
+        let image = self.repaired(image);
+        let spline = Spline::new(&image);
+        let is_first = self.before.is_none();
+        let mut found = self.direct(&image, &spline);
+        if is_first {
+            self.learn_noise(&spline, &mut found);
+        }
+        self.follower().drop_outliers(&mut found);
+        let mut states: Vec<Option<State>> = found
+            .iter()
+            .map(|one| one.as_ref().map(State::of))
+            .collect();
+        self.over_image_before(&image, &spline, &mut states);
+        if states.iter().all(Option::is_none) {
+            let message = "no point of the first image is found again";
+            let hint = "give the images between them, or check that the series shows one specimen; the pattern must stay the same";
+            return Err(Error::input(message, hint));
+        }
+        let tracked = states
+            .iter()
+            .zip(&self.grid.points)
+            .map(|(state, point)| Some(state.as_ref()?.tracked(*point)));
+        let tracked = tracked.collect();
+        let kept = self.before.take().map(|(_, states)| states);
+        let states = states
+            .into_iter()
+            .enumerate()
+            .map(|(point, state)| state.or_else(|| kept.as_ref().and_then(|kept| kept[point])));
+        self.before = Some((image, states.collect()));
+        Ok(tracked)
+    }
+
+    /// Matches with the first image itself.
+    fn direct(&self, image: &GreyImage, spline: &Spline) -> Vec<Option<Match>> {
+        let follower = self.follower();
+        let mut found: Vec<Option<Match>> = vec![None; self.centres.len()];
+        let mut attempts = vec![0; found.len()];
+        if let Some((_, states)) = &self.before {
+            let guesses = states
+                .iter()
+                .enumerate()
+                .filter_map(|(point, state)| Some((point, state.as_ref()?.warp)));
+            for (point, one) in follower.find_all(spline, guesses.collect()) {
+                found[point] = one;
+            }
+            follower.spread(spline, &mut found, &mut attempts);
+        }
+        // A part of the specimen that nothing leads to.
+        let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
+            self.centres[point].is_some() && found[point].is_none() && attempts[point] == 0
+        };
+        if self.before.is_none() || found.iter().all(Option::is_none) {
+            self.seed(
+                &follower,
+                (image, spline),
+                &mut found,
+                &mut attempts,
+                &is_open,
+            );
+        }
+        found
+    }
+
+    /// Looks for seeds until each part of the specimen has one, or none is found.
+    fn seed(
+        &self,
+        follower: &Follower,
+        (image, spline): (&GreyImage, &Spline),
+        found: &mut [Option<Match>],
+        attempts: &mut [usize],
+        is_open: &dyn Fn(usize, &[Option<Match>], &[usize]) -> bool,
+    ) {
+        let pyramid = Pyramid::new(
+            (follower.reference, follower.noise, spline),
+            image,
+            follower.half,
+            follower.order,
+        );
+        for round in 0..MOST_SEEDS {
+            let open: Vec<usize> = (0..found.len())
+                .filter(|point| is_open(*point, found, attempts))
+                .collect();
+            let candidates = spread_out(&open);
+            let centre = |point: &usize| Some((*point, follower.centres[*point]?));
+            let mut seeds = candidates.iter().filter_map(centre);
+            let seed = seeds.find_map(|(point, centre)| Some((point, pyramid.seek(centre)?)));
+            let deformed = || {
+                let mut seeds = candidates.iter().take(4).filter_map(centre);
+                seeds.find_map(|(point, centre)| Some((point, pyramid.seek_deformed(centre)?)))
+            };
+            let seed = if round == 0 {
+                seed.or_else(deformed)
+            } else {
+                seed
+            };
+            let Some((point, one)) = seed else {
+                return;
+            };
+            found[point] = Some(one);
+            attempts[point] += 1;
+            follower.spread(spline, found, attempts);
+        }
+    }
+
+    /// The noise from what remains, and the matches with it.
+    fn learn_noise(&mut self, spline: &Spline, found: &mut [Option<Match>]) {
+        let mut misfits: Vec<f64> = found.iter().flatten().map(|one| one.misfit).collect();
+        if misfits.is_empty() {
+            return;
+        }
+        misfits.sort_by(f64::total_cmp);
+        let usual = 2.0 * misfits[misfits.len() / 2];
+        let empty = Classes::new(self.white);
+        let points: Vec<usize> = (0..found.len())
+            .filter(|point| found[*point].is_some_and(|one| one.misfit <= usual))
+            .collect();
+        let parts = points.par_chunks(256).map(|points| {
+            let mut classes = empty.clone();
+            for point in points {
+                let centre = self.centres[*point];
+                let subset = centre.and_then(|centre| {
+                    Subset::new(&self.reference, centre, self.half, self.order, &self.noise)
+                });
+                if let (Some(subset), Some(one)) = (subset, &found[*point]) {
+                    subset.classify(spline, one, &mut classes);
+                }
+            }
+            classes
+        });
+        let parts: Vec<Classes> = parts.collect();
+        let classes = parts.iter().fold(empty, Classes::join);
+        if let Some(noise) = classes.noise() {
+            self.noise = noise;
+            let reference = &self.reference;
+            self.reference =
+                Reference::new(reference.image.clone(), reference.usable.clone(), &noise);
+            let follower = self.follower();
+            let guesses = found
+                .iter()
+                .enumerate()
+                .filter_map(|(point, one)| Some((point, one.as_ref()?.warp)));
+            let again = follower.find_all(spline, guesses.collect());
+            again
+                .into_iter()
+                .for_each(|(point, one)| found[point] = one);
+            let mut attempts = vec![0; found.len()];
+            follower.spread(spline, found, &mut attempts);
+        }
+    }
+
+    /// Points that the first image does not lead to, over the image before; where the first image's pattern is found from there, it remains
+    /// the reference, and else the covariances of both steps add up.
+    fn over_image_before(&self, image: &GreyImage, spline: &Spline, states: &mut [Option<State>]) {
+        let Some((last, before)) = &self.before else {
+            return;
+        };
+        let size = last.size();
+        let centre = |point: usize| {
+            let [x, y] = before[point].as_ref()?.place(self.grid.points[point]);
+            let inside =
+                x >= 0.0 && y >= 0.0 && x < size[0] as f64 - 1.0 && y < size[1] as f64 - 1.0;
+            inside.then(|| [x.round() as usize, y.round() as usize])
+        };
+        let lost: Vec<usize> = (0..states.len())
+            .filter(|point| states[*point].is_none() && before[*point].is_some())
+            .collect();
+        if lost.is_empty() {
+            return;
+        }
+        let centres: Vec<Option<[usize; 2]>> = (0..states.len()).map(centre).collect();
+        let usable = vec![true; size[0] * size[1]];
+        let reference = Reference::new(last.clone(), usable, &self.noise);
+        let follower = Follower {
+            reference: &reference,
+            centres: &centres,
+            ..self.follower()
+        };
+        let mut found: Vec<Option<Match>> = vec![None; states.len()];
+        // What is known of the step of the others leads to the lost ones.
+        for point in 0..states.len() {
+            if let (Some(now), Some(then), Some(_)) =
+                (&states[point], &before[point], centres[point])
+            {
+                found[point] = now.since(then);
+            }
+        }
+        let mut attempts = vec![0; found.len()];
+        if found.iter().all(Option::is_none) {
+            let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
+                centres[point].is_some() && found[point].is_none() && attempts[point] == 0
+            };
+            self.seed(
+                &follower,
+                (image, spline),
+                &mut found,
+                &mut attempts,
+                &is_open,
+            );
+        } else {
+            follower.spread(spline, &mut found, &mut attempts);
+        }
+        let direct = self.follower();
+        let solved = lost.par_iter().filter_map(|&point| {
+            let step = found[point]?;
+            let state = before[point].as_ref()?.followed_by(
+                &step,
+                self.grid.points[point],
+                centres[point]?,
+            );
+            let again = direct.find(point, spline, state.warp);
+            Some((point, again.map_or(state, |one| State::of(&one))))
+        });
+        let solved: Vec<(usize, State)> = solved.collect();
+        solved
+            .into_iter()
+            .for_each(|(point, state)| states[point] = Some(state));
+    }
+}
+
+impl State {
+    fn of(found: &Match) -> Self {
+        Self {
+            warp: found.warp,
+            covariance: found.covariance,
+            similarity: found.similarity,
+        }
+    }
+
+    fn place(&self, point: [usize; 2]) -> [f64; 2] {
+        let [u, v] = self.warp.displacement();
+        [point[0] as f64 + u, point[1] as f64 + v]
+    }
+
+    /// The step from another state to this one, as if it had been matched.
+    fn since(&self, then: &Self) -> Option<Match> {
+        let inverse = then.warp.deformation_gradient().try_inverse()?;
+        let ([a, b], [c, d]) = (self.warp.displacement(), then.warp.displacement());
+        let gradient = self.warp.deformation_gradient() * inverse - Matrix2::identity();
+        Some(Match {
+            warp: Warp::affine([a - c, b - d], gradient),
+            covariance: Matrix2::zeros(),
+            similarity: self.similarity,
+            gain: 1.0,
+            offset: 0.0,
+            misfit: 0.0,
+        })
+    }
+
+    /// This state and a step from a pixel near its place.
+    fn followed_by(&self, step: &Match, point: [usize; 2], centre: [usize; 2]) -> Self {
+        let [x, y] = self.place(point);
+        let [u, v] = step.warp.at(x - centre[0] as f64, y - centre[1] as f64, 6);
+        let f = step.warp.deformation_gradient() * self.warp.deformation_gradient();
+        Self {
+            warp: Warp::affine(
+                [x + u - point[0] as f64, y + v - point[1] as f64],
+                f - Matrix2::identity(),
+            ),
+            covariance: self.covariance + step.covariance,
+            similarity: step.similarity,
+        }
+    }
+
+    fn tracked(&self, point: [usize; 2]) -> Tracked {
+        Tracked {
+            place: point.map(|x| x as f64),
+            displacement: self.warp.displacement(),
+            gradient: self.warp.deformation_gradient() - Matrix2::identity(),
+            covariance: self.covariance,
+            similarity: self.similarity,
+        }
+    }
+}
+
+fn check_size(first: &GreyImage, other: &GreyImage) -> Result<(), Error> {
+    let ([a, b], [c, d]) = (first.size(), other.size());
+    if [a, b] == [c, d] {
+        return Ok(());
+    }
+    let message = format!("an image has {c} × {d} pixels, and the first one has {a} × {b}");
+    Err(Error::input(
+        message,
+        "give images of one camera with one setting",
+    ))
+}
+
+/// Some of the points, from the middle of their list outwards.
+fn spread_out(points: &[usize]) -> Vec<usize> {
+    const MOST: usize = 9;
+    let parts = [8, 4, 12, 6, 10, 2, 14, 7, 9].map(|sixteenth| points.len() * sixteenth / 16);
+    let mut chosen: Vec<usize> = parts
+        .into_iter()
+        .filter_map(|at| points.get(at).copied())
+        .collect();
+    let mut seen = std::collections::BTreeSet::new();
+    chosen.retain(|point| seen.insert(*point));
+    chosen.truncate(MOST);
+    chosen
+}
+
+/// Half the width of a subset that is five speckles wide, by the width at half height of the pattern's autocorrelation, and wide enough for
+/// standard deviations of the displacement below a twentieth of a pixel, but at most an eighth of the image.
+fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Noise) -> usize {
+    const SPECKLES: f64 = 5.0;
+    const DEVIATION: f64 = 0.05;
+    const LEAST: usize = 5;
+    let size = reference.image.size();
+    let most = (size[0].min(size[1]) / 8).max(LEAST);
+    let start = (0.5 * SPECKLES * speckle(reference, noise)).round() as usize;
+    let every = (grid.points.len() / 200).max(1);
+    let sample: Vec<[usize; 2]> = grid.points.iter().step_by(every).copied().collect();
+    let deviation = |half: usize| {
+        let deviations = sample.par_iter().map(|point| {
+            let subset = Subset::new(reference, *point, half, order, noise);
+            subset.map_or(f64::INFINITY, |subset| {
+                (0.5 * subset.expected_covariance().trace()).sqrt()
+            })
+        });
+        let mut deviations: Vec<f64> = deviations.collect();
+        deviations.sort_by(f64::total_cmp);
+        deviations
+            .get(deviations.len() / 2)
+            .copied()
+            .unwrap_or(f64::INFINITY)
+    };
+    let mut half = start.clamp(LEAST, most);
+    while half < most && deviation(half) > DEVIATION {
+        half = (half + 1 + half / 8).min(most);
+    }
+    half
+}
+
+/// The width at half height of the autocorrelation of the pattern, the mean of both directions, in pixels.
+fn speckle(reference: &Reference, noise: &Noise) -> f64 {
+    const MOST: usize = 40;
+    let ([width, height], values) = (reference.image.size(), reference.image.values());
+    let along = |step: usize| -> Vec<f64> {
+        let product = |lag: usize| {
+            let last = values.len().saturating_sub(lag * step);
+            let (mut sum, mut count, mut own) = (0.0, 0.0, [0.0; 2]);
+            for at in 0..last {
+                if reference.usable[at] && reference.usable[at + lag * step] {
+                    let pair = [f64::from(values[at]), f64::from(values[at + lag * step])];
+                    (sum, count) = (sum + pair[0] * pair[1], count + 1.0);
+                    own = [own[0] + pair[0], own[1] + pair[1]];
+                }
+            }
+            let mean = if lag == 0 {
+                noise.variance(own[0] / count)
+            } else {
+                0.0
+            };
+            sum / count - own[0] * own[1] / (count * count) - mean
+        };
+        (0..MOST.min(width.min(height) / 2)).map(product).collect()
+    };
+    let half_height = |products: Vec<f64>| {
+        let level = 0.5 * products[0];
+        let below = products
+            .iter()
+            .position(|product| *product < level)
+            .unwrap_or(products.len() - 1)
+            .max(1);
+        let (high, low) = (products[below - 1], products[below]);
+        let part = if high > low {
+            ((high - level) / (high - low)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        2.0 * ((below - 1) as f64 + part)
+    };
+    0.5 * (half_height(along(1)) + half_height(along(width)))
+}
