@@ -28,6 +28,7 @@ use job::Job;
 pub use job::exit_code;
 pub use options::Options;
 use request::request;
+pub use values::unit;
 
 /// Corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {

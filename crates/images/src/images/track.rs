@@ -148,6 +148,11 @@ impl Tracker {
         2 * self.half + 1
     }
 
+    /// The largest grey value of the camera.
+    pub fn white(&self) -> f32 {
+        self.white
+    }
+
     /// The noise of the pixels; after the first image has been followed, from what remains between both.
     pub fn noise(&self) -> &Noise {
         &self.noise
