@@ -1,16 +1,11 @@
 //! Tracked points as markers in mm.
 
-use super::track::Tracked;
+use super::state::Tracked;
 use crate::markers::{Frame, Marker, MarkerSeries};
 
 /// The frames of tracked points as markers: in mm by the length of a pixel, x to the right, y up, with the origin at the centre of the lower left
 /// pixel of images of `height` rows. Each frame has its number. A marker's standard deviation is √(½ tr Cov(u)).
-pub fn series(
-    frames: &[(usize, Vec<Option<Tracked>>)],
-    places: &[[usize; 2]],
-    height: usize,
-    pixel: f64,
-) -> MarkerSeries {
+pub fn series(frames: &[(usize, Vec<Option<Tracked>>)], height: usize, pixel: f64) -> MarkerSeries {
     let up = (height - 1) as f64;
     let marker = |(number, tracked): (usize, &Option<Tracked>)| {
         let tracked = tracked.as_ref()?;
@@ -22,15 +17,8 @@ pub fn series(
             standard_deviation: Some((0.5 * tracked.covariance.trace()).sqrt() * pixel),
         })
     };
-    let found = |point: &usize| frames.iter().any(|(_, all)| all[*point].is_some());
-    let lost = (0..places.len())
-        .filter(|point| !found(point))
-        .map(|point| {
-            let [x, y] = places[point].map(|x| x as f64);
-            [x * pixel, (up - y) * pixel]
-        });
     MarkerSeries {
-        lost: lost.collect(),
+        lost: Vec::new(),
         at_rest: Vec::new(),
         frames: frames
             .iter()

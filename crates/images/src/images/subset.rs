@@ -15,22 +15,13 @@
 //!
 //! where 1/det F counts that fewer pixels of a compressed image are behind as many values.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Vector2};
+use nalgebra::{DVector, Matrix2, Vector2};
 
 use super::gradient::Reference;
+use super::matrices::{Matrices, Pixel};
 use super::noise::{Classes, Noise};
 use super::spline::Spline;
 use super::warp::{DEGREES, Order, Warp, functions};
-
-/// A pixel of a subset: distance from the centre, grey value, smoothed gradient and gradient.
-#[derive(Clone, Copy, Debug)]
-struct Pixel {
-    x: f32,
-    y: f32,
-    value: f32,
-    smooth: [f32; 2],
-    slope: [f32; 2],
-}
 
 /// A subset of the first image.
 #[derive(Clone, Debug)]
@@ -42,17 +33,6 @@ pub struct Subset {
     noise: Noise,
     pixels: Vec<Pixel>,
     matrices: Matrices,
-}
-
-/// What the pixels of a subset give once for all.
-#[derive(Clone, Debug)]
-struct Matrices {
-    step: Cholesky<f64, Dyn>,
-    spread: DMatrix<f64>,
-    sum: DVector<f64>,
-    weighted: DVector<f64>,
-    value: f64,
-    square: f64,
 }
 
 /// Where a subset was found.
@@ -85,8 +65,8 @@ struct Sums {
 }
 
 impl Subset {
-    /// The usable pixels of a square of 2 half + 1 pixels about a pixel. `None` where fewer than `LEAST_SHARE` of them are usable, or where
-    /// the pattern does not determine the displacement.
+    /// The usable pixels of a square of 2 half + 1 pixels about a pixel. `None` where fewer than half of them are usable, or where the pattern
+    /// does not determine the displacement.
     pub fn new(
         reference: &Reference,
         centre: [usize; 2],
@@ -94,16 +74,40 @@ impl Subset {
         order: Order,
         noise: &Noise,
     ) -> Option<Self> {
-        let [width, height] = reference.image.size();
-        let [x, y] = centre;
-        let mut pixels = Vec::with_capacity((2 * half + 1).pow(2));
-        for row in y.saturating_sub(half)..=(y + half).min(height - 1) {
-            for column in x.saturating_sub(half)..=(x + half).min(width - 1) {
-                let at = row * width + column;
+        Self::of_square(reference, centre, 2 * half + 1, order.functions(), noise)
+    }
+
+    /// A square of `width` pixels of which the displacement alone is unknown, its gradient known. Squares whose centres are `width` apart
+    /// share no pixel.
+    pub fn patch(
+        reference: &Reference,
+        centre: [usize; 2],
+        width: usize,
+        noise: &Noise,
+    ) -> Option<Self> {
+        Self::of_square(reference, centre, width, 1, noise)
+    }
+
+    fn of_square(
+        reference: &Reference,
+        centre: [usize; 2],
+        width: usize,
+        count: usize,
+        noise: &Noise,
+    ) -> Option<Self> {
+        let size = reference.image.size();
+        let [columns, rows] = [0, 1].map(|axis| {
+            let from = centre[axis].saturating_sub(width / 2);
+            from..(centre[axis] + width - width / 2).min(size[axis])
+        });
+        let mut pixels = Vec::with_capacity(width * width);
+        for row in rows {
+            for column in columns.clone() {
+                let at = row * size[0] + column;
                 if reference.usable[at] {
                     pixels.push(Pixel {
-                        x: column as f32 - x as f32,
-                        y: row as f32 - y as f32,
+                        x: column as f32 - centre[0] as f32,
+                        y: row as f32 - centre[1] as f32,
                         value: reference.image.values()[at],
                         smooth: [0, 1].map(|axis| reference.smooth[axis].values()[at]),
                         slope: [0, 1].map(|axis| reference.gradient[axis].values()[at]),
@@ -111,19 +115,12 @@ impl Subset {
                 }
             }
         }
-        let whole = ((2 * half + 1) * (2 * half + 1)) as f64;
-        if (pixels.len() as f64) < LEAST_SHARE * whole {
+        if (pixels.len() as f64) < LEAST_SHARE * (width * width) as f64 {
             return None;
         }
-        let (half, count) = (half.max(1) as f64, order.functions());
-        Self::of_pixels(
-            pixels,
-            centre.map(|c| c as f64),
-            half,
-            count,
-            reference.overlap,
-            *noise,
-        )
+        let half = (width / 2).max(1) as f64;
+        let centre = centre.map(|c| c as f64);
+        Self::of_pixels(pixels, centre, half, count, reference.overlap, *noise)
     }
 
     fn of_pixels(
@@ -146,23 +143,6 @@ impl Subset {
         })
     }
 
-    /// The same pixels with the displacement alone unknown.
-    pub fn translating(&self) -> Option<Self> {
-        Self::of_pixels(
-            self.pixels.clone(),
-            self.centre,
-            self.half,
-            1,
-            self.overlap,
-            self.noise,
-        )
-    }
-
-    /// The centre in pixels.
-    pub fn centre(&self) -> [f64; 2] {
-        self.centre
-    }
-
     /// The mean of the pixels' places in pixels.
     pub fn middle(&self) -> [f64; 2] {
         let count = self.pixels.len() as f64;
@@ -177,6 +157,11 @@ impl Subset {
             self.centre[0] + sum(|pixel| pixel.x),
             self.centre[1] + sum(|pixel| pixel.y),
         ]
+    }
+
+    /// The root mean square of both components' standard deviations that an image of the same noise would give without deformation, in pixels.
+    pub fn expected_deviation(&self) -> f64 {
+        (0.5 * self.expected_covariance().trace()).sqrt()
     }
 
     /// The covariance of a displacement that an image of the same noise would have without deformation, in pixels².
@@ -252,83 +237,11 @@ impl Subset {
         None
     }
 
-    /// Finds the shift of the subset beyond a displacement given at each of its pixels, whose gradient at the centre is F − 1. Returns the
-    /// shift, its covariance and the match's figures.
-    pub fn shift(
-        mut self,
-        image: &Spline,
-        field: &dyn Fn([f64; 2]) -> Option<[f64; 2]>,
-        f: Matrix2<f64>,
-        noise: &Noise,
-    ) -> Option<Match> {
-        const MOST: usize = 40;
-        const SMALL: f64 = 1e-3;
-        let whole = self.pixels.len() as f64;
-        let mut shift = [0.0; 2];
-        let known: Vec<Option<[f64; 2]>> = self
-            .pixels
-            .iter()
-            .map(|pixel| {
-                field([
-                    self.centre[0] + f64::from(pixel.x),
-                    self.centre[1] + f64::from(pixel.y),
-                ])
-            })
-            .collect();
-        let mut places = known.into_iter();
-        let mut displaced = Vec::new();
-        self.pixels.retain(|_| match places.next().flatten() {
-            Some(displacement) => {
-                displaced.push(displacement);
-                true
-            }
-            None => false,
-        });
-        self = Self::of_pixels(
-            self.pixels,
-            self.centre,
-            self.half,
-            1,
-            self.overlap,
-            self.noise,
-        )?;
-        for _ in 0..MOST {
-            if (self.pixels.len() as f64) < LEAST_SHARE * whole {
-                return None;
-            }
-            let mut order = displaced.iter();
-            let sums = self.sums_of(image, |_, _| {
-                let [x, y] = *order.next().unwrap_or(&[0.0; 2]);
-                [x + shift[0], y + shift[1]]
-            });
-            let sums = sums.ok()?;
-            let q = self.step(&sums, noise);
-            let change = f * Vector2::new(q[0], q[1]);
-            shift = [shift[0] + change.x, shift[1] + change.y];
-            if !(change.norm() <= 2.0 * self.half) {
-                return None;
-            }
-            if change.norm() < SMALL {
-                let warp = Warp::affine(shift, f - Matrix2::identity());
-                return self.concluded(&sums, warp, noise);
-            }
-        }
-        None
-    }
-
+    /// The sums, or the pixels that are inside of the image where some are not.
     fn sums(
         &self,
         image: &Spline,
         place: &dyn Fn(f64, f64) -> [f64; 2],
-    ) -> Result<Sums, Vec<Pixel>> {
-        self.sums_of(image, place)
-    }
-
-    /// The sums, or the pixels that are inside of the image where some are not.
-    fn sums_of(
-        &self,
-        image: &Spline,
-        mut place: impl FnMut(f64, f64) -> [f64; 2],
     ) -> Result<Sums, Vec<Pixel>> {
         let mut sums = Sums {
             count: self.pixels.len() as f64,
@@ -457,72 +370,5 @@ impl Subset {
                 classes.add(own, residual * residual / gain);
             }
         }
-    }
-}
-
-impl Matrices {
-    fn new(pixels: &[Pixel], half: f64, count: usize, overlap: f64, noise: &Noise) -> Option<Self> {
-        let size = 2 * count;
-        let (scale, number) = (1.0 / half, pixels.len() as f64);
-        let mut step = DMatrix::zeros(size, size);
-        let mut spread = DMatrix::zeros(size, size);
-        let mut shapes: DMatrix<f64> = DMatrix::zeros(count, count);
-        let [mut sum, mut weighted, mut slopes, mut slopes_weighted] =
-            [(); 4].map(|()| DVector::zeros(size));
-        let (mut value, mut square) = (0.0, 0.0);
-        let mean = pixels
-            .iter()
-            .map(|pixel| f64::from(pixel.value))
-            .sum::<f64>()
-            / number;
-        for pixel in pixels {
-            let phi = functions(f64::from(pixel.x) * scale, f64::from(pixel.y) * scale);
-            let smooth = pixel.smooth.map(f64::from);
-            let slope = pixel.slope.map(f64::from);
-            let own = f64::from(pixel.value);
-            value += own;
-            square += own * own;
-            for k in 0..count {
-                for axis in [0, 1] {
-                    let (row, j, s) = (2 * k + axis, smooth[axis] * phi[k], slope[axis] * phi[k]);
-                    sum[row] += j;
-                    weighted[row] += j * (own - mean);
-                    slopes[row] += s;
-                    slopes_weighted[row] += s * (own - mean);
-                }
-                for l in 0..count {
-                    let product = phi[k] * phi[l];
-                    shapes[(k, l)] += product;
-                    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                        step[(2 * k + a, 2 * l + b)] += product * smooth[a] * slope[b];
-                        spread[(2 * k + a, 2 * l + b)] += product * smooth[a] * smooth[b];
-                    }
-                }
-            }
-        }
-        let variation = square - number * mean * mean;
-        if variation <= 0.0 {
-            return None;
-        }
-        step -= &sum * slopes.transpose() / number
-            + &weighted * slopes_weighted.transpose() / variation;
-        spread -= &sum * sum.transpose() / number + &weighted * weighted.transpose() / variation;
-        let of_noise = noise.variance(mean) * overlap;
-        for k in 0..count {
-            for l in 0..count {
-                for axis in [0, 1] {
-                    step[(2 * k + axis, 2 * l + axis)] -= of_noise * shapes[(k, l)];
-                }
-            }
-        }
-        let step = 0.5 * (&step + step.transpose());
-        Some(Self {
-            step: Cholesky::new(step)?,
-            spread,
-            sum,
-            weighted,
-            value,
-            square,
-        })
     }
 }

@@ -1,7 +1,5 @@
 //! The pattern of a first image followed through later ones.
 
-use nalgebra::Matrix2;
-
 use super::defects::{dead, repaired, saturated, told};
 use super::gradient::Reference;
 use super::grey::GreyImage;
@@ -9,9 +7,11 @@ use super::grid::{Follower, Grid};
 use super::noise::{Classes, Noise};
 use super::region::Region;
 use super::seed::Pyramid;
+use super::speckle::half_width;
 use super::spline::Spline;
+use super::state::{State, Tracked};
 use super::subset::{Match, Subset};
-use super::warp::{Order, Warp};
+use super::warp::Order;
 use crate::error::{Diagnostic, Error};
 
 use rayon::prelude::*;
@@ -37,43 +37,23 @@ impl Default for Settings {
     }
 }
 
-/// A point of the first image in a later one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tracked {
-    /// Its place in the first image in pixels.
-    pub place: [f64; 2],
-    /// Its displacement in pixels.
-    pub displacement: [f64; 2],
-    /// ∂u/∂X.
-    pub gradient: Matrix2<f64>,
-    /// The covariance of the displacement in pixels².
-    pub covariance: Matrix2<f64>,
-    /// The part of the pattern's variance that is found again.
-    pub similarity: f64,
-}
-
-/// What is known of a point in the image before.
-#[derive(Clone, Copy, Debug)]
-struct State {
-    warp: Warp,
-    /// The covariance that has been gathered on the way over other images.
-    covariance: Matrix2<f64>,
-    similarity: f64,
-}
+/// Standard deviation in pixels of a displacement beyond which a pattern is none.
+const KNOWN: f64 = 1.0;
 
 /// The pattern of a first image.
 #[derive(Clone, Debug)]
 pub struct Tracker {
-    reference: Reference,
-    grid: Grid,
-    centres: Vec<Option<[usize; 2]>>,
-    half: usize,
-    order: Order,
-    noise: Noise,
-    white: f32,
-    dead: Vec<usize>,
-    before: Option<(GreyImage, Vec<Option<State>>)>,
-    warnings: Vec<Diagnostic>,
+    pub(super) reference: Reference,
+    pub(super) grid: Grid,
+    pub(super) centres: Vec<Option<[usize; 2]>>,
+    pub(super) half: usize,
+    pub(super) order: Order,
+    pub(super) noise: Noise,
+    pub(super) white: f32,
+    pub(super) dead: Vec<usize>,
+    pub(super) spacing: usize,
+    pub(super) before: Option<(GreyImage, Vec<Option<State>>)>,
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 /// The most seeds of separate parts of a specimen.
@@ -112,7 +92,8 @@ impl Tracker {
             None => half_width(&reference, &grid, settings.order, &noise),
         };
         let has_pattern = |point: &[usize; 2]| {
-            Subset::new(&reference, *point, half, settings.order, &noise).is_some()
+            let subset = Subset::new(&reference, *point, half, settings.order, &noise);
+            subset.is_some_and(|subset| subset.expected_deviation() < KNOWN)
         };
         let centres = grid
             .points
@@ -133,6 +114,7 @@ impl Tracker {
             order: settings.order,
             noise,
             dead,
+            spacing: settings.spacing.max(1),
             before: None,
             warnings,
         })
@@ -409,61 +391,6 @@ impl Tracker {
     }
 }
 
-impl State {
-    fn of(found: &Match) -> Self {
-        Self {
-            warp: found.warp,
-            covariance: found.covariance,
-            similarity: found.similarity,
-        }
-    }
-
-    fn place(&self, point: [usize; 2]) -> [f64; 2] {
-        let [u, v] = self.warp.displacement();
-        [point[0] as f64 + u, point[1] as f64 + v]
-    }
-
-    /// The step from another state to this one, as if it had been matched.
-    fn since(&self, then: &Self) -> Option<Match> {
-        let inverse = then.warp.deformation_gradient().try_inverse()?;
-        let ([a, b], [c, d]) = (self.warp.displacement(), then.warp.displacement());
-        let gradient = self.warp.deformation_gradient() * inverse - Matrix2::identity();
-        Some(Match {
-            warp: Warp::affine([a - c, b - d], gradient),
-            covariance: Matrix2::zeros(),
-            similarity: self.similarity,
-            gain: 1.0,
-            offset: 0.0,
-            misfit: 0.0,
-        })
-    }
-
-    /// This state and a step from a pixel near its place.
-    fn followed_by(&self, step: &Match, point: [usize; 2], centre: [usize; 2]) -> Self {
-        let [x, y] = self.place(point);
-        let [u, v] = step.warp.at(x - centre[0] as f64, y - centre[1] as f64, 6);
-        let f = step.warp.deformation_gradient() * self.warp.deformation_gradient();
-        Self {
-            warp: Warp::affine(
-                [x + u - point[0] as f64, y + v - point[1] as f64],
-                f - Matrix2::identity(),
-            ),
-            covariance: self.covariance + step.covariance,
-            similarity: step.similarity,
-        }
-    }
-
-    fn tracked(&self, point: [usize; 2]) -> Tracked {
-        Tracked {
-            place: point.map(|x| x as f64),
-            displacement: self.warp.displacement(),
-            gradient: self.warp.deformation_gradient() - Matrix2::identity(),
-            covariance: self.covariance,
-            similarity: self.similarity,
-        }
-    }
-}
-
 fn check_size(first: &GreyImage, other: &GreyImage) -> Result<(), Error> {
     let ([a, b], [c, d]) = (first.size(), other.size());
     if [a, b] == [c, d] {
@@ -488,78 +415,4 @@ fn spread_out(points: &[usize]) -> Vec<usize> {
     chosen.retain(|point| seen.insert(*point));
     chosen.truncate(MOST);
     chosen
-}
-
-/// Half the width of a subset that is five speckles wide, by the width at half height of the pattern's autocorrelation, and wide enough for
-/// standard deviations of the displacement below a twentieth of a pixel, but at most an eighth of the image.
-fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Noise) -> usize {
-    const SPECKLES: f64 = 5.0;
-    const DEVIATION: f64 = 0.05;
-    const LEAST: usize = 5;
-    let size = reference.image.size();
-    let most = (size[0].min(size[1]) / 8).max(LEAST);
-    let start = (0.5 * SPECKLES * speckle(reference, noise)).round() as usize;
-    let every = (grid.points.len() / 200).max(1);
-    let sample: Vec<[usize; 2]> = grid.points.iter().step_by(every).copied().collect();
-    let deviation = |half: usize| {
-        let deviations = sample.par_iter().map(|point| {
-            let subset = Subset::new(reference, *point, half, order, noise);
-            subset.map_or(f64::INFINITY, |subset| {
-                (0.5 * subset.expected_covariance().trace()).sqrt()
-            })
-        });
-        let mut deviations: Vec<f64> = deviations.collect();
-        deviations.sort_by(f64::total_cmp);
-        deviations
-            .get(deviations.len() / 2)
-            .copied()
-            .unwrap_or(f64::INFINITY)
-    };
-    let mut half = start.clamp(LEAST, most);
-    while half < most && deviation(half) > DEVIATION {
-        half = (half + 1 + half / 8).min(most);
-    }
-    half
-}
-
-/// The width at half height of the autocorrelation of the pattern, the mean of both directions, in pixels.
-fn speckle(reference: &Reference, noise: &Noise) -> f64 {
-    const MOST: usize = 40;
-    let ([width, height], values) = (reference.image.size(), reference.image.values());
-    let along = |step: usize| -> Vec<f64> {
-        let product = |lag: usize| {
-            let last = values.len().saturating_sub(lag * step);
-            let (mut sum, mut count, mut own) = (0.0, 0.0, [0.0; 2]);
-            for at in 0..last {
-                if reference.usable[at] && reference.usable[at + lag * step] {
-                    let pair = [f64::from(values[at]), f64::from(values[at + lag * step])];
-                    (sum, count) = (sum + pair[0] * pair[1], count + 1.0);
-                    own = [own[0] + pair[0], own[1] + pair[1]];
-                }
-            }
-            let mean = if lag == 0 {
-                noise.variance(own[0] / count)
-            } else {
-                0.0
-            };
-            sum / count - own[0] * own[1] / (count * count) - mean
-        };
-        (0..MOST.min(width.min(height) / 2)).map(product).collect()
-    };
-    let half_height = |products: Vec<f64>| {
-        let level = 0.5 * products[0];
-        let below = products
-            .iter()
-            .position(|product| *product < level)
-            .unwrap_or(products.len() - 1)
-            .max(1);
-        let (high, low) = (products[below - 1], products[below]);
-        let part = if high > low {
-            ((high - level) / (high - low)).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
-        2.0 * ((below - 1) as f64 + part)
-    };
-    0.5 * (half_height(along(1)) + half_height(along(width)))
 }

@@ -63,6 +63,11 @@ impl Warp {
             + Matrix2::from_columns(&[Vector2::from(self.terms[1]), Vector2::from(self.terms[2])])
     }
 
+    /// ∂u/∂X at the centre.
+    pub fn gradient(&self) -> Matrix2<f64> {
+        self.deformation_gradient() - Matrix2::identity()
+    }
+
     /// The displacement at a distance from the centre, with so many functions.
     #[inline]
     pub fn at(&self, x: f64, y: f64, count: usize) -> [f64; 2] {

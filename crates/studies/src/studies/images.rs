@@ -74,6 +74,10 @@ pub struct TrackedImages {
     pub frames: Vec<(usize, Vec<Option<Tracked>>)>,
     /// The same in mm.
     pub series: MarkerSeries,
+    /// Patches that share no pixel, in mm: their errors are independent.
+    pub patches: MarkerSeries,
+    /// Width of a patch in pixels.
+    pub patch: usize,
     /// The length of a pixel in mm.
     pub pixel: f64,
     /// How they were followed.
@@ -138,13 +142,25 @@ impl ImageRequest<'_> {
             .into_iter()
             .zip(others.iter().cloned())
             .collect();
-        let mut frames = Vec::new();
+        let (mut frames, mut patches) = (Vec::new(), Vec::new());
         let mut warnings = tracker.warnings().to_vec();
         for (number, file) in &numbered {
             told(&file.name());
-            let tracked = of_file(file, file.read().and_then(|image| tracker.follow(&image)));
+            let tracked = of_file(
+                file,
+                file.read().and_then(|image| {
+                    let points = tracker.follow(&image)?;
+                    let patches = tracker
+                        .patches()
+                        .measure(&image, &|point| Some(points[point]?.warp()));
+                    Ok((points, patches))
+                }),
+            );
             match tracked {
-                Ok(tracked) => frames.push((*number, tracked)),
+                Ok((points, measured)) => {
+                    frames.push((*number, points));
+                    patches.push((*number, measured));
+                }
                 Err(Error::Input(faults)) if numbered.len() > 1 => {
                     warnings.extend(faults.into_iter().map(|fault| left_out(fault, *number)));
                 }
@@ -158,10 +174,13 @@ impl ImageRequest<'_> {
                 "check that all images show one specimen with one pattern",
             ));
         }
-        let (places, height) = (tracker.places(), image.size()[1]);
-        let series = series(&frames, places, height, pixel);
+        let height = image.size()[1];
+        let in_mm = |frames: &[_]| series(frames, height, pixel);
+        let (series, patches) = (in_mm(&frames), in_mm(&patches));
         Ok(TrackedImages {
             series,
+            patch: tracker.patches().width(),
+            patches,
             tracker,
             files: (first.clone(), numbered),
             frames,
@@ -245,15 +264,15 @@ fn numbers(files: &[ImageFile]) -> Vec<usize> {
 }
 
 impl TrackedImages {
-    /// The markers as if they had been read from a file.
+    /// The patches as if they had been read from a file.
     pub fn markers(&self) -> MarkerFiles {
         let subset = Subset {
-            size: self.tracker.subset() as f64,
-            step: self.settings.spacing as f64,
+            size: self.patch as f64,
+            step: self.patch as f64,
             told_by: "the tracking of the images".to_owned(),
         };
         MarkerFiles {
-            series: self.series.clone(),
+            series: self.patches.clone(),
             mesh: None,
             understood: Understood {
                 turned_up: true,
