@@ -25,6 +25,7 @@ mod grid;
 mod markers;
 mod matrices;
 mod noise;
+mod over;
 mod patches;
 mod pyramid;
 mod read;

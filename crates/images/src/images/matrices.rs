@@ -42,11 +42,8 @@ impl Matrices {
         let [mut sum, mut weighted, mut slopes, mut slopes_weighted] =
             [(); 4].map(|()| DVector::zeros(size));
         let (mut value, mut square) = (0.0, 0.0);
-        let mean = pixels
-            .iter()
-            .map(|pixel| f64::from(pixel.value))
-            .sum::<f64>()
-            / number;
+        let values = pixels.iter().map(|pixel| f64::from(pixel.value));
+        let mean = values.sum::<f64>() / number;
         for pixel in pixels {
             let phi = functions(f64::from(pixel.x) * scale, f64::from(pixel.y) * scale);
             let smooth = pixel.smooth.map(f64::from);
@@ -79,14 +76,7 @@ impl Matrices {
         step -= &sum * slopes.transpose() / number
             + &weighted * slopes_weighted.transpose() / variation;
         spread -= &sum * sum.transpose() / number + &weighted * weighted.transpose() / variation;
-        let of_noise = noise.variance(mean) * overlap;
-        for k in 0..count {
-            for l in 0..count {
-                for axis in [0, 1] {
-                    step[(2 * k + axis, 2 * l + axis)] -= of_noise * shapes[(k, l)];
-                }
-            }
-        }
+        take_noise(&mut step, &shapes, noise.variance(mean) * overlap);
         let step = 0.5 * (&step + step.transpose());
         Some(Self {
             step: Cholesky::new(step)?,
@@ -96,5 +86,14 @@ impl Matrices {
             value,
             square,
         })
+    }
+}
+
+/// Takes what the noise alone contributes to Σ ĝ·g φφᵀ out of both components.
+fn take_noise(step: &mut DMatrix<f64>, shapes: &DMatrix<f64>, of_noise: f64) {
+    for (k, l) in (0..shapes.nrows()).flat_map(|k| (0..shapes.ncols()).map(move |l| (k, l))) {
+        for axis in [0, 1] {
+            step[(2 * k + axis, 2 * l + axis)] -= of_noise * shapes[(k, l)];
+        }
     }
 }

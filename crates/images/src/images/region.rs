@@ -95,6 +95,19 @@ impl Region {
         &self.inside
     }
 
+    /// The pixels whose interpolation reaches none outside of the specimen, within the image: cubic B-splines reach two pixels.
+    pub fn inner(&self) -> Vec<bool> {
+        const REACH: usize = 2;
+        let [width, height] = self.size;
+        let around =
+            |at: usize, length: usize| at.saturating_sub(REACH)..=(at + REACH).min(length - 1);
+        let is_inner = |index: usize| {
+            let (x, y) = (index % width, index / width);
+            around(y, height).all(|row| around(x, width).all(|column| self.has(column, row)))
+        };
+        (0..width * height).map(is_inner).collect()
+    }
+
     /// Whether a pixel is inside.
     pub fn has(&self, x: usize, y: usize) -> bool {
         x < self.size[0] && y < self.size[1] && self.inside[y * self.size[0] + x]

@@ -150,7 +150,6 @@ impl<'a> Pyramid<'a> {
 
     /// The best three places on the coarsest level of a subset deformed by F, with their correlations.
     fn correlate(&self, centre: [usize; 2], f: Matrix2<f64>) -> Vec<(f64, Warp)> {
-        const BEST: usize = 3;
         let (image, usable, frame) = match self.coarse.last() {
             Some(level) => (
                 &level.reference.image,
@@ -159,7 +158,7 @@ impl<'a> Pyramid<'a> {
             ),
             None => (&self.finest.0.image, &self.finest.0.usable, self.frame),
         };
-        let ([width, height], [columns, rows]) = (image.size(), frame.size());
+        let [width, height] = image.size();
         let centre = centre.map(|c| (c >> self.coarse.len()) as f64);
         let Some(inverse) = f.try_inverse() else {
             return Vec::new();
@@ -179,45 +178,14 @@ impl<'a> Pyramid<'a> {
         }
         let mean = values.iter().sum::<f32>() / values.len() as f32;
         values.iter_mut().for_each(|value| *value -= mean);
-        let size = values.iter().map(|value| value * value).sum::<f32>().sqrt();
-        let (count, pixels) = (values.len() as f32, frame.values());
-        let flat: Vec<isize> = offsets
-            .iter()
-            .map(|[x, y]| y * columns as isize + x)
-            .collect();
-        let score = |x: usize, y: usize| {
-            let at = (y * columns + x) as isize;
-            let (mut product, mut sum, mut squares) = (0.0, 0.0, 0.0);
-            for (offset, value) in flat.iter().zip(&values) {
-                let other = pixels[(at + offset) as usize];
-                product += value * other;
-                sum += other;
-                squares += other * other;
-            }
-            f64::from(product / (size * (squares - sum * sum / count).max(1e-6).sqrt()))
-        };
-        let places = (HALF..rows.saturating_sub(HALF))
-            .flat_map(|y| (HALF..columns.saturating_sub(HALF)).map(move |x| (x, y)));
-        let mut scores: Vec<(f64, usize, usize)> =
-            places.map(|(x, y)| (score(x, y), x, y)).collect();
-        scores.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut best: Vec<(f64, usize, usize)> = Vec::new();
-        for one in scores {
-            if best
-                .iter()
-                .all(|other| one.1.abs_diff(other.1).max(one.2.abs_diff(other.2)) > 2)
-            {
-                best.push(one);
-            }
-            if best.len() == BEST {
-                break;
-            }
-        }
         let warp = |(score, x, y): (f64, usize, usize)| {
             let displacement = [x as f64 - centre[0], y as f64 - centre[1]];
             (score, Warp::affine(displacement, f - Matrix2::identity()))
         };
-        best.into_iter().map(warp).collect()
+        best_places(frame, &offsets, &values)
+            .into_iter()
+            .map(warp)
+            .collect()
     }
 }
 
@@ -227,4 +195,52 @@ fn linear(image: &GreyImage, x: f64, y: f64) -> f32 {
     let along =
         |row: usize| image.value(column, row) * (1.0 - s) + image.value(column + 1, row) * s;
     along(row) * (1.0 - t) + along(row + 1) * t
+}
+
+/// The best three places in an image of a template with mean 0, more than two pixels apart, with their correlations.
+fn best_places(
+    frame: &GreyImage,
+    offsets: &[[isize; 2]],
+    template: &[f32],
+) -> Vec<(f64, usize, usize)> {
+    const BEST: usize = 3;
+    const APART: usize = 2;
+    let ([columns, rows], pixels) = (frame.size(), frame.values());
+    let size = template
+        .iter()
+        .map(|value| value * value)
+        .sum::<f32>()
+        .sqrt();
+    let count = template.len() as f32;
+    let flat: Vec<isize> = offsets
+        .iter()
+        .map(|[x, y]| y * columns as isize + x)
+        .collect();
+    let score = |x: usize, y: usize| {
+        let at = (y * columns + x) as isize;
+        let (mut product, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        for (offset, value) in flat.iter().zip(template) {
+            let other = pixels[(at + offset) as usize];
+            product += value * other;
+            sum += other;
+            squares += other * other;
+        }
+        f64::from(product / (size * (squares - sum * sum / count).max(1e-6).sqrt()))
+    };
+    let inner = HALF..columns.saturating_sub(HALF);
+    let places = (HALF..rows.saturating_sub(HALF)).flat_map(|y| inner.clone().map(move |x| (x, y)));
+    let mut scores: Vec<_> = places.map(|(x, y)| (score(x, y), x, y)).collect();
+    scores.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut best: Vec<(f64, usize, usize)> = Vec::new();
+    for (score, x, y) in scores {
+        let is_apart =
+            |other: &(f64, usize, usize)| x.abs_diff(other.1).max(y.abs_diff(other.2)) > APART;
+        if best.iter().all(is_apart) {
+            best.push((score, x, y));
+        }
+        if best.len() == BEST {
+            break;
+        }
+    }
+    best
 }

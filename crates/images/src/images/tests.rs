@@ -3,7 +3,7 @@ use nalgebra::{Matrix2, Vector2};
 mod render;
 
 use super::*;
-use render::{Camera, Pattern, natural, speckle};
+use render::{Camera, Pattern, natural, speckle, tags};
 
 /// A homogeneous deformation x = m + F (X − m) + t about the middle of an image.
 struct Homogeneous {
@@ -44,14 +44,14 @@ struct Figures {
 
 fn figures(
     tracked: &[Option<Tracked>],
-    places: &[[usize; 2]],
+    places: &[[f64; 2]],
     size: [usize; 2],
     truth: &dyn Fn([f64; 2]) -> [f64; 2],
 ) -> Figures {
     const MARGIN: f64 = 15.0;
     let (mut squares, mut within, mut count, mut seen, mut worst) = (0.0, 0.0, 0.0, 0.0, 0.0_f64);
     for (tracked, place) in tracked.iter().zip(places) {
-        let place = place.map(|x| x as f64);
+        let place = *place;
         let [u, v] = truth(place);
         let inside = |at: f64, length: usize| at > MARGIN && at < length as f64 - 1.0 - MARGIN;
         let is_seen = inside(place[0] + u, size[0]) && inside(place[1] + v, size[1]);
@@ -88,10 +88,18 @@ fn follow(
     let other = cameras[1].frame(pattern, |x| motion.material(x));
     let mut tracker = Tracker::new(&first, &other, &Region::whole(size), settings).unwrap();
     let tracked = tracker.follow(&other).unwrap();
-    let found = figures(&tracked, tracker.places(), size, &|x| {
+    let found = figures(&tracked, &centres(&tracker), size, &|x| {
         motion.displacement(x)
     });
     (found, tracker)
+}
+
+fn centres(tracker: &Tracker) -> Vec<[f64; 2]> {
+    tracker
+        .places()
+        .iter()
+        .map(|place| place.map(|x| x as f64))
+        .collect()
 }
 
 fn cameras(size: [usize; 2], noise: f64) -> [Camera; 2] {
@@ -128,6 +136,40 @@ fn small_motions_are_followed_with_intervals_that_hold() {
                 assert!(found.found > 0.97 && found.error < 0.08);
                 assert!((0.90..=0.985).contains(&found.covered));
             }
+        }
+    }
+}
+
+#[test]
+fn patches_share_no_pixel_and_their_intervals_hold() {
+    let size = [400, 400];
+    let motion = Homogeneous::new(size, Matrix2::new(1.2, 0.1, 0.0, 0.9), [1.3, 2.2]);
+    for (kind, pattern) in [
+        ("speckle", speckle(3)),
+        ("natural", natural(4)),
+        ("tags", tags(10.0)),
+    ] {
+        for noise in [0.02, 0.1] {
+            let cameras = cameras(size, noise);
+            let first = cameras[0].frame(&pattern, |x| x);
+            let other = cameras[1].frame(&pattern, |x| motion.material(x));
+            let region = Region::whole(size);
+            let mut tracker = Tracker::new(&first, &other, &region, Settings::default()).unwrap();
+            let tracked = tracker.follow(&other).unwrap();
+            let patches = tracker.patches();
+            let measured = patches.measure(&other, &|point| Some(tracked[point]?.warp()));
+            let truth = |x| motion.displacement(x);
+            let places: Vec<[f64; 2]> = measured
+                .iter()
+                .map(|one| one.map_or([0.0; 2], |one| one.place))
+                .collect();
+            let found = figures(&measured, &places, size, &truth);
+            says(
+                &format!("patches of {} {kind} {noise}", patches.width()),
+                &found,
+                &tracker,
+            );
+            assert!((0.88..=0.985).contains(&found.covered), "{kind} {noise}");
         }
     }
 }
@@ -181,7 +223,7 @@ fn noise_that_grows_light_that_changes_and_a_megapixel() {
     println!("new: {:?}", start.elapsed());
     let tracked = tracker.follow(&other).unwrap();
     println!("all: {:?}", start.elapsed());
-    let found = figures(&tracked, tracker.places(), size, &|x| {
+    let found = figures(&tracked, &centres(&tracker), size, &|x| {
         motion.displacement(x)
     });
     says("megapixel", &found, &tracker);

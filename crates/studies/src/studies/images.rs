@@ -104,24 +104,10 @@ impl ImageRequest<'_> {
     /// # Errors
     /// [`Error::Input`] with the file, what is wrong and what to do.
     pub fn follow(&self, told: &dyn Fn(&str)) -> Result<TrackedImages, Error> {
-        let Some(pixel) = self.pixel else {
-            let message = "the length of a pixel is not known";
-            return Err(Error::input(message, "give it, such as --unit \"0.02 mm\""));
-        };
+        let pixel = self.known_pixel()?;
         let files = list(self.files)?;
-        let [first, others @ ..] = &files[..] else {
-            return Err(Error::input(
-                "no image is given",
-                "name the images, the first one of the specimen at rest",
-            ));
-        };
-        let Some(last) = others.last() else {
-            let message = format!("{} is the only image", first.path.display());
-            return Err(Error::input(
-                message,
-                "give at least two, the first one of the specimen at rest",
-            ));
-        };
+        let (first, others) = in_time(&files)?;
+        let last = others.last().unwrap_or(first);
         let image = first.read()?;
         self.afford(&image)?;
         let region = self.region(image.size(), pixel)?;
@@ -146,18 +132,8 @@ impl ImageRequest<'_> {
         let mut warnings = tracker.warnings().to_vec();
         for (number, file) in &numbered {
             told(&file.name());
-            let tracked = of_file(
-                file,
-                file.read().and_then(|image| {
-                    let points = tracker.follow(&image)?;
-                    let patches = tracker
-                        .patches()
-                        .measure(&image, &|point| Some(points[point]?.warp()));
-                    Ok((points, patches))
-                }),
-            );
-            match tracked {
-                Ok((points, measured)) => {
+            match followed(&mut tracker, file) {
+                Ok([points, measured]) => {
                     frames.push((*number, points));
                     patches.push((*number, measured));
                 }
@@ -187,6 +163,13 @@ impl ImageRequest<'_> {
             pixel,
             settings: self.settings.clone(),
             warnings,
+        })
+    }
+
+    fn known_pixel(&self) -> Result<f64, Error> {
+        self.pixel.ok_or_else(|| {
+            let message = "the length of a pixel is not known";
+            Error::input(message, "give it, such as --unit \"0.02 mm\"")
         })
     }
 
@@ -223,6 +206,35 @@ impl ImageRequest<'_> {
         }
         Region::of_lines(&lines, size)
     }
+}
+
+/// The first image and the later ones.
+fn in_time(files: &[ImageFile]) -> Result<(&ImageFile, &[ImageFile]), Error> {
+    match files {
+        [first, others @ ..] if !others.is_empty() => Ok((first, others)),
+        _ => {
+            let names: Vec<String> = files
+                .iter()
+                .map(|file| file.path.display().to_string())
+                .collect();
+            let message = format!("there are too few images: {}", names.join(", "));
+            Err(Error::input(
+                message,
+                "give at least two, the first one of the specimen at rest",
+            ))
+        }
+    }
+}
+
+/// Points and patches of a frame.
+fn followed(tracker: &mut Tracker, file: &ImageFile) -> Result<[Vec<Option<Tracked>>; 2], Error> {
+    let followed = file.read().and_then(|image| {
+        let points = tracker.follow(&image)?;
+        let about = |point: usize| Some(points[point]?.warp());
+        let patches = tracker.patches().measure(&image, &about);
+        Ok([points, patches])
+    });
+    of_file(file, followed)
 }
 
 /// A fault with the name of its image, where it does not have it.
