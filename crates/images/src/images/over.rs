@@ -59,16 +59,7 @@ impl Tracker {
         }
         let mut attempts = vec![0; found.len()];
         if found.iter().all(Option::is_none) {
-            let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
-                centres[point].is_some() && found[point].is_none() && attempts[point] == 0
-            };
-            self.seed(
-                &follower,
-                (image, spline),
-                &mut found,
-                &mut attempts,
-                &is_open,
-            );
+            self.seed(&follower, (image, spline), &mut found, &mut attempts);
         } else {
             follower.spread(spline, &mut found, &mut attempts);
         }

@@ -129,7 +129,7 @@ impl<'a> Pyramid<'a> {
             .into_iter()
             .rev()
         {
-            let at = centre.map(|c| (c >> number).min(usize::MAX));
+            let at = centre.map(|c| c >> number);
             let subset = Subset::new(&level.reference, at, HALF, Order::Affine, &level.noise);
             if let Some(found) =
                 subset.and_then(|subset| subset.find(&level.spline, warp, &level.noise))

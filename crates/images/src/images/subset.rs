@@ -267,9 +267,9 @@ impl Subset {
             let value = f64::from(value);
             let phi = functions(x * scale, y * scale);
             let weighted = pixel.smooth.map(|slope| f64::from(slope) * value);
-            for k in 0..self.count {
-                sums.products[2 * k] += phi[k] * weighted[0];
-                sums.products[2 * k + 1] += phi[k] * weighted[1];
+            for (sum, phi) in sums.products.chunks_exact_mut(2).zip(&phi).take(self.count) {
+                sum[0] += phi * weighted[0];
+                sum[1] += phi * weighted[1];
             }
             sums.value += value;
             sums.square += value * value;

@@ -219,18 +219,8 @@ impl Tracker {
             }
             follower.spread(spline, &mut found, &mut attempts);
         }
-        // A part of the specimen that nothing leads to.
-        let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
-            self.centres[point].is_some() && found[point].is_none() && attempts[point] == 0
-        };
         if self.before.is_none() || found.iter().all(Option::is_none) {
-            self.seed(
-                &follower,
-                (image, spline),
-                &mut found,
-                &mut attempts,
-                &is_open,
-            );
+            self.seed(&follower, (image, spline), &mut found, &mut attempts);
         }
         found
     }
@@ -242,7 +232,6 @@ impl Tracker {
         (image, spline): (&GreyImage, &Spline),
         found: &mut [Option<Match>],
         attempts: &mut [usize],
-        is_open: &dyn Fn(usize, &[Option<Match>], &[usize]) -> bool,
     ) {
         let pyramid = Pyramid::new(
             (follower.reference, follower.noise, spline),
@@ -250,6 +239,10 @@ impl Tracker {
             follower.half,
             follower.order,
         );
+        // A part of the specimen that nothing leads to.
+        let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
+            follower.centres[point].is_some() && found[point].is_none() && attempts[point] == 0
+        };
         for round in 0..MOST_SEEDS {
             let open: Vec<usize> = (0..found.len())
                 .filter(|point| is_open(*point, found, attempts))
