@@ -9,10 +9,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::budget::{Budget, Need};
-use crate::camera::{
+use crate::error::{Diagnostic, Error};
+use crate::images::{
     GreyImage, ImageFile, Order, Region, Settings, Tracked, Tracker, is_image_path, list, series,
 };
-use crate::error::{Diagnostic, Error};
 use crate::markers::{MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
 
 mod written;
