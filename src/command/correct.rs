@@ -21,14 +21,13 @@ mod joint;
 mod options;
 mod pictures;
 mod request;
-mod values;
+pub mod values;
 
 use frames::correct;
 use job::Job;
 pub use job::exit_code;
 pub use options::Options;
 use request::request;
-pub use values::unit;
 
 /// Corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::choice::one_of;
 use super::conclusion::{conclude, printed};
-use super::correct::unit;
+use super::correct::values::unit;
 use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
