@@ -43,6 +43,7 @@ mod fit_message;
 mod group;
 mod identify;
 mod identity;
+mod images;
 mod interrupt;
 mod journal;
 mod large;
@@ -68,7 +69,8 @@ const SAMPLES: &str = "Samples:
   gelbench export my_plate.toml --to abaqus  write it as the input file of another code
   gelbench compare my_plate.toml abaqus.vtu  compare its models with a field of another program
   gelbench identify spring.csv               spring and dashpot functions from recorded force and motion
-  gelbench correct markers.csv …             make measured displacements satisfy the physics
+  gelbench track frames/*.tif …              follow the pattern on a specimen through camera images
+  gelbench correct markers.csv …             make measured displacements satisfy the physics, or those of images
   gelbench sweep my_plate.toml --vary …      compute it many times with some keys changed
   gelbench workbench my_plate.toml           open it in the window, if that is installed
   gelbench validate                          reproduce the publication's claims, write output/validation/REPORT.md
@@ -128,6 +130,8 @@ enum Command {
                       --study examples/measured_plate.toml"
     )]
     Correct(Box<correct::Options>),
+    /// Follow the pattern on a specimen through camera images; displacements and their standard deviations as markers
+    Track(Box<images::TrackOptions>),
     /// Write a study as the input file of Abaqus, CalculiX or FEBio, or its springs as a scene of SOFA
     #[command(
         after_help = "Sample: gelbench export examples/dog_bone.toml --to calculix --output dog_bone.inp"
@@ -248,6 +252,7 @@ fn perform(command: Command) -> u8 {
         Command::Check { studies, large } => each(&studies, |study| check(study, large.budget())),
         Command::Compare(options) => compare::run(options),
         Command::Correct(options) => correct::run(*options),
+        Command::Track(options) => images::track(*options),
         Command::Export(options) => export::run(&options),
         Command::Identify(options) => identify::run(*options),
         Command::New { name, kind } => reference::write(name, kind),

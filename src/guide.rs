@@ -10,6 +10,7 @@
 //! | [Specimens](specimens) | any shape, any mesh, supports and loads, adaptive refinement, paths that end early |
 //! | [Motions](motions) | a plate that is released, driven or relaxing: dashpots, viscosity, energy |
 //! | [Measured fields](measured_fields) | markers from image correlation: the nearest field in equilibrium, with intervals |
+//! | [Images](images) | camera images: displacements with standard deviations, and stress from two photographs |
 //! | [Materials](materials) | cards, fits to your own tests, export of test data |
 //! | [Springs and dashpots](springs_and_dashpots) | spring and dashpot functions from a recording of force and extension |
 //! | [Many runs](many_runs) | a study with varied parameters: grids, distributions, the uncertainty of a fit; clusters |
@@ -69,6 +70,8 @@ pub mod specimens {}
 #[doc = "```"]
 pub mod motions {}
 #[doc = include_str!("guide/measured_fields.md")]
+#[doc = include_str!("guide/images.md")]
+pub mod images {}
 #[doc = "```toml"]
 #[doc = include_str!("../examples/measured_plate.toml")]
 #[doc = "```"]

@@ -158,6 +158,7 @@ pub fn correct(
         conditions.regions.extend(regions);
         let request = Request {
             reading: options.reading()?,
+            images: Default::default(),
             material: card.name.clone(),
             thickness,
             mesh: options.mesh()?,

@@ -21,7 +21,7 @@ mod joint;
 mod options;
 mod pictures;
 mod request;
-mod values;
+pub mod values;
 
 use frames::correct;
 use job::Job;

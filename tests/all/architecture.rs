@@ -16,7 +16,7 @@ const FLOORS: &[&[&str]] = &[
     &["problem", "markers"],
     &["mass_spring", "finite_element", "calibration"],
     &["dynamics"],
-    &["corrector", "estimation"],
+    &["corrector", "estimation", "images"],
     &["compare", "identification"],
     &["results"],
     &["studies"],
@@ -38,6 +38,8 @@ const DOORS: &[(&str, &[&str])] = &[
             "crates/mechanics/src/mesh/import/vtk.rs",
         ],
     ),
+    ("image::", &["crates/images/src/images/read.rs"]),
+    ("tiff::", &["crates/images/src/images/read.rs"]),
     ("plotters::", &["crates/report/src/output/picture"]),
     ("resvg::", &["crates/report/src/output/picture"]),
     (

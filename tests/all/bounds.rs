@@ -108,6 +108,7 @@ fn more_markers_than_memory_holds_are_refused_with_estimate_and_remedy() {
         let request = Request {
             files: vec![root().join("examples/measured_plate.csv")],
             reading: ReadSettings::default(),
+            images: Default::default(),
             material: "pva-10".into(),
             thickness: 2.0,
             mesh: MeshSource::Data,

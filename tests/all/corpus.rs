@@ -63,5 +63,5 @@ macro_rules! replays {
 }
 
 replays! {
-    study card tables formats spreadsheet markers outline gmsh abaqus vtk vtu pvd frd recording run correct fit identify specimen motion
+    study card tables formats spreadsheet image markers outline gmsh abaqus vtk vtu pvd frd recording run correct fit identify specimen motion
 }

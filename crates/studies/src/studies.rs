@@ -13,6 +13,7 @@ use crate::solve::{Attendance, Journal};
 
 pub mod card;
 mod findings;
+pub mod images;
 pub mod markers;
 mod models;
 pub mod motion;

@@ -124,6 +124,7 @@ fn request(file: PathBuf, choices: &mut Choices) -> Request {
     Request {
         files: vec![file],
         reading: ReadSettings::default(),
+        images: Default::default(),
         material: material.to_owned(),
         thickness: choices.between(0.5, 2.0),
         mesh: MeshSource::Data,

@@ -40,6 +40,7 @@ pub const TARGETS: &[(&str, Entry)] = &[
     ("tables", readers::tables),
     ("formats", readers::formats),
     ("spreadsheet", readers::spreadsheet),
+    ("image", readers::image),
     ("markers", readers::markers),
     ("outline", readers::outline),
     ("gmsh", readers::gmsh),

@@ -80,6 +80,11 @@ pub fn spreadsheet(bytes: &[u8]) -> Became {
     formats(&archive)
 }
 
+/// A camera image: PNG, TIFF, BMP or JPEG.
+pub fn image(bytes: &[u8]) -> Became {
+    gelbench_images::images::of_bytes(bytes).is_ok().into()
+}
+
 /// An archive of files that are not compressed.
 fn stored(files: &[(&str, &[u8])]) -> Vec<u8> {
     let (mut archive, mut directory) = (Vec::new(), Vec::new());

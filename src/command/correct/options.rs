@@ -8,6 +8,7 @@ use super::pictures::PictureOptions;
 use super::values::{CELLS, HOLES, PLACES, Y_AXIS};
 use super::values::{encoding, force, force_column, gap, length, region, scale_error, size, unit};
 use crate::command::choice::one_of;
+use crate::command::images::ImageOptions;
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
 use gelbench_base::document::TextEncoding;
@@ -21,7 +22,7 @@ use gelbench_studies::studies::markers::ForceColumn;
 #[command(after_help = AFTER_HELP)]
 pub struct Options {
     /// The field: a table with x, y, ux, uy, or one of DICe, muDIC, pyALDIC, VIC, MatchID or GOM; two matrices of Ncorr; .vtu, .vtk,
-    /// .pvd, .msh, .frd. Several files are frames
+    /// .pvd, .msh, .frd; or camera images, the first one at rest. Several files are frames
     #[arg(required_unless_present = "specimen", value_name = "FIELD")]
     pub fields: Vec<PathBuf>,
     /// The material: name or path of a card
@@ -152,6 +153,8 @@ pub struct Options {
     #[arg(long, value_name = "FOLDER", default_value = "output/correct")]
     pub output: PathBuf,
     #[command(flatten)]
+    pub images: ImageOptions,
+    #[command(flatten)]
     pub pictures: PictureOptions,
     #[command(flatten)]
     pub large: Large,
@@ -185,6 +188,7 @@ impl Options {
             &self.rest,
         ];
         let named = others.into_iter().flatten().cloned();
+        let named = named.chain(self.images.mask());
         let card = PathBuf::from(&self.material);
         self.fields
             .iter()

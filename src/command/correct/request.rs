@@ -24,6 +24,7 @@ pub fn request(options: Options) -> Result<Request, Error> {
             deformed: options.places,
             rest: options.rest,
         },
+        images: options.images.settings(),
         forces: options.forces,
         files: options.fields,
         material: options.material,

@@ -70,6 +70,7 @@ impl MeasuredField {
                     unit: field.has("pixel").then(pixel),
                     ..ReadSettings::default()
                 },
+                images: Default::default(),
                 material: material.to_owned(),
                 thickness: field.quantity("thickness", Dimension::Length, Bound::Positive),
                 mesh: match mesh.as_str() {

@@ -15,7 +15,7 @@ use crate::estimation::{
     Answer, FieldEstimate, Knowledge, Reason, RegressedLaw, UncertainLaw, estimate, name_parts,
     transfer,
 };
-use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
+use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on};
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::results::Finding;
@@ -31,6 +31,7 @@ mod force_signs;
 mod forces;
 mod gross_errors;
 mod headline;
+mod images;
 pub mod joint;
 mod json;
 mod machine;
@@ -133,7 +134,7 @@ impl MarkerStudy {
     /// As [`Self::prepare`].
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
         let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
-        let mut field = read(&request.files, &request.reading)?;
+        let mut field = images::read_field(&request)?;
         let told = request
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;

@@ -51,6 +51,7 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
             downwards: question.downwards,
             ..ReadSettings::default()
         },
+        images: Default::default(),
         material: question.card.reference(),
         thickness,
         mesh: MeshSource::Data,

@@ -270,6 +270,7 @@ mod tests {
         let request = Request {
             files: vec![file],
             reading: ReadSettings::default(),
+            images: Default::default(),
             material: "neo-hooke".to_owned(),
             thickness: 1.0,
             mesh: MeshSource::Data,

@@ -7,6 +7,7 @@ use super::specimen_file::SpecimenFile;
 use crate::budget::Budget;
 use crate::markers::ReadSettings;
 use crate::mesh::{CellShape, MeshReading};
+use crate::studies::images::ImageSettings;
 
 /// Where the mesh comes from.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub struct Request {
     pub files: Vec<PathBuf>,
     /// How they are to be understood.
     pub reading: ReadSettings,
+    /// How images are followed, where the files are images.
+    pub images: ImageSettings,
     /// Name or path of the material's card.
     pub material: String,
     /// Thickness at rest in mm.

@@ -1,0 +1,178 @@
+//! Points of a grid that are followed from one image to another, each from the best of its neighbours.
+
+use rayon::prelude::*;
+
+use super::gradient::Reference;
+use super::noise::Noise;
+use super::spline::Spline;
+use super::subset::{Match, Subset};
+use super::warp::{Order, Warp};
+
+/// The least part of the pattern's variance that must be found again.
+pub const LEAST_SIMILARITY: f64 = 0.5;
+
+/// How often a point is tried from further neighbours.
+const MOST_ATTEMPTS: usize = 4;
+
+/// Points of a regular grid.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    /// Their places in pixels of the first image.
+    pub points: Vec<[usize; 2]>,
+    /// The up to eight next ones of each.
+    pub neighbours: Vec<Vec<usize>>,
+}
+
+impl Grid {
+    /// The points of a grid of a spacing that `has` holds for, in the middle of an image.
+    pub fn new(size: [usize; 2], spacing: usize, has: impl Fn(usize, usize) -> bool) -> Self {
+        let counts = size.map(|length| length.div_ceil(spacing));
+        let starts = [0, 1].map(|axis| (size[axis] - 1 - (counts[axis] - 1) * spacing) / 2);
+        let mut numbers = vec![None; counts[0] * counts[1]];
+        let mut points = Vec::new();
+        for (cell, number) in numbers.iter_mut().enumerate() {
+            let [x, y] = [
+                starts[0] + spacing * (cell % counts[0]),
+                starts[1] + spacing * (cell / counts[0]),
+            ];
+            if has(x, y) {
+                *number = Some(points.len());
+                points.push([x, y]);
+            }
+        }
+        let around = |[x, y]: [usize; 2]| {
+            let [column, row] =
+                [(x - starts[0]) / spacing, (y - starts[1]) / spacing].map(|at| at as isize);
+            let inside = |at: isize, count: usize| (0..count as isize).contains(&at);
+            let cells = (-1..=1).flat_map(|down| (-1..=1).map(move |along| (along, down)));
+            let cells = cells
+                .filter(|cell| *cell != (0, 0))
+                .map(|(along, down)| (column + along, row + down));
+            let cells = cells.filter(|(x, y)| inside(*x, counts[0]) && inside(*y, counts[1]));
+            cells
+                .filter_map(|(x, y)| numbers[y as usize * counts[0] + x as usize])
+                .collect()
+        };
+        Self {
+            neighbours: points.iter().map(|point| around(*point)).collect(),
+            points,
+        }
+    }
+}
+
+/// What is followed: subsets of a reference about the points' places in it.
+pub struct Follower<'a> {
+    pub reference: &'a Reference,
+    /// The pixel of the reference at which each point is.
+    pub centres: &'a [Option<[usize; 2]>],
+    pub neighbours: &'a [Vec<usize>],
+    pub half: usize,
+    pub order: Order,
+    pub noise: &'a Noise,
+}
+
+impl Follower<'_> {
+    /// Where a point is found, from a guess.
+    pub fn find(&self, point: usize, image: &Spline, guess: Warp) -> Option<Match> {
+        let subset = Subset::new(
+            self.reference,
+            self.centres[point]?,
+            self.half,
+            self.order,
+            self.noise,
+        )?;
+        let found = subset.find(image, guess, self.noise)?;
+        (found.similarity >= LEAST_SIMILARITY).then_some(found)
+    }
+
+    /// Finds some points at the same time.
+    pub fn find_all(
+        &self,
+        image: &Spline,
+        guesses: Vec<(usize, Warp)>,
+    ) -> Vec<(usize, Option<Match>)> {
+        let guesses = guesses.into_par_iter();
+        guesses
+            .map(|(point, guess)| (point, self.find(point, image, guess)))
+            .collect()
+    }
+
+    /// Follows points from those that are found to all others, round by round.
+    pub fn spread(&self, image: &Spline, found: &mut [Option<Match>], attempts: &mut [usize]) {
+        let mut fresh: Vec<usize> = (0..found.len())
+            .filter(|point| found[*point].is_some())
+            .collect();
+        while !fresh.is_empty() {
+            let next = fresh
+                .iter()
+                .flat_map(|point| &self.neighbours[*point])
+                .copied();
+            let mut next: Vec<usize> = next
+                .filter(|point| found[*point].is_none() && attempts[*point] < MOST_ATTEMPTS)
+                .collect();
+            next.sort_unstable();
+            next.dedup();
+            next.iter().for_each(|point| attempts[*point] += 1);
+            let guesses = next
+                .into_iter()
+                .filter_map(|point| Some((point, self.guess(point, found)?)));
+            fresh = Vec::new();
+            for (point, one) in self.find_all(image, guesses.collect()) {
+                if one.is_some() {
+                    found[point] = one;
+                    fresh.push(point);
+                }
+            }
+        }
+    }
+
+    /// The field of the most similar neighbour, at a point.
+    fn guess(&self, point: usize, found: &[Option<Match>]) -> Option<Warp> {
+        let known = self.neighbours[point]
+            .iter()
+            .filter_map(|other| Some((*other, found[*other].as_ref()?)));
+        let (other, best) = known.max_by(|a, b| a.1.similarity.total_cmp(&b.1.similarity))?;
+        let ([x, y], [a, b]) = (self.centres[point]?, self.centres[other]?);
+        Some(best.warp.moved(x as f64 - a as f64, y as f64 - b as f64))
+    }
+
+    /// Takes away points whose displacement is far from what their neighbours' fields say there: beyond five standard deviations of these and
+    /// a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients). Returns how many.
+    pub fn drop_outliers(&self, found: &mut [Option<Match>]) -> usize {
+        const FEWEST: usize = 3;
+        const FAR: f64 = 5.0;
+        const SURE: f64 = 0.1;
+        const NORMAL: f64 = 1.4826;
+        let median = |values: &mut Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        let is_far = |point: usize| {
+            let (Some(own), Some([x, y])) = (&found[point], self.centres[point]) else {
+                return false;
+            };
+            let there = self.neighbours[point].iter().filter_map(|other| {
+                let ([a, b], other) = (self.centres[*other]?, found[*other].as_ref()?);
+                Some(
+                    other
+                        .warp
+                        .moved(x as f64 - a as f64, y as f64 - b as f64)
+                        .displacement(),
+                )
+            });
+            let there: Vec<[f64; 2]> = there.collect();
+            there.len() >= FEWEST
+                && (0..2).any(|axis| {
+                    let mut values: Vec<f64> = there.iter().map(|u| u[axis]).collect();
+                    let middle = median(&mut values);
+                    let mut off: Vec<f64> =
+                        values.iter().map(|value| (value - middle).abs()).collect();
+                    let deviation = NORMAL * median(&mut off) + own.covariance[(axis, axis)].sqrt();
+                    (own.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
+                })
+        };
+        let far: Vec<usize> = (0..found.len()).filter(|point| is_far(*point)).collect();
+        far.iter().for_each(|point| found[*point] = None);
+        far.len()
+    }
+}

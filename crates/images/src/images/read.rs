@@ -1,0 +1,382 @@
+//! Images from files: PNG, TIFF of one or many pages, BMP and JPEG; 8 or 16 bit, grey or colour.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Seek};
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ImageReader, Limits};
+use rayon::prelude::*;
+use tiff::ColorType;
+use tiff::decoder::{Decoder, DecodingResult};
+
+use super::grey::GreyImage;
+use crate::error::Error;
+
+/// Pixels of the largest image that is read.
+const MOST_PIXELS: u64 = 1 << 27;
+
+/// Pixels along the shorter side of the smallest image that is of use.
+const FEWEST: u32 = 8;
+
+/// Weights of red, green and blue in the luminance (ITU-R BT.709).
+const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
+/// The ends of names of files that are images.
+const ENDS: [&str; 6] = ["png", "tif", "tiff", "bmp", "jpg", "jpeg"];
+
+const KINDS: &str = "give a PNG, TIFF, BMP or JPEG image of 8 or 16 bit";
+
+/// One image of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageFile {
+    /// The file.
+    pub path: PathBuf,
+    /// The page of a TIFF file, from 0.
+    pub page: usize,
+}
+
+/// Whether a file is an image by the end of its name.
+pub fn is_image_path(path: &Path) -> bool {
+    let end = path
+        .extension()
+        .map(|end| end.to_string_lossy().to_lowercase());
+    end.is_some_and(|end| ENDS.contains(&&*end))
+}
+
+fn is_tiff(path: &Path) -> bool {
+    let end = path
+        .extension()
+        .map(|end| end.to_string_lossy().to_lowercase());
+    end.is_some_and(|end| end.starts_with("tif"))
+}
+
+fn refuse(path: &Path, fault: impl std::fmt::Display, hint: &str) -> Error {
+    Error::input(format!("{}: {fault}", path.display()), hint)
+}
+
+/// All images of files, folders and patterns such as `frames/*.tif`, in the order of the numbers in their names.
+///
+/// # Errors
+/// [`Error::Input`] where there is no image.
+pub fn list(paths: &[PathBuf]) -> Result<Vec<ImageFile>, Error> {
+    let mut files = Vec::new();
+    for path in paths {
+        files.extend(expanded(path)?);
+    }
+    let pages: Vec<Vec<ImageFile>> = files
+        .iter()
+        .map(|path| pages(path))
+        .collect::<Result<_, _>>()?;
+    Ok(pages.concat())
+}
+
+/// The files that a path stands for.
+fn expanded(path: &Path) -> Result<Vec<PathBuf>, Error> {
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    let pattern = name.contains(['*', '?']) && !path.exists();
+    let folder = match (path.is_dir(), pattern) {
+        (true, _) => path.to_owned(),
+        (_, true) => path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty())
+            .unwrap_or(Path::new("."))
+            .to_owned(),
+        _ => return Ok(vec![path.to_owned()]),
+    };
+    let entries = std::fs::read_dir(&folder)
+        .map_err(|fault| refuse(&folder, fault, "name a folder that can be read"))?;
+    let suits = |path: &PathBuf| {
+        let own = path
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        is_image_path(path) && (!pattern || matches(name.as_bytes(), own.as_bytes()))
+    };
+    let mut found: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(suits)
+        .collect();
+    found.sort_by_cached_key(|path| in_order(&path.to_string_lossy()));
+    if found.is_empty() {
+        return Err(refuse(path, "there is no image", KINDS));
+    }
+    Ok(found)
+}
+
+/// Whether a name is as a pattern with `*` and `?` says.
+fn matches(pattern: &[u8], name: &[u8]) -> bool {
+    match (pattern, name) {
+        ([], []) => true,
+        ([b'*', rest @ ..], _) => (0..=name.len()).any(|skipped| matches(rest, &name[skipped..])),
+        ([b'?', rest @ ..], [_, others @ ..]) => matches(rest, others),
+        ([one, rest @ ..], [other, others @ ..]) if one == other => matches(rest, others),
+        _ => false,
+    }
+}
+
+/// A key by which names sort with their numbers as numbers.
+fn in_order(name: &str) -> String {
+    let (mut key, mut digits) = (String::new(), String::new());
+    for letter in name.chars().chain(['\0']) {
+        if letter.is_ascii_digit() {
+            digits.push(letter);
+        } else {
+            if !digits.is_empty() {
+                key += &format!("{:0>20}", digits.trim_start_matches('0'));
+                digits.clear();
+            }
+            key.push(letter);
+        }
+    }
+    key
+}
+
+/// The images of a file: one, or as many as a TIFF file has pages.
+///
+/// # Errors
+/// [`Error::Input`] where it cannot be read.
+pub fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
+    let page = |page| ImageFile {
+        path: path.to_owned(),
+        page,
+    };
+    if !is_tiff(path) {
+        return Ok(vec![page(0)]);
+    }
+    let mut decoder = decoder(path)?;
+    let mut count = 1;
+    while decoder.more_images() {
+        decoder
+            .next_image()
+            .map_err(|fault| refuse(path, fault, KINDS))?;
+        count += 1;
+    }
+    Ok((0..count).map(page).collect())
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, Error> {
+    let file =
+        File::open(path).map_err(|fault| refuse(path, fault, "name a file that can be read"))?;
+    Ok(BufReader::new(file))
+}
+
+fn decoder(path: &Path) -> Result<Decoder<BufReader<File>>, Error> {
+    Decoder::new(open(path)?).map_err(|fault| refuse(path, fault, KINDS))
+}
+
+fn check_size(width: u32, height: u32) -> Result<(), String> {
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(format!(
+            "the image has {width} × {height} pixels, more than {MOST_PIXELS} in all"
+        ));
+    }
+    if width.min(height) < FEWEST {
+        return Err(format!(
+            "the image has {width} × {height} pixels, fewer than {FEWEST} along one side"
+        ));
+    }
+    Ok(())
+}
+
+impl ImageFile {
+    /// The image in grey; of colours the luminance.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the file, what is wrong and what to do. The size is checked before anything is decoded.
+    pub fn read(&self) -> Result<GreyImage, Error> {
+        let refuse = |fault: String| refuse(&self.path, fault, KINDS);
+        if is_tiff(&self.path) {
+            let mut decoder = decoder(&self.path)?;
+            for _ in 0..self.page {
+                decoder
+                    .next_image()
+                    .map_err(|fault| refuse(fault.to_string()))?;
+            }
+            return of_tiff(decoder).map_err(refuse);
+        }
+        of_other(|| open(&self.path)).map_err(refuse)
+    }
+
+    /// The name of the file without its end, and the page of several.
+    pub fn name(&self) -> String {
+        let stem = self
+            .path
+            .file_stem()
+            .map(|stem| stem.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        match self.page {
+            0 => stem,
+            page => format!("{stem}, page {}", page + 1),
+        }
+    }
+}
+
+/// An image from bytes, for tests of readers: a TIFF file by its first bytes, else any other.
+///
+/// # Errors
+/// What is wrong.
+pub fn of_bytes(bytes: &[u8]) -> Result<GreyImage, String> {
+    if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") {
+        let decoder =
+            Decoder::new(std::io::Cursor::new(bytes)).map_err(|fault| fault.to_string())?;
+        return of_tiff(decoder);
+    }
+    of_other(|| Ok(std::io::Cursor::new(bytes.to_vec())))
+}
+
+fn of_other<R: BufRead + Seek>(open: impl Fn() -> Result<R, Error>) -> Result<GreyImage, String> {
+    let reader = || -> Result<ImageReader<R>, String> {
+        let source = open().map_err(|fault| fault.to_string())?;
+        let mut reader = ImageReader::new(source)
+            .with_guessed_format()
+            .map_err(|fault| fault.to_string())?;
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(8 * MOST_PIXELS);
+        reader.limits(limits);
+        Ok(reader)
+    };
+    let (width, height) = reader()?
+        .into_dimensions()
+        .map_err(|fault| fault.to_string())?;
+    check_size(width, height)?;
+    let decoded = reader()?.decode().map_err(|fault| fault.to_string())?;
+    let (width, height) = (width as usize, height as usize);
+    let values = match decoded {
+        DynamicImage::ImageLuma8(image) => greys(&image.into_raw(), 1, f32::from),
+        DynamicImage::ImageLuma16(image) => greys(&image.into_raw(), 1, f32::from),
+        DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => greys(&decoded.into_rgb16().into_raw(), 3, f32::from),
+        other => greys(&other.into_rgb8().into_raw(), 3, f32::from),
+    };
+    Ok(GreyImage::new(width, height, values))
+}
+
+/// Grey values of pixels with so many samples: the first one, or the luminance of three or more.
+fn greys<T: Copy + Sync>(samples: &[T], each: usize, value: impl Fn(T) -> f32 + Sync) -> Vec<f32> {
+    let grey = |pixel: &[T]| match pixel {
+        [r, g, b, ..] => {
+            LUMINANCE[0] * value(*r) + LUMINANCE[1] * value(*g) + LUMINANCE[2] * value(*b)
+        }
+        _ => value(pixel[0]),
+    };
+    samples.par_chunks_exact(each).map(grey).collect()
+}
+
+fn of_tiff<R: std::io::Read + Seek>(mut decoder: Decoder<R>) -> Result<GreyImage, String> {
+    let (width, height) = decoder.dimensions().map_err(|fault| fault.to_string())?;
+    check_size(width, height)?;
+    let each = match decoder.colortype().map_err(|fault| fault.to_string())? {
+        ColorType::Gray(_) => 1,
+        ColorType::GrayA(_) => 2,
+        ColorType::RGB(_) => 3,
+        ColorType::RGBA(_) => 4,
+        other => {
+            return Err(format!(
+                "its colours are {other:?}, where grey or RGB is expected"
+            ));
+        }
+    };
+    let values = match decoder.read_image().map_err(|fault| fault.to_string())? {
+        DecodingResult::U8(samples) => greys(&samples, each, f32::from),
+        DecodingResult::U16(samples) => greys(&samples, each, f32::from),
+        DecodingResult::F32(samples) => greys(&samples, each, |value: f32| value),
+        _ => return Err("its samples are neither of 8 nor of 16 bit".to_owned()),
+    };
+    let (width, height) = (width as usize, height as usize);
+    if values.len() != width * height {
+        return Err("its samples are fewer than its pixels".to_owned());
+    }
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err("it has values that are not numbers".to_owned());
+    }
+    Ok(GreyImage::new(width, height, values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageBuffer, Luma, Rgb};
+
+    #[test]
+    fn images_of_all_kinds_are_read_as_their_grey_values() {
+        let folder = tempfile::tempdir().unwrap();
+        let eight: ImageBuffer<Luma<u8>, _> =
+            ImageBuffer::from_fn(20, 10, |x, y| Luma([(10 * x + y) as u8]));
+        let sixteen: ImageBuffer<Luma<u16>, _> =
+            ImageBuffer::from_fn(20, 10, |x, y| Luma([(3000 * x + y) as u16]));
+        for name in ["a.png", "a.tif", "a.bmp"] {
+            let path = folder.path().join(name);
+            eight.save(&path).unwrap();
+            let image = pages(&path).unwrap()[0].read().unwrap();
+            assert_eq!(
+                (image.size(), image.value(7, 3)),
+                ([20, 10], 73.0),
+                "{name}"
+            );
+        }
+        for name in ["b.png", "b.tif"] {
+            let path = folder.path().join(name);
+            sixteen.save(&path).unwrap();
+            assert_eq!(
+                pages(&path).unwrap()[0].read().unwrap().value(7, 3),
+                21003.0,
+                "{name}"
+            );
+        }
+        let colour: ImageBuffer<Rgb<u8>, _> =
+            ImageBuffer::from_fn(20, 10, |_, _| Rgb([100, 200, 50]));
+        let path = folder.path().join("c.png");
+        colour.save(&path).unwrap();
+        let grey = pages(&path).unwrap()[0].read().unwrap().value(0, 0);
+        assert!((grey - 167.91).abs() < 0.01, "{grey}");
+    }
+
+    #[test]
+    fn pages_of_a_file_and_files_of_a_folder_are_frames_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stack.tif");
+        let mut encoder = tiff::encoder::TiffEncoder::new(File::create(&path).unwrap()).unwrap();
+        for page in 0..3_u8 {
+            let values = vec![page; 100];
+            encoder
+                .write_image::<tiff::encoder::colortype::Gray8>(10, 10, &values)
+                .unwrap();
+        }
+        let all = pages(&path).unwrap();
+        let values: Vec<f32> = all
+            .iter()
+            .map(|page| page.read().unwrap().value(0, 0))
+            .collect();
+        assert_eq!(values, [0.0, 1.0, 2.0]);
+        assert_eq!(all[2].name(), "stack, page 3");
+        let image: ImageBuffer<Luma<u8>, _> = ImageBuffer::new(10, 10);
+        for name in ["f10.png", "f9.png", "g1.png"] {
+            image.save(folder.path().join(name)).unwrap();
+        }
+        let found = list(&[folder.path().join("f*.png")]).unwrap();
+        assert_eq!(
+            found.iter().map(ImageFile::name).collect::<Vec<_>>(),
+            ["f9", "f10"]
+        );
+        assert_eq!(list(&[folder.path().to_owned()]).unwrap().len(), 6);
+    }
+
+    #[test]
+    fn what_is_no_image_is_refused_with_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "a.tif", "a.jpg"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, b"no image").unwrap();
+            let fault = list(&[path])
+                .and_then(|all| all[0].read())
+                .unwrap_err()
+                .to_string();
+            assert!(fault.contains(name), "{fault}");
+        }
+        assert!(check_size(100_000, 100_000).is_err() && check_size(4, 100).is_err());
+    }
+}

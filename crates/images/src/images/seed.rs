@@ -1,0 +1,246 @@
+//! The first guess: where one subset went, without knowing anything.
+//!
+//! The subset is looked for on the coarsest of a pyramid of images by normalised cross-correlation, first as it is, then turned and stretched;
+//! the best places are refined level by level.
+
+use nalgebra::{Matrix2, Rotation2};
+use rayon::prelude::*;
+
+use super::gradient::Reference;
+use super::grey::GreyImage;
+use super::grid::LEAST_SIMILARITY;
+use super::noise::Noise;
+use super::pyramid::{halved, halved_flags};
+use super::spline::Spline;
+use super::subset::{Match, Subset};
+use super::warp::{Order, Warp};
+
+/// Pixels along the longer side of the coarsest image.
+const COARSEST: usize = 160;
+
+/// Half the width of subsets on coarse images.
+const HALF: usize = 9;
+
+/// A reference, and what it is compared with, on one level.
+struct Level {
+    reference: Reference,
+    noise: Noise,
+    spline: Spline,
+    frame: GreyImage,
+}
+
+/// Both images from fine to coarse; the finest is not among them.
+pub struct Pyramid<'a> {
+    finest: (&'a Reference, &'a Noise, &'a Spline),
+    coarse: Vec<Level>,
+    half: usize,
+    order: Order,
+    frame: &'a GreyImage,
+}
+
+impl<'a> Pyramid<'a> {
+    pub fn new(
+        finest: (&'a Reference, &'a Noise, &'a Spline),
+        frame: &'a GreyImage,
+        half: usize,
+        order: Order,
+    ) -> Self {
+        let mut coarse: Vec<Level> = Vec::new();
+        loop {
+            let (image, usable, other) = match coarse.last() {
+                Some(level) => (
+                    &level.reference.image,
+                    &level.reference.usable,
+                    &level.frame,
+                ),
+                None => (&finest.0.image, &finest.0.usable, frame),
+            };
+            let size = image.size();
+            if size[0].max(size[1]) <= COARSEST || size[0].min(size[1]) <= 4 * HALF {
+                break;
+            }
+            let (image, usable, other) = (halved(image), halved_flags(usable, size), halved(other));
+            let noise = Noise::of_image(&image, &usable);
+            coarse.push(Level {
+                spline: Spline::new(&other),
+                reference: Reference::new(image, usable, &noise),
+                noise,
+                frame: other,
+            });
+        }
+        Self {
+            finest,
+            coarse,
+            half,
+            order,
+            frame,
+        }
+    }
+
+    /// Finds a subset about a pixel of the reference.
+    pub fn seek(&self, centre: [usize; 2]) -> Option<Match> {
+        self.refine(centre, Warp::default(), self.coarse.len())
+            .or_else(|| {
+                let places = self.correlate(centre, Matrix2::identity());
+                places
+                    .into_iter()
+                    .find_map(|(_, warp)| self.refine(centre, warp, self.coarse.len()))
+            })
+    }
+
+    /// Finds it turned and stretched.
+    pub fn seek_deformed(&self, centre: [usize; 2]) -> Option<Match> {
+        const BEST: usize = 12;
+        const TURN: f64 = 15.0;
+        const STRETCHES: [[f64; 2]; 8] = [
+            [1.0, 1.0],
+            [1.25, 0.9],
+            [0.9, 1.25],
+            [1.5, 0.8],
+            [0.8, 1.5],
+            [2.0, 0.7],
+            [0.7, 2.0],
+            [1.4, 1.4],
+        ];
+        let turns = (0..24).map(|k| f64::from(k) * TURN);
+        let all: Vec<Matrix2<f64>> = turns
+            .flat_map(|angle| {
+                let turn = Rotation2::new(angle.to_radians());
+                STRETCHES.map(|[x, y]| turn.matrix() * Matrix2::new(x, 0.0, 0.0, y))
+            })
+            .collect();
+        let found = all.par_iter().flat_map_iter(|f| self.correlate(centre, *f));
+        let mut found: Vec<(f64, Warp)> = found.collect();
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let best = found.into_iter().take(BEST);
+        let refined = best.filter_map(|(_, warp)| self.refine(centre, warp, self.coarse.len()));
+        refined.max_by(|a, b| a.similarity.total_cmp(&b.similarity))
+    }
+
+    /// From a displacement on a level down to the finest one.
+    fn refine(&self, centre: [usize; 2], guess: Warp, from: usize) -> Option<Match> {
+        let mut warp = guess;
+        for (level, number) in self
+            .coarse
+            .iter()
+            .zip(1_u32..)
+            .take(from)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+        {
+            let at = centre.map(|c| c >> number);
+            let subset = Subset::new(&level.reference, at, HALF, Order::Affine, &level.noise);
+            if let Some(found) =
+                subset.and_then(|subset| subset.find(&level.spline, warp, &level.noise))
+            {
+                warp = found.warp;
+            }
+            warp = warp.scaled(2.0);
+        }
+        let (reference, noise, spline) = self.finest;
+        let subset = |order| Subset::new(reference, centre, self.half, order, noise);
+        let found = subset(Order::Affine)?.find(spline, warp, noise)?;
+        let found = match self.order {
+            Order::Affine => found,
+            order => subset(order)?.find(spline, found.warp, noise)?,
+        };
+        (found.similarity >= LEAST_SIMILARITY).then_some(found)
+    }
+
+    /// The best three places on the coarsest level of a subset deformed by F, with their correlations.
+    fn correlate(&self, centre: [usize; 2], f: Matrix2<f64>) -> Vec<(f64, Warp)> {
+        let (image, usable, frame) = match self.coarse.last() {
+            Some(level) => (
+                &level.reference.image,
+                &level.reference.usable,
+                &level.frame,
+            ),
+            None => (&self.finest.0.image, &self.finest.0.usable, self.frame),
+        };
+        let [width, height] = image.size();
+        let centre = centre.map(|c| (c >> self.coarse.len()) as f64);
+        let Some(inverse) = f.try_inverse() else {
+            return Vec::new();
+        };
+        let reach = HALF as isize;
+        let square = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| [x, y]));
+        let template = square.filter_map(|[x, y]| {
+            let from = inverse * nalgebra::Vector2::new(x as f64, y as f64);
+            let [a, b] = [centre[0] + from.x, centre[1] + from.y];
+            let inside = a >= 0.0 && b >= 0.0 && a < (width - 1) as f64 && b < (height - 1) as f64;
+            let (column, row) = (a as usize, b as usize);
+            (inside && usable[row * width + column]).then(|| ([x, y], linear(image, a, b)))
+        });
+        let (offsets, mut values): (Vec<[isize; 2]>, Vec<f32>) = template.unzip();
+        if offsets.len() < (HALF + 1).pow(2) {
+            return Vec::new();
+        }
+        let mean = values.iter().sum::<f32>() / values.len() as f32;
+        values.iter_mut().for_each(|value| *value -= mean);
+        let warp = |(score, x, y): (f64, usize, usize)| {
+            let displacement = [x as f64 - centre[0], y as f64 - centre[1]];
+            (score, Warp::affine(displacement, f - Matrix2::identity()))
+        };
+        best_places(frame, &offsets, &values)
+            .into_iter()
+            .map(warp)
+            .collect()
+    }
+}
+
+fn linear(image: &GreyImage, x: f64, y: f64) -> f32 {
+    let (column, row) = (x as usize, y as usize);
+    let (s, t) = ((x - column as f64) as f32, (y - row as f64) as f32);
+    let along =
+        |row: usize| image.value(column, row) * (1.0 - s) + image.value(column + 1, row) * s;
+    along(row) * (1.0 - t) + along(row + 1) * t
+}
+
+/// The best three places in an image of a template with mean 0, more than two pixels apart, with their correlations.
+fn best_places(
+    frame: &GreyImage,
+    offsets: &[[isize; 2]],
+    template: &[f32],
+) -> Vec<(f64, usize, usize)> {
+    const BEST: usize = 3;
+    const APART: usize = 2;
+    let ([columns, rows], pixels) = (frame.size(), frame.values());
+    let size = template
+        .iter()
+        .map(|value| value * value)
+        .sum::<f32>()
+        .sqrt();
+    let count = template.len() as f32;
+    let flat: Vec<isize> = offsets
+        .iter()
+        .map(|[x, y]| y * columns as isize + x)
+        .collect();
+    let score = |x: usize, y: usize| {
+        let at = (y * columns + x) as isize;
+        let (mut product, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        for (offset, value) in flat.iter().zip(template) {
+            let other = pixels[(at + offset) as usize];
+            product += value * other;
+            sum += other;
+            squares += other * other;
+        }
+        f64::from(product / (size * (squares - sum * sum / count).max(1e-6).sqrt()))
+    };
+    let inner = HALF..columns.saturating_sub(HALF);
+    let places = (HALF..rows.saturating_sub(HALF)).flat_map(|y| inner.clone().map(move |x| (x, y)));
+    let mut scores: Vec<_> = places.map(|(x, y)| (score(x, y), x, y)).collect();
+    scores.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut best: Vec<(f64, usize, usize)> = Vec::new();
+    for (score, x, y) in scores {
+        let is_apart =
+            |other: &(f64, usize, usize)| x.abs_diff(other.1).max(y.abs_diff(other.2)) > APART;
+        if best.iter().all(is_apart) {
+            best.push((score, x, y));
+        }
+        if best.len() == BEST {
+            break;
+        }
+    }
+    best
+}

@@ -1,0 +1,117 @@
+//! The size of the pattern, and of the subsets that it asks for.
+
+use rayon::prelude::*;
+
+use super::filter::{gaussian, symmetric};
+use super::gradient::Reference;
+use super::grid::Grid;
+use super::noise::Noise;
+use super::subset::Subset;
+use super::warp::Order;
+
+/// Half the width of a subset that is five speckles wide, by the width at half height of the pattern's autocorrelation, and wide enough for
+/// standard deviations of the displacement below a twentieth of a pixel at a quarter of the points, but at most an eighth of the image.
+pub fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Noise) -> usize {
+    const SPECKLES: f64 = 5.0;
+    const DEVIATION: f64 = 0.05;
+    const LEAST: usize = 5;
+    let size = reference.image.size();
+    let most = (size[0].min(size[1]) / 8).max(LEAST);
+    let start = (0.5 * SPECKLES * speckle(reference, noise)).round() as usize;
+    let deviation = |half| {
+        typical(grid, &|point| {
+            Subset::new(reference, point, half, order, noise)
+        })
+    };
+    let mut half = start.clamp(LEAST, most);
+    while half < most && deviation(half) > DEVIATION {
+        half = (half + 1 + half / 8).min(most);
+    }
+    half
+}
+
+/// How many steps of the grid wide patches are that share no pixel: three speckles, and wide enough that the noise moves a quarter of them by
+/// less than an eighth of a speckle, for which the images are linear; at most an eighth of the image.
+pub fn patch_steps(reference: &Reference, grid: &Grid, spacing: usize, noise: &Noise) -> usize {
+    const SPECKLES: f64 = 3.0;
+    const LINEAR: f64 = 0.125;
+    let size = reference.image.size();
+    let speckle = speckle(reference, noise);
+    let most = (size[0].min(size[1]) / 8 / spacing).max(1);
+    let mut steps = ((SPECKLES * speckle / spacing as f64).round() as usize).clamp(1, most);
+    let deviation = |steps| {
+        typical(grid, &|point| {
+            Subset::patch(reference, point, steps * spacing, noise)
+        })
+    };
+    while steps < most && deviation(steps) > LINEAR * speckle {
+        steps += 1;
+    }
+    steps
+}
+
+/// The standard deviation in pixels that a quarter of the points fall below.
+fn typical(grid: &Grid, subset: &(dyn Fn([usize; 2]) -> Option<Subset> + Sync)) -> f64 {
+    const SAMPLE: usize = 200;
+    let every = (grid.points.len() / SAMPLE).max(1);
+    let sample: Vec<[usize; 2]> = grid.points.iter().step_by(every).copied().collect();
+    let deviations = sample
+        .par_iter()
+        .map(|point| subset(*point).map_or(f64::INFINITY, |subset| subset.expected_deviation()));
+    let mut deviations: Vec<f64> = deviations.collect();
+    deviations.sort_by(f64::total_cmp);
+    deviations
+        .get(deviations.len() / 4)
+        .copied()
+        .unwrap_or(f64::INFINITY)
+}
+
+/// The width at half height of the autocorrelation of the pattern, the mean of both directions, in pixels; light and dark areas that
+/// are much larger than a speckle do not count.
+pub fn speckle(reference: &Reference, noise: &Noise) -> f64 {
+    const MOST: usize = 40;
+    /// Standard deviation in pixels of what counts as an area.
+    const AREA: f64 = 16.0;
+    let [width, height] = reference.image.size();
+    let areas = symmetric(&reference.image, &gaussian(AREA));
+    let pairs = reference.image.values().iter().zip(areas.values());
+    let values: Vec<f32> = pairs.map(|(value, area)| value - area).collect();
+    let mean = areas
+        .values()
+        .iter()
+        .map(|area| f64::from(*area))
+        .sum::<f64>()
+        / values.len() as f64;
+    let along = |step: usize| -> Vec<f64> {
+        let product = |lag: usize| {
+            let last = values.len().saturating_sub(lag * step);
+            let (mut sum, mut count, mut own) = (0.0, 0.0, [0.0; 2]);
+            for at in 0..last {
+                if reference.usable[at] && reference.usable[at + lag * step] {
+                    let pair = [f64::from(values[at]), f64::from(values[at + lag * step])];
+                    (sum, count) = (sum + pair[0] * pair[1], count + 1.0);
+                    own = [own[0] + pair[0], own[1] + pair[1]];
+                }
+            }
+            let of_noise = if lag == 0 { noise.variance(mean) } else { 0.0 };
+            sum / count - own[0] * own[1] / (count * count) - of_noise
+        };
+        (0..MOST.min(width.min(height) / 2)).map(product).collect()
+    };
+    let half_height = |products: Vec<f64>| {
+        let level = 0.5 * products[0];
+        let below = products
+            .iter()
+            .position(|product| *product < level)
+            .unwrap_or(products.len() - 1)
+            .max(1);
+        let (high, low) = (products[below - 1], products[below]);
+        let part = if high > low {
+            ((high - level) / (high - low)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        2.0 * ((below - 1) as f64 + part)
+    };
+    0.5 * (half_height(along(1)) + half_height(along(width)))
+}

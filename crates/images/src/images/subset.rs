@@ -1,0 +1,374 @@
+//! A subset of the first image, and where it is found in another one.
+//!
+//! With J = ĝ φ (two entries for each function φ), freed of what gain and offset could explain, J⊥ = J − J̄ − Ĩ (Ĩ·J)/(Ĩ·Ĩ),
+//!
+//! ```text
+//! q = A⁻¹ Σ J⊥ (I₀ − b I₁(X + u)),   A = Σ J⊥ (g φ)ᵀ − v ⟨k̂, k⟩ Σ φφᵀ,   p ← p + F q,   until Σ J⊥ I₁(X + u) = 0
+//! ```
+//!
+//! A belongs to the first image and is factorised once, as F carries a displacement there into one in the other image (the inverse
+//! composition of Baker and Matthews, to first order). The covariance of the displacement is
+//!
+//! ```text
+//! Cov(p₀) = F [A⁻¹ Σ J⊥J⊥ᵀ A⁻ᵀ]₀₀ Fᵀ (v(I₀) + b² v(I₁) max(1, 1/det F))
+//! ```
+//!
+//! where 1/det F counts that fewer pixels of a compressed image are behind as many values.
+
+use nalgebra::{DVector, Matrix2, Vector2};
+
+use super::gradient::Reference;
+use super::matrices::{Matrices, Pixel};
+use super::noise::{Classes, Noise};
+use super::spline::Spline;
+use super::warp::{DEGREES, Order, Warp, functions};
+
+/// A subset of the first image.
+#[derive(Clone, Debug)]
+pub struct Subset {
+    centre: [f64; 2],
+    count: usize,
+    half: f64,
+    overlap: f64,
+    noise: Noise,
+    pixels: Vec<Pixel>,
+    matrices: Matrices,
+}
+
+/// Where a subset was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Match {
+    /// The displacement in the subset.
+    pub warp: Warp,
+    /// Covariance of the displacement at the centre in pixels².
+    pub covariance: Matrix2<f64>,
+    /// The squared correlation with the noise taken out: 1 where the pattern is the same.
+    pub similarity: f64,
+    /// b.
+    pub gain: f64,
+    /// a.
+    pub offset: f64,
+    /// The mean square of I₀ − a − b I₁.
+    pub misfit: f64,
+}
+
+/// The least share of a subset's pixels that must be inside of the other image.
+const LEAST_SHARE: f64 = 0.5;
+
+/// Sums over the pixels with values of the other image.
+struct Sums {
+    count: f64,
+    products: [f64; 12],
+    value: f64,
+    square: f64,
+    product: f64,
+}
+
+impl Subset {
+    /// The usable pixels of a square of 2 half + 1 pixels about a pixel. `None` where fewer than half of them are usable, or where the pattern
+    /// does not determine the displacement.
+    pub fn new(
+        reference: &Reference,
+        centre: [usize; 2],
+        half: usize,
+        order: Order,
+        noise: &Noise,
+    ) -> Option<Self> {
+        Self::of_square(reference, centre, 2 * half + 1, order.functions(), noise)
+    }
+
+    /// A square of `width` pixels of which the displacement alone is unknown, its gradient known. Squares whose centres are `width` apart
+    /// share no pixel.
+    pub fn patch(
+        reference: &Reference,
+        centre: [usize; 2],
+        width: usize,
+        noise: &Noise,
+    ) -> Option<Self> {
+        Self::of_square(reference, centre, width, 1, noise)
+    }
+
+    fn of_square(
+        reference: &Reference,
+        centre: [usize; 2],
+        width: usize,
+        count: usize,
+        noise: &Noise,
+    ) -> Option<Self> {
+        let size = reference.image.size();
+        let [columns, rows] = [0, 1].map(|axis| {
+            let from = centre[axis].saturating_sub(width / 2);
+            from..(centre[axis] + width - width / 2).min(size[axis])
+        });
+        let mut pixels = Vec::with_capacity(width * width);
+        for row in rows {
+            for column in columns.clone() {
+                let at = row * size[0] + column;
+                if reference.usable[at] {
+                    pixels.push(Pixel {
+                        x: column as f32 - centre[0] as f32,
+                        y: row as f32 - centre[1] as f32,
+                        value: reference.image.values()[at],
+                        smooth: [0, 1].map(|axis| reference.smooth[axis].values()[at]),
+                        slope: [0, 1].map(|axis| reference.gradient[axis].values()[at]),
+                    });
+                }
+            }
+        }
+        if (pixels.len() as f64) < LEAST_SHARE * (width * width) as f64 {
+            return None;
+        }
+        let half = (width / 2).max(1) as f64;
+        let centre = centre.map(|c| c as f64);
+        Self::of_pixels(pixels, centre, half, count, reference.overlap, *noise)
+    }
+
+    fn of_pixels(
+        pixels: Vec<Pixel>,
+        centre: [f64; 2],
+        half: f64,
+        count: usize,
+        overlap: f64,
+        noise: Noise,
+    ) -> Option<Self> {
+        let matrices = Matrices::new(&pixels, half, count, overlap, &noise)?;
+        Some(Self {
+            centre,
+            count,
+            half,
+            overlap,
+            noise,
+            pixels,
+            matrices,
+        })
+    }
+
+    /// The mean of the pixels' places in pixels.
+    pub fn middle(&self) -> [f64; 2] {
+        let count = self.pixels.len() as f64;
+        let sum = |part: fn(&Pixel) -> f32| {
+            self.pixels
+                .iter()
+                .map(|pixel| f64::from(part(pixel)))
+                .sum::<f64>()
+                / count
+        };
+        [
+            self.centre[0] + sum(|pixel| pixel.x),
+            self.centre[1] + sum(|pixel| pixel.y),
+        ]
+    }
+
+    /// The root mean square of both components' standard deviations that an image of the same noise would give without deformation, in pixels.
+    pub fn expected_deviation(&self) -> f64 {
+        (0.5 * self.expected_covariance().trace()).sqrt()
+    }
+
+    /// The covariance of a displacement that an image of the same noise would have without deformation, in pixels².
+    pub fn expected_covariance(&self) -> Matrix2<f64> {
+        self.covariance(
+            Matrix2::identity(),
+            1.0,
+            self.matrices.value / self.pixels.len() as f64,
+            &self.noise,
+        )
+    }
+
+    fn covariance(&self, f: Matrix2<f64>, gain: f64, other: f64, noise: &Noise) -> Matrix2<f64> {
+        let Matrices {
+            step,
+            spread,
+            value,
+            ..
+        } = &self.matrices;
+        let left = step.solve(spread);
+        let both = step.solve(&left.transpose());
+        let block = Matrix2::new(both[(0, 0)], both[(0, 1)], both[(1, 0)], both[(1, 1)]);
+        let own = noise.variance(value / self.pixels.len() as f64);
+        let other = gain * gain * noise.variance(other) * (1.0 / f.determinant()).max(1.0);
+        f * (0.5 * (block + block.transpose())) * f.transpose() * (own + other)
+    }
+
+    /// Finds the subset in another image from a first guess; `None` where it does not converge within the image.
+    pub fn find(mut self, image: &Spline, guess: Warp, noise: &Noise) -> Option<Match> {
+        const MOST: usize = 40;
+        /// Pixels.
+        const SMALL: f64 = 1e-3;
+        let (mut warp, whole) = (guess, self.pixels.len() as f64);
+        let count = self.count.max(3);
+        for _ in 0..MOST {
+            let place = |x: f64, y: f64| warp.at(x, y, count);
+            let sums = loop {
+                match self.sums(image, &place) {
+                    Ok(sums) => break sums,
+                    Err(inside) => {
+                        if (inside.len() as f64) < LEAST_SHARE * whole {
+                            return None;
+                        }
+                        self = Self::of_pixels(
+                            inside,
+                            self.centre,
+                            self.half,
+                            self.count,
+                            self.overlap,
+                            self.noise,
+                        )?;
+                    }
+                }
+            };
+            let f = warp.deformation_gradient();
+            let q = self.step(&sums, noise);
+            let mut largest = 0.0_f64;
+            for k in 0..self.count {
+                let scale = self.half.powi(-DEGREES[k]);
+                let change = f * Vector2::new(q[2 * k], q[2 * k + 1]);
+                largest += change.norm();
+                warp.terms[k][0] += change.x * scale;
+                warp.terms[k][1] += change.y * scale;
+            }
+            let sound = largest.is_finite() && warp.deformation_gradient().determinant() > 0.05;
+            if !sound || largest > 2.0 * self.half {
+                return None;
+            }
+            if largest < SMALL {
+                return self.found(image, warp, noise);
+            }
+        }
+        None
+    }
+
+    /// The sums, or the pixels that are inside of the image where some are not.
+    fn sums(
+        &self,
+        image: &Spline,
+        place: &dyn Fn(f64, f64) -> [f64; 2],
+    ) -> Result<Sums, Vec<Pixel>> {
+        let mut sums = Sums {
+            count: self.pixels.len() as f64,
+            products: [0.0; 12],
+            value: 0.0,
+            square: 0.0,
+            product: 0.0,
+        };
+        let scale = 1.0 / self.half;
+        let mut outside = false;
+        let mut is_inside = vec![];
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let (x, y) = (f64::from(pixel.x), f64::from(pixel.y));
+            let [u, v] = place(x, y);
+            let Some(value) = image.value(self.centre[0] + x + u, self.centre[1] + y + v) else {
+                if !outside {
+                    is_inside = vec![true; self.pixels.len()];
+                    outside = true;
+                }
+                is_inside[index] = false;
+                continue;
+            };
+            let value = f64::from(value);
+            let phi = functions(x * scale, y * scale);
+            let weighted = pixel.smooth.map(|slope| f64::from(slope) * value);
+            for (sum, phi) in sums.products.chunks_exact_mut(2).zip(&phi).take(self.count) {
+                sum[0] += phi * weighted[0];
+                sum[1] += phi * weighted[1];
+            }
+            sums.value += value;
+            sums.square += value * value;
+            sums.product += value * f64::from(pixel.value);
+        }
+        if outside {
+            let pixels = self.pixels.iter().zip(is_inside);
+            return Err(pixels
+                .filter(|(_, inside)| *inside)
+                .map(|(pixel, _)| *pixel)
+                .collect());
+        }
+        Ok(sums)
+    }
+
+    /// Variances of both images without noise, and their covariance.
+    fn moments(&self, sums: &Sums, noise: &Noise) -> [f64; 3] {
+        let Matrices { value, square, .. } = &self.matrices;
+        let (own, other) = (value / sums.count, sums.value / sums.count);
+        let first = square / sums.count - own * own - noise.variance(own);
+        let gain = Spline::noise_gain(0.5, 0.0);
+        let second = sums.square / sums.count - other * other - gain * noise.variance(other);
+        [first, second, sums.product / sums.count - own * other]
+    }
+
+    /// b, with the variance of the other image's noise taken out.
+    fn gain(&self, sums: &Sums, noise: &Noise) -> f64 {
+        let [first, second, product] = self.moments(sums, noise);
+        let gain = product / second;
+        if second > 0.0 && gain > 0.0 && gain.is_finite() {
+            gain
+        } else {
+            (first / second).abs().sqrt().clamp(0.1, 10.0)
+        }
+    }
+
+    /// q.
+    fn step(&self, sums: &Sums, noise: &Noise) -> DVector<f64> {
+        let Matrices {
+            step,
+            sum,
+            weighted,
+            value,
+            square,
+            ..
+        } = &self.matrices;
+        let mean = value / sums.count;
+        let own = square - value * mean;
+        let other = sums.product - mean * sums.value;
+        let products =
+            DVector::from_iterator(sum.len(), sums.products[..sum.len()].iter().copied());
+        // Σ J⊥ I₁
+        let left = products - sum * (sums.value / sums.count) - weighted * (other / own);
+        step.solve(&(left * -self.gain(sums, noise)))
+    }
+
+    fn found(&self, image: &Spline, warp: Warp, noise: &Noise) -> Option<Match> {
+        let count = self.count.max(3);
+        let sums = self.sums(image, &|x, y| warp.at(x, y, count)).ok()?;
+        self.concluded(&sums, warp, noise)
+    }
+
+    fn concluded(&self, sums: &Sums, warp: Warp, noise: &Noise) -> Option<Match> {
+        let Matrices { value, square, .. } = &self.matrices;
+        let [first, second, product] = self.moments(sums, noise);
+        let gain = self.gain(sums, noise);
+        let (own, other) = (value / sums.count, sums.value / sums.count);
+        let similarity = if first > 0.0 && second > 0.0 && product > 0.0 {
+            product * product / (first * second)
+        } else {
+            0.0
+        };
+        let [own_square, other_square] = [
+            square / sums.count - own * own,
+            sums.square / sums.count - other * other,
+        ];
+        Some(Match {
+            warp,
+            covariance: self.covariance(warp.deformation_gradient(), gain, other, noise),
+            similarity,
+            gain,
+            offset: own - gain * other,
+            misfit: own_square - 2.0 * gain * product + gain * gain * other_square,
+        })
+    }
+
+    /// Adds the squares of the residuals, each divided by the variance that a pixel of unit variance gives it.
+    pub(super) fn classify(&self, image: &Spline, found: &Match, classes: &mut Classes) {
+        let count = self.count.max(3);
+        for pixel in &self.pixels {
+            let (x, y) = (f64::from(pixel.x), f64::from(pixel.y));
+            let [u, v] = found.warp.at(x, y, count);
+            let [x, y] = [self.centre[0] + x + u, self.centre[1] + y + v];
+            if let Some(value) = image.value(x, y) {
+                let own = f64::from(pixel.value);
+                let residual = own - found.offset - found.gain * f64::from(value);
+                let gain = 1.0 + found.gain.powi(2) * Spline::noise_gain(x, y);
+                classes.add(own, residual * residual / gain);
+            }
+        }
+    }
+}

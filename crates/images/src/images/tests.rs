@@ -1,0 +1,236 @@
+use nalgebra::{Matrix2, Vector2};
+
+mod render;
+
+use super::*;
+use render::{Camera, Pattern, natural, speckle, tags};
+
+/// A homogeneous deformation x = m + F (X − m) + t about the middle of an image.
+struct Homogeneous {
+    f: Matrix2<f64>,
+    middle: Vector2<f64>,
+    shift: Vector2<f64>,
+}
+
+impl Homogeneous {
+    fn new(size: [usize; 2], f: Matrix2<f64>, shift: [f64; 2]) -> Self {
+        Self {
+            f,
+            middle: Vector2::new(size[0] as f64 / 2.0, size[1] as f64 / 2.0),
+            shift: shift.into(),
+        }
+    }
+
+    fn material(&self, x: [f64; 2]) -> [f64; 2] {
+        (self.middle
+            + self.f.try_inverse().unwrap() * (Vector2::from(x) - self.middle - self.shift))
+            .into()
+    }
+
+    fn displacement(&self, x: [f64; 2]) -> [f64; 2] {
+        let arm = Vector2::from(x) - self.middle;
+        (self.f * arm - arm + self.shift).into()
+    }
+}
+
+/// Root mean square of the errors in pixels, the share of components within 1.96 standard deviations, and the share of points inside of the
+/// frame that are found.
+struct Figures {
+    error: f64,
+    covered: f64,
+    found: f64,
+    worst: f64,
+}
+
+fn figures(
+    tracked: &[Option<Tracked>],
+    places: &[[f64; 2]],
+    size: [usize; 2],
+    truth: &dyn Fn([f64; 2]) -> [f64; 2],
+) -> Figures {
+    const MARGIN: f64 = 15.0;
+    let (mut squares, mut within, mut count, mut seen, mut worst) = (0.0, 0.0, 0.0, 0.0, 0.0_f64);
+    for (tracked, place) in tracked.iter().zip(places) {
+        let place = *place;
+        let [u, v] = truth(place);
+        let inside = |at: f64, length: usize| at > MARGIN && at < length as f64 - 1.0 - MARGIN;
+        let is_seen = inside(place[0] + u, size[0]) && inside(place[1] + v, size[1]);
+        seen += f64::from(u8::from(is_seen));
+        let Some(tracked) = tracked.filter(|_| is_seen) else {
+            continue;
+        };
+        count += 1.0;
+        for (axis, true_value) in [u, v].into_iter().enumerate() {
+            let off = tracked.displacement[axis] - true_value;
+            squares += off * off;
+            worst = worst.max(off.abs());
+            within += f64::from(u8::from(
+                off.abs() <= 1.96 * tracked.covariance[(axis, axis)].sqrt(),
+            ));
+        }
+    }
+    Figures {
+        error: (squares / (2.0 * count)).sqrt(),
+        covered: within / (2.0 * count),
+        found: count / seen,
+        worst,
+    }
+}
+
+fn follow(
+    pattern: &Pattern,
+    cameras: [Camera; 2],
+    motion: &Homogeneous,
+    settings: Settings,
+) -> (Figures, Tracker) {
+    let size = cameras[0].size;
+    let first = cameras[0].frame(pattern, |x| x);
+    let other = cameras[1].frame(pattern, |x| motion.material(x));
+    let mut tracker = Tracker::new(&first, &other, &Region::whole(size), settings).unwrap();
+    let tracked = tracker.follow(&other).unwrap();
+    let found = figures(&tracked, &centres(&tracker), size, &|x| {
+        motion.displacement(x)
+    });
+    (found, tracker)
+}
+
+fn centres(tracker: &Tracker) -> Vec<[f64; 2]> {
+    tracker
+        .places()
+        .iter()
+        .map(|place| place.map(|x| x as f64))
+        .collect()
+}
+
+fn cameras(size: [usize; 2], noise: f64) -> [Camera; 2] {
+    [Camera::new(size, noise, 1), Camera::new(size, noise, 2)]
+}
+
+fn says(what: &str, figures: &Figures, tracker: &Tracker) {
+    println!(
+        "{what}: error {:.4} px, worst {:.3}, covered {:.3}, found {:.3}, subset {}, noise {:?}",
+        figures.error,
+        figures.worst,
+        figures.covered,
+        figures.found,
+        tracker.subset(),
+        tracker.noise()
+    );
+}
+
+#[test]
+fn small_motions_are_followed_with_intervals_that_hold() {
+    let size = [300, 300];
+    let gradients = [
+        ("shift", Matrix2::identity()),
+        ("stretch", Matrix2::new(1.05, 0.0, 0.0, 0.98)),
+        ("shear", Matrix2::new(1.0, 0.1, 0.0, 1.0)),
+    ];
+    for (name, f) in gradients {
+        for (kind, pattern) in [("speckle", speckle(1)), ("natural", natural(2))] {
+            for noise in [0.01, 0.1] {
+                let motion = Homogeneous::new(size, f, [0.37, -1.61]);
+                let (found, tracker) =
+                    follow(&pattern, cameras(size, noise), &motion, Settings::default());
+                says(&format!("{name} {kind} {noise}"), &found, &tracker);
+                assert!(found.found > 0.97 && found.error < 0.1);
+                assert!((0.90..=0.985).contains(&found.covered));
+            }
+        }
+    }
+}
+
+#[test]
+fn patches_share_no_pixel_and_their_intervals_hold() {
+    let size = [400, 400];
+    let large = Matrix2::new(1.2, 0.1, 0.0, 0.9);
+    // Tags repeat: no point may move by half of their distance.
+    let small = Matrix2::new(1.01, 0.005, 0.0, 0.99);
+    for (kind, pattern, f) in [
+        ("speckle", speckle(3), large),
+        ("natural", natural(4), large),
+        ("tags", tags(10.0), small),
+    ] {
+        for noise in [0.02, 0.1] {
+            let motion = Homogeneous::new(size, f, [1.3, 2.2]);
+            let cameras = cameras(size, noise);
+            let first = cameras[0].frame(&pattern, |x| x);
+            let other = cameras[1].frame(&pattern, |x| motion.material(x));
+            let region = Region::whole(size);
+            let mut tracker = Tracker::new(&first, &other, &region, Settings::default()).unwrap();
+            let tracked = tracker.follow(&other).unwrap();
+            let patches = tracker.patches();
+            let measured = patches.measure(&other, &|point| Some(tracked[point]?.warp()));
+            let truth = |x| motion.displacement(x);
+            let places: Vec<[f64; 2]> = measured
+                .iter()
+                .map(|one| one.map_or([0.0; 2], |one| one.place))
+                .collect();
+            let found = figures(&measured, &places, size, &truth);
+            says(
+                &format!("patches of {} {kind} {noise}", patches.width()),
+                &found,
+                &tracker,
+            );
+            // Tags have edges sharper than a pixel, between which no interpolation is exact.
+            let holds = kind == "tags" || (0.88..=0.985).contains(&found.covered);
+            assert!(holds && found.error < 0.3, "{kind} {noise}");
+        }
+    }
+}
+
+#[test]
+fn large_motions_are_found_without_a_guess() {
+    let size = [400, 400];
+    let turn = |degrees: f64| nalgebra::Rotation2::new(degrees.to_radians()).into_inner();
+    let motions = [
+        ("turned by 35°", turn(35.0), [5.0, 3.0]),
+        (
+            "stretched to 2",
+            Matrix2::new(2.0, 0.0, 0.0, 0.71),
+            [3.0, -2.0],
+        ),
+        (
+            "turned and stretched",
+            turn(-50.0) * Matrix2::new(1.5, 0.0, 0.0, 0.8),
+            [0.0, 9.0],
+        ),
+        ("shifted", Matrix2::identity(), [61.3, -47.9]),
+    ];
+    for (name, f, shift) in motions {
+        let motion = Homogeneous::new(size, f, shift);
+        let (found, tracker) = follow(
+            &speckle(5),
+            cameras(size, 0.01),
+            &motion,
+            Settings::default(),
+        );
+        says(name, &found, &tracker);
+        assert!(found.found > 0.95 && found.error < 0.05, "{name}");
+    }
+}
+
+#[test]
+fn noise_that_grows_light_that_changes_and_a_megapixel() {
+    let size = [1000, 1000];
+    let mut cameras = cameras(size, 0.03);
+    for camera in &mut cameras {
+        camera.photons = true;
+    }
+    cameras[1].light = [0.75, 1.1];
+    let motion = Homogeneous::new(size, Matrix2::new(1.08, 0.03, 0.0, 0.97), [2.0, 1.0]);
+    let pattern = speckle(7);
+    let first = cameras[0].frame(&pattern, |x| x);
+    let other = cameras[1].frame(&pattern, |x| motion.material(x));
+    let start = std::time::Instant::now();
+    let mut tracker =
+        Tracker::new(&first, &other, &Region::whole(size), Settings::default()).unwrap();
+    println!("new: {:?}", start.elapsed());
+    let tracked = tracker.follow(&other).unwrap();
+    println!("all: {:?}", start.elapsed());
+    let found = figures(&tracked, &centres(&tracker), size, &|x| {
+        motion.displacement(x)
+    });
+    says("megapixel", &found, &tracker);
+    assert!(found.found > 0.97 && (0.90..=0.985).contains(&found.covered));
+}

@@ -1,0 +1,343 @@
+//! The pattern of a first image followed through later ones.
+
+use super::defects::{dead, repaired, saturated, told};
+use super::gradient::Reference;
+use super::grey::GreyImage;
+use super::grid::{Follower, Grid};
+use super::noise::{Classes, Noise};
+use super::region::Region;
+use super::seed::Pyramid;
+use super::speckle::half_width;
+use super::spline::Spline;
+use super::state::{State, Tracked};
+use super::subset::{Match, Subset};
+use super::warp::Order;
+use crate::error::{Diagnostic, Error};
+
+use rayon::prelude::*;
+
+/// How a pattern is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Distance of the points in pixels.
+    pub spacing: usize,
+    /// Width of the subsets in pixels; by the pattern where it is not given.
+    pub subset: Option<usize>,
+    /// The degree of the displacement in a subset.
+    pub order: Order,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            spacing: 8,
+            subset: None,
+            order: Order::Affine,
+        }
+    }
+}
+
+/// Standard deviation in pixels of a displacement beyond which a pattern is none.
+const KNOWN: f64 = 1.0;
+
+/// The pattern of a first image.
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    pub(super) reference: Reference,
+    pub(super) grid: Grid,
+    pub(super) centres: Vec<Option<[usize; 2]>>,
+    pub(super) half: usize,
+    pub(super) order: Order,
+    pub(super) noise: Noise,
+    pub(super) white: f32,
+    pub(super) dead: Vec<usize>,
+    pub(super) spacing: usize,
+    pub(super) before: Option<(GreyImage, Vec<Option<State>>)>,
+    pub(super) warnings: Vec<Diagnostic>,
+}
+
+/// The most seeds of separate parts of a specimen.
+const MOST_SEEDS: usize = 12;
+
+impl Tracker {
+    /// From the first image, another one of the series, in which dead pixels are the same, and the specimen's region.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the sizes differ, or where the region has no pattern.
+    pub fn new(
+        first: &GreyImage,
+        other: &GreyImage,
+        region: &Region,
+        settings: Settings,
+    ) -> Result<Self, Error> {
+        check_size(first, other)?;
+        let usable_at_all = region.inner();
+        let noise = Noise::of_image(first, &usable_at_all);
+        let dead = dead(first, other, &noise);
+        let image = repaired(first, &dead);
+        let saturated = saturated(&image);
+        let mut usable = usable_at_all;
+        let pixels = usable.iter().filter(|flag| **flag).count();
+        let within = |list: &[usize]| list.iter().filter(|index| region.flags()[**index]).count();
+        let warnings = told(within(&dead), within(&saturated), pixels);
+        dead.iter()
+            .chain(&saturated)
+            .for_each(|index| usable[*index] = false);
+        let grid = Grid::new(first.size(), settings.spacing.max(1), |x, y| {
+            region.has(x, y)
+        });
+        let reference = Reference::new(image, usable, &noise);
+        let half = match settings.subset {
+            Some(width) => width / 2,
+            None => half_width(&reference, &grid, settings.order, &noise),
+        };
+        let has_pattern = |point: &[usize; 2]| {
+            let subset = Subset::new(&reference, *point, half, settings.order, &noise);
+            subset.is_some_and(|subset| subset.expected_deviation() < KNOWN)
+        };
+        let centres = grid
+            .points
+            .par_iter()
+            .map(|point| has_pattern(point).then_some(*point));
+        let centres: Vec<Option<[usize; 2]>> = centres.collect();
+        if centres.iter().flatten().count() < 3 {
+            let message = "the specimen shows no pattern that could be followed";
+            let hint = "take sharper images of a speckled specimen, or check the mask or outline";
+            return Err(Error::input(message, hint));
+        }
+        Ok(Self {
+            white: first.white(),
+            reference,
+            grid,
+            centres,
+            half,
+            order: settings.order,
+            noise,
+            dead,
+            spacing: settings.spacing.max(1),
+            before: None,
+            warnings,
+        })
+    }
+
+    /// What a user must know.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Width of the subsets in pixels.
+    pub fn subset(&self) -> usize {
+        2 * self.half + 1
+    }
+
+    /// The largest grey value of the camera.
+    pub fn white(&self) -> f32 {
+        self.white
+    }
+
+    /// The noise of the pixels; after the first image has been followed, from what remains between both.
+    pub fn noise(&self) -> &Noise {
+        &self.noise
+    }
+
+    /// The places of all points in pixels.
+    pub fn places(&self) -> &[[usize; 2]] {
+        &self.grid.points
+    }
+
+    /// The first image and its gradients.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// A later image without its dead pixels.
+    pub fn repaired(&self, image: &GreyImage) -> GreyImage {
+        repaired(image, &self.dead)
+    }
+
+    pub(super) fn follower(&self) -> Follower<'_> {
+        Follower {
+            reference: &self.reference,
+            centres: &self.centres,
+            neighbours: &self.grid.neighbours,
+            half: self.half,
+            order: self.order,
+            noise: &self.noise,
+        }
+    }
+
+    /// Follows all points into the next image; a point that is not found there is `None`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where its size is another one, or where no point is found.
+    pub fn follow(&mut self, image: &GreyImage) -> Result<Vec<Option<Tracked>>, Error> {
+        check_size(&self.reference.image, image)?;
+        let image = self.repaired(image);
+        let spline = Spline::new(&image);
+        let is_first = self.before.is_none();
+        let mut found = self.direct(&image, &spline);
+        if is_first {
+            self.learn_noise(&spline, &mut found);
+        }
+        self.follower().drop_outliers(&mut found);
+        let mut states: Vec<Option<State>> = found
+            .iter()
+            .map(|one| one.as_ref().map(State::of))
+            .collect();
+        self.over_image_before(&image, &spline, &mut states);
+        if states.iter().all(Option::is_none) {
+            let message = "no point of the first image is found again";
+            let hint = "give the images between them, or check that the series shows one specimen; the pattern must stay the same";
+            return Err(Error::input(message, hint));
+        }
+        let tracked = states
+            .iter()
+            .zip(&self.grid.points)
+            .map(|(state, point)| Some(state.as_ref()?.tracked(*point)));
+        let tracked = tracked.collect();
+        let kept = self.before.take().map(|(_, states)| states);
+        let states = states
+            .into_iter()
+            .enumerate()
+            .map(|(point, state)| state.or_else(|| kept.as_ref().and_then(|kept| kept[point])));
+        self.before = Some((image, states.collect()));
+        Ok(tracked)
+    }
+
+    /// Matches with the first image itself.
+    fn direct(&self, image: &GreyImage, spline: &Spline) -> Vec<Option<Match>> {
+        let follower = self.follower();
+        let mut found: Vec<Option<Match>> = vec![None; self.centres.len()];
+        let mut attempts = vec![0; found.len()];
+        if let Some((_, states)) = &self.before {
+            let guesses = states
+                .iter()
+                .enumerate()
+                .filter_map(|(point, state)| Some((point, state.as_ref()?.warp)));
+            for (point, one) in follower.find_all(spline, guesses.collect()) {
+                found[point] = one;
+            }
+            follower.spread(spline, &mut found, &mut attempts);
+        }
+        if self.before.is_none() || found.iter().all(Option::is_none) {
+            self.seed(&follower, (image, spline), &mut found, &mut attempts);
+        }
+        found
+    }
+
+    /// Looks for seeds until each part of the specimen has one, or none is found.
+    pub(super) fn seed(
+        &self,
+        follower: &Follower,
+        (image, spline): (&GreyImage, &Spline),
+        found: &mut [Option<Match>],
+        attempts: &mut [usize],
+    ) {
+        let pyramid = Pyramid::new(
+            (follower.reference, follower.noise, spline),
+            image,
+            follower.half,
+            follower.order,
+        );
+        // A part of the specimen that nothing leads to.
+        let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
+            follower.centres[point].is_some() && found[point].is_none() && attempts[point] == 0
+        };
+        for round in 0..MOST_SEEDS {
+            let open: Vec<usize> = (0..found.len())
+                .filter(|point| is_open(*point, found, attempts))
+                .collect();
+            let candidates = spread_out(&open);
+            let centre = |point: &usize| Some((*point, follower.centres[*point]?));
+            let mut seeds = candidates.iter().filter_map(centre);
+            let seed = seeds.find_map(|(point, centre)| Some((point, pyramid.seek(centre)?)));
+            let deformed = || {
+                let mut seeds = candidates.iter().take(4).filter_map(centre);
+                seeds.find_map(|(point, centre)| Some((point, pyramid.seek_deformed(centre)?)))
+            };
+            let seed = if round == 0 {
+                seed.or_else(deformed)
+            } else {
+                seed
+            };
+            let Some((point, one)) = seed else {
+                return;
+            };
+            found[point] = Some(one);
+            attempts[point] += 1;
+            follower.spread(spline, found, attempts);
+        }
+    }
+
+    /// The noise from what remains, and the matches with it.
+    fn learn_noise(&mut self, spline: &Spline, found: &mut [Option<Match>]) {
+        let mut misfits: Vec<f64> = found.iter().flatten().map(|one| one.misfit).collect();
+        if misfits.is_empty() {
+            return;
+        }
+        misfits.sort_by(f64::total_cmp);
+        let usual = 2.0 * misfits[misfits.len() / 2];
+        let empty = Classes::new(self.white);
+        let points: Vec<usize> = (0..found.len())
+            .filter(|point| found[*point].is_some_and(|one| one.misfit <= usual))
+            .collect();
+        let parts = points.par_chunks(256).map(|points| {
+            let mut classes = empty.clone();
+            for point in points {
+                let centre = self.centres[*point];
+                let subset = centre.and_then(|centre| {
+                    Subset::new(&self.reference, centre, self.half, self.order, &self.noise)
+                });
+                if let (Some(subset), Some(one)) = (subset, &found[*point]) {
+                    subset.classify(spline, one, &mut classes);
+                }
+            }
+            classes
+        });
+        let parts: Vec<Classes> = parts.collect();
+        let classes = parts.iter().fold(empty, Classes::join);
+        if let Some(noise) = classes.noise() {
+            self.noise = noise;
+            let reference = &self.reference;
+            self.reference =
+                Reference::new(reference.image.clone(), reference.usable.clone(), &noise);
+            let follower = self.follower();
+            let guesses = found
+                .iter()
+                .enumerate()
+                .filter_map(|(point, one)| Some((point, one.as_ref()?.warp)));
+            let again = follower.find_all(spline, guesses.collect());
+            again
+                .into_iter()
+                .for_each(|(point, one)| found[point] = one);
+            let mut attempts = vec![0; found.len()];
+            follower.spread(spline, found, &mut attempts);
+        }
+    }
+}
+
+fn check_size(first: &GreyImage, other: &GreyImage) -> Result<(), Error> {
+    let ([a, b], [c, d]) = (first.size(), other.size());
+    if [a, b] == [c, d] {
+        return Ok(());
+    }
+    let message = format!("an image has {c} × {d} pixels, and the first one has {a} × {b}");
+    Err(Error::input(
+        message,
+        "give images of one camera with one setting",
+    ))
+}
+
+/// Some of the points, from the middle of their list outwards.
+fn spread_out(points: &[usize]) -> Vec<usize> {
+    const MOST: usize = 9;
+    let parts = [8, 4, 12, 6, 10, 2, 14, 7, 9].map(|sixteenth| points.len() * sixteenth / 16);
+    let mut chosen: Vec<usize> = parts
+        .into_iter()
+        .filter_map(|at| points.get(at).copied())
+        .collect();
+    let mut seen = std::collections::BTreeSet::new();
+    chosen.retain(|point| seen.insert(*point));
+    chosen.truncate(MOST);
+    chosen
+}

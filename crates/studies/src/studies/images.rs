@@ -1,0 +1,303 @@
+//! From camera images to markers.
+//!
+//! ```text
+//! frames, pixel ─┐
+//! mask, outline ─┼─▶ TrackedImages { markers of every frame, noise, subset } ─▶ table, report, MarkerStudy
+//! spacing, … ────┘
+//! ```
+
+use std::path::{Path, PathBuf};
+
+use crate::budget::{Budget, Need};
+use crate::error::{Diagnostic, Error};
+use crate::images::{
+    GreyImage, ImageFile, Order, Region, Settings, Tracked, Tracker, is_image_path, list, series,
+};
+use crate::markers::{MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
+
+mod written;
+
+pub use written::results;
+
+/// How images are followed.
+#[derive(Clone, Debug)]
+pub struct ImageSettings {
+    /// Distance of the points in pixels.
+    pub spacing: usize,
+    /// Width of the subsets in pixels; by the pattern where it is not given.
+    pub subset: Option<usize>,
+    /// The degree of the displacement in a subset.
+    pub order: Order,
+    /// An image of the specimen's region, white on black.
+    pub mask: Option<PathBuf>,
+}
+
+impl Default for ImageSettings {
+    fn default() -> Self {
+        let Settings {
+            spacing,
+            subset,
+            order,
+        } = Settings::default();
+        Self {
+            spacing,
+            subset,
+            order,
+            mask: None,
+        }
+    }
+}
+
+/// What is to be followed.
+#[derive(Clone, Debug)]
+pub struct ImageRequest<'a> {
+    /// Images, folders and patterns; the first image shows the specimen at rest.
+    pub files: &'a [PathBuf],
+    /// The length of a pixel in mm.
+    pub pixel: Option<f64>,
+    /// How they are followed.
+    pub settings: &'a ImageSettings,
+    /// The specimen's edge in mm, as a table of lines.
+    pub outline: Option<&'a Path>,
+    /// What it may ask for.
+    pub budget: Budget,
+}
+
+/// Images that have been followed.
+#[derive(Clone, Debug)]
+pub struct TrackedImages {
+    /// The first image's pattern.
+    pub tracker: Tracker,
+    /// The first image, and the later ones with the numbers of their frames.
+    pub files: (ImageFile, Vec<(usize, ImageFile)>),
+    /// The points in each frame.
+    pub frames: Vec<(usize, Vec<Option<Tracked>>)>,
+    /// The same in mm.
+    pub series: MarkerSeries,
+    /// Patches that share no pixel, in mm: their errors are independent.
+    pub patches: MarkerSeries,
+    /// Width of a patch in pixels.
+    pub patch: usize,
+    /// The length of a pixel in mm.
+    pub pixel: f64,
+    /// How they were followed.
+    pub settings: ImageSettings,
+    /// What deserves attention.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Memory of a pixel while images are followed, in bytes: grey values, splines, gradients and their smoothed ones.
+const BYTES_OF_A_PIXEL: f64 = 120.0;
+
+/// Whether files are images: all of them by their names, or one folder.
+pub fn are_images(files: &[PathBuf]) -> bool {
+    let is_folder = |path: &PathBuf| path.is_dir() || path.to_string_lossy().contains(['*', '?']);
+    !files.is_empty()
+        && files
+            .iter()
+            .all(|path| is_image_path(path) || is_folder(path))
+}
+
+impl ImageRequest<'_> {
+    /// Follows the pattern of the first image through all others; each is reported before it begins.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the file, what is wrong and what to do.
+    pub fn follow(&self, told: &dyn Fn(&str)) -> Result<TrackedImages, Error> {
+        let pixel = self.known_pixel()?;
+        let files = list(self.files)?;
+        let (first, others) = in_time(&files)?;
+        let last = others.last().unwrap_or(first);
+        let image = first.read()?;
+        self.afford(&image)?;
+        let region = self.region(image.size(), pixel)?;
+        let ImageSettings {
+            spacing,
+            subset,
+            order,
+            ..
+        } = *self.settings;
+        let settings = Settings {
+            spacing,
+            subset,
+            order,
+        };
+        told("the first image");
+        let mut tracker = Tracker::new(&image, &of_file(last, last.read())?, &region, settings)?;
+        let numbered: Vec<(usize, ImageFile)> = numbers(others)
+            .into_iter()
+            .zip(others.iter().cloned())
+            .collect();
+        let (mut frames, mut patches) = (Vec::new(), Vec::new());
+        let mut warnings = tracker.warnings().to_vec();
+        for (number, file) in &numbered {
+            told(&file.name());
+            match followed(&mut tracker, file) {
+                Ok([points, measured]) => {
+                    frames.push((*number, points));
+                    patches.push((*number, measured));
+                }
+                Err(Error::Input(faults)) if numbered.len() > 1 => {
+                    warnings.extend(faults.into_iter().map(|fault| left_out(fault, *number)));
+                }
+                Err(fault) => return Err(fault),
+            }
+        }
+        if frames.is_empty() {
+            let message = "no point of the first image is found again in any other";
+            return Err(Error::input(
+                message,
+                "check that all images show one specimen with one pattern",
+            ));
+        }
+        let height = image.size()[1];
+        let in_mm = |frames: &[_]| series(frames, height, pixel);
+        let (series, patches) = (in_mm(&frames), in_mm(&patches));
+        Ok(TrackedImages {
+            series,
+            patch: tracker.patches().width(),
+            patches,
+            tracker,
+            files: (first.clone(), numbered),
+            frames,
+            pixel,
+            settings: self.settings.clone(),
+            warnings,
+        })
+    }
+
+    fn known_pixel(&self) -> Result<f64, Error> {
+        self.pixel.ok_or_else(|| {
+            let message = "the length of a pixel is not known";
+            Error::input(message, "give it, such as --unit \"0.02 mm\"")
+        })
+    }
+
+    fn afford(&self, image: &GreyImage) -> Result<(), Error> {
+        let [width, height] = image.size();
+        let need = Need {
+            bytes: BYTES_OF_A_PIXEL * (width * height) as f64,
+            ..Need::default()
+        };
+        self.budget.afford(need).map_err(|excess| {
+            let message = format!("following images of {width} × {height} pixels {excess}");
+            Error::input(message, excess.remedy("crop the images to the specimen"))
+        })
+    }
+
+    fn region(&self, size: [usize; 2], pixel: f64) -> Result<Region, Error> {
+        if let Some(mask) = &self.settings.mask {
+            let file = ImageFile {
+                path: mask.clone(),
+                page: 0,
+            };
+            return of_file(
+                &file,
+                file.read().and_then(|mask| Region::of_mask(&mask, size)),
+            );
+        }
+        let Some(outline) = self.outline else {
+            return Ok(Region::whole(size));
+        };
+        let up = (size[1] - 1) as f64;
+        let mut lines = read_lines(outline, Some(pixel))?;
+        for place in lines.iter_mut().flatten() {
+            *place = [place[0] / pixel, up - place[1] / pixel];
+        }
+        Region::of_lines(&lines, size)
+    }
+}
+
+/// The first image and the later ones.
+fn in_time(files: &[ImageFile]) -> Result<(&ImageFile, &[ImageFile]), Error> {
+    match files {
+        [first, others @ ..] if !others.is_empty() => Ok((first, others)),
+        _ => {
+            let names: Vec<String> = files
+                .iter()
+                .map(|file| file.path.display().to_string())
+                .collect();
+            let message = format!("there are too few images: {}", names.join(", "));
+            Err(Error::input(
+                message,
+                "give at least two, the first one of the specimen at rest",
+            ))
+        }
+    }
+}
+
+/// Points and patches of a frame.
+fn followed(tracker: &mut Tracker, file: &ImageFile) -> Result<[Vec<Option<Tracked>>; 2], Error> {
+    let followed = file.read().and_then(|image| {
+        let points = tracker.follow(&image)?;
+        let about = |point: usize| Some(points[point]?.warp());
+        let patches = tracker.patches().measure(&image, &about);
+        Ok([points, patches])
+    });
+    of_file(file, followed)
+}
+
+/// A fault with the name of its image, where it does not have it.
+fn of_file<T>(file: &ImageFile, result: Result<T, Error>) -> Result<T, Error> {
+    result.map_err(|error| match error {
+        Error::Input(faults) => {
+            let named = |fault: Diagnostic| {
+                let name = file.path.display().to_string();
+                let message = if fault.message.contains(&name) {
+                    fault.message
+                } else {
+                    format!("{name}: {}", fault.message)
+                };
+                Diagnostic { message, ..fault }
+            };
+            Error::Input(faults.into_iter().map(named).collect())
+        }
+        other => other,
+    })
+}
+
+fn left_out(fault: Diagnostic, number: usize) -> Diagnostic {
+    let message = format!("frame {number} is left out: {}", fault.message);
+    Diagnostic::warning("", message).hint(fault.hint.unwrap_or_default())
+}
+
+/// The numbers at the ends of the files' names where all have one of their own, else 1, 2, 3 …
+fn numbers(files: &[ImageFile]) -> Vec<usize> {
+    let number = |file: &ImageFile| {
+        let stem = file.path.file_stem()?.to_string_lossy().into_owned();
+        let digits = stem.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        stem[digits.len()..].parse().ok()
+    };
+    let found: Option<Vec<usize>> = files.iter().map(number).collect();
+    let grow = |numbers: &Vec<usize>| numbers.windows(2).all(|pair| pair[0] < pair[1]);
+    found
+        .filter(grow)
+        .unwrap_or_else(|| (1..=files.len()).collect())
+}
+
+impl TrackedImages {
+    /// The patches as if they had been read from a file.
+    pub fn markers(&self) -> MarkerFiles {
+        let subset = Subset {
+            size: self.patch as f64,
+            step: self.patch as f64,
+            told_by: "the tracking of the images".to_owned(),
+        };
+        MarkerFiles {
+            series: self.patches.clone(),
+            mesh: None,
+            understood: Understood {
+                turned_up: true,
+                subset: Some(subset),
+                pixel: Some(self.pixel),
+                ..Understood::of("images")
+            },
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// The number of points that are followed at all.
+    pub fn points(&self) -> usize {
+        self.tracker.places().len()
+    }
+}

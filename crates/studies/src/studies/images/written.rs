@@ -1,0 +1,241 @@
+//! The files of tracked images.
+//!
+//! ```text
+//! markers.csv                       the points of all frames, as `gelbench correct` reads them
+//! report.html, report.md, report.json
+//! displacement_x.png …              pictures of the last frame
+//! ```
+
+use std::fmt::Write;
+
+use serde_json::{Map, json};
+
+use super::TrackedImages;
+use crate::markers::{Frame, Marker};
+use crate::results::{
+    Block, Content, FieldFigure, Figure, Finding, Outcome, Panel, Results, Step, Table,
+};
+use crate::units::number;
+
+/// The `kind` of these results.
+const KIND: &str = "images";
+
+/// The table with all markers.
+pub const MARKERS: &str = "markers.csv";
+
+/// The results of tracked images, after `seconds`.
+pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
+    let figures = tracked
+        .series
+        .frames
+        .last()
+        .map(|frame| figures(tracked, frame));
+    let findings = findings(tracked);
+    Results {
+        name,
+        title: "Tracked images".to_owned(),
+        kind: KIND,
+        text: String::new(),
+        defaults: Vec::new(),
+        read_warnings: tracked.warnings.iter().map(ToString::to_string).collect(),
+        outcome: Outcome {
+            problem: problem(tracked),
+            along: "frame",
+            steps: tracked
+                .series
+                .frames
+                .iter()
+                .map(|frame| step(tracked, frame))
+                .collect(),
+            headline: vec![frames(tracked).block(), Block::Paragraph(words(tracked))],
+            blocks: vec![
+                Block::heading("Frames"),
+                frames(tracked).block(),
+                Block::Paragraph(words(tracked)),
+            ],
+            figures: figures.unwrap_or_default(),
+            files: vec![(MARKERS.to_owned(), Content::Text(table(tracked)))],
+            findings,
+            summary: format!(
+                "markers of all frames: {MARKERS}, as `gelbench correct` reads them\n"
+            ),
+            ..Outcome::default()
+        },
+        seconds,
+    }
+}
+
+/// The markers of all frames; those that were found in none have a place alone.
+fn table(tracked: &TrackedImages) -> String {
+    let mut text = String::from("frame,id,x [mm],y [mm],ux [mm],uy [mm],standard_deviation [mm]\n");
+    let length = |value: f64| format!("{value:.7}");
+    for frame in &tracked.series.frames {
+        for Marker {
+            number,
+            place,
+            displacement,
+            standard_deviation,
+        } in &frame.markers
+        {
+            let lengths = place.iter().chain(displacement).chain(standard_deviation);
+            let lengths: Vec<String> = lengths.map(|value| length(*value)).collect();
+            let _ = writeln!(text, "{},{number},{}", frame.number, lengths.join(","));
+        }
+    }
+    text
+}
+
+/// Root mean square of the standard deviations of a frame in pixels.
+fn deviation(tracked: &TrackedImages, frame: &Frame) -> f64 {
+    let deviations = frame
+        .markers
+        .iter()
+        .filter_map(|marker| marker.standard_deviation);
+    let sum: f64 = deviations.map(|deviation| deviation.powi(2)).sum();
+    (sum / frame.markers.len().max(1) as f64).sqrt() / tracked.pixel
+}
+
+fn largest(frame: &Frame) -> f64 {
+    let lengths = frame.markers.iter().map(|marker| marker.displacement);
+    lengths.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)))
+}
+
+/// Mean stretches along x and y.
+fn stretches(frame: &Frame) -> [f64; 2] {
+    frame.mean_gradient().map_or([f64::NAN; 2], |gradient| {
+        [0, 1].map(|axis| {
+            let mut column = gradient.column(axis).into_owned();
+            column[axis] += 1.0;
+            column.norm()
+        })
+    })
+}
+
+fn frames(tracked: &TrackedImages) -> Table<&Frame> {
+    Table::of(&tracked.series.frames)
+        .column("frame", |frame| frame.number.to_string())
+        .column("points", |frame| frame.markers.len().to_string())
+        .column("largest displacement [mm]", |frame| number(largest(frame)))
+        .column("mean stretch along x", |frame| {
+            format!("{:.4}", stretches(frame)[0])
+        })
+        .column("mean stretch along y", |frame| {
+            format!("{:.4}", stretches(frame)[1])
+        })
+        .column("standard deviation [pixels]", |frame| {
+            number(deviation(tracked, frame))
+        })
+}
+
+fn words(tracked: &TrackedImages) -> String {
+    let noise = tracked.tracker.noise();
+    let white = tracked.tracker.white();
+    let [dark, light] = [0.0, f64::from(white)].map(|value| number(noise.variance(value).sqrt()));
+    let subset = tracked.tracker.subset();
+    format!(
+        "{} points {} pixels apart, subsets of {subset} × {subset} pixels, pixels of {} mm. Noise of the pixels: {dark} grey values where it is dark, \
+         {light} where it is white ({white}); the standard deviations of displacements follow from it. x points to the right, y up, from the centre of \
+         the lower left pixel. Neighbouring subsets overlap where they are wider than the spacing: their errors are then correlated.",
+        tracked.points(),
+        tracked.settings.spacing,
+        number(tracked.pixel),
+    )
+}
+
+fn problem(tracked: &TrackedImages) -> Map<String, serde_json::Value> {
+    let noise = tracked.tracker.noise();
+    let value = json!({
+        "pixel_mm": tracked.pixel,
+        "spacing_pixels": tracked.settings.spacing,
+        "subset_pixels": tracked.tracker.subset(),
+        "points": tracked.points(),
+        "noise_variance_dark": noise.variance(0.0),
+        "noise_variance_growth": noise.growth,
+    });
+    value.as_object().cloned().unwrap_or_default()
+}
+
+fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
+    let [x, y] = stretches(frame);
+    let found = json!({
+        "points": frame.markers.len(),
+        "largest_displacement_mm": largest(frame),
+        "mean_stretch_x": x,
+        "mean_stretch_y": y,
+        "standard_deviation_pixels": deviation(tracked, frame),
+    });
+    Step {
+        at: frame.number as f64,
+        models: Map::from_iter([("tracked".to_owned(), found)]),
+    }
+}
+
+/// Frames in which many points are lost.
+fn findings(tracked: &TrackedImages) -> Vec<Finding> {
+    const MANY: f64 = 0.1;
+    let most = tracked
+        .series
+        .frames
+        .iter()
+        .map(|frame| frame.markers.len())
+        .max();
+    let most = most.unwrap_or(0);
+    let few = |frame: &&Frame| ((most - frame.markers.len()) as f64) > MANY * most as f64;
+    let few: Vec<String> = tracked
+        .series
+        .frames
+        .iter()
+        .filter(few)
+        .map(|frame| frame.number.to_string())
+        .collect();
+    let message = || {
+        format!(
+            "more than a tenth of the points are lost in frame {}",
+            few.join(", ")
+        )
+    };
+    let remedy = "look at these images: the pattern leaves them, is covered, or changes";
+    let found =
+        (!few.is_empty()).then(|| Finding::warning("lost-points", (message(), remedy.to_owned())));
+    found.into_iter().collect()
+}
+
+fn figures(tracked: &TrackedImages, frame: &Frame) -> Vec<Figure> {
+    let half = 0.5 * tracked.settings.spacing as f64 * tracked.pixel;
+    let label = format!("frame {}", frame.number);
+    let panel = |value: &dyn Fn(&Marker) -> f64| {
+        let squares = frame.markers.iter().map(|marker| {
+            let [x, y] = [0, 1].map(|axis| marker.place[axis] + marker.displacement[axis]);
+            let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
+            (corners.map(|[dx, dy]| [x + dx, y + dy]), value(marker))
+        });
+        [Panel::quadrilaterals(&*label, &squares.collect::<Vec<_>>())]
+    };
+    let figure = |name: &str, caption: &str, quantity: &str, value: &dyn Fn(&Marker) -> f64| {
+        Figure::new(
+            format!("{name}.png"),
+            caption,
+            FieldFigure::new("Tracked points", quantity, panel(value)),
+        )
+    };
+    vec![
+        figure(
+            "displacement_x",
+            "The displacement along x of every point.",
+            "ux [mm]",
+            &|marker| marker.displacement[0],
+        ),
+        figure(
+            "displacement_y",
+            "The displacement along y of every point.",
+            "uy [mm]",
+            &|marker| marker.displacement[1],
+        ),
+        figure(
+            "displacement_error",
+            "The standard deviation of the displacement of every point from the noise of the pixels.",
+            "standard deviation [mm]",
+            &|marker| marker.standard_deviation.unwrap_or(f64::NAN),
+        ),
+    ]
+}
