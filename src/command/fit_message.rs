@@ -1,11 +1,10 @@
 //! What the command prints about fits.
 
-use gelbench_calibration::calibration::{Criterion, Fit, GroupState, Test, TestData};
+use gelbench_calibration::calibration::{Criterion, Fit, Test, TestData};
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::material::curve::{Mode, samples};
 use gelbench_mechanics::material::parameters::Parameter;
-use gelbench_report::results::NamedGroup;
 
 /// Parameters, figures, stability, predictions and warnings of a fit.
 pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
@@ -91,7 +90,7 @@ fn protocols(fit: &Fit) -> String {
 }
 
 /// Some parameters with their values.
-fn values(parameters: &[Parameter]) -> String {
+pub fn values(parameters: &[Parameter]) -> String {
     let each = parameters
         .iter()
         .map(|own| format!("{} {} {}", own.key, digits(own.value, 4), own.unit()));
@@ -205,7 +204,7 @@ fn figures(fit: &Fit) -> String {
 }
 
 /// A number with so many significant digits.
-fn digits(value: f64, digits: i32) -> String {
+pub fn digits(value: f64, digits: i32) -> String {
     let exponent = value.abs().log10().floor();
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -273,63 +272,6 @@ pub fn curves(
             sample.name(),
             note(sample.mode)
         );
-    }
-    text
-}
-
-/// Mean stresses, their intervals and spread, and the difference of two groups, at a few stretches.
-pub fn groups(groups: &[NamedGroup]) -> String {
-    let mut text = String::new();
-    for own in groups {
-        let count = own.group.fits.len();
-        text += &format!(
-            "{}: {count} specimens, {}, mean law {}\n",
-            own.name,
-            own.mean.law.name,
-            values(&own.mean.parameters)
-        );
-    }
-    text += "  stretches         axis";
-    for own in groups {
-        text += &format!("{:>40}", format!("{} [MPa], 95 %, spread", own.name));
-    }
-    text += if groups.len() == 2 {
-        "        difference [MPa], 95 %\n"
-    } else {
-        "\n"
-    };
-    let last = |state: &GroupState| {
-        let [x, y] = state.strains;
-        let others = groups[0].states.iter();
-        let along = others.filter(|own| (own.strains[0] * y - own.strains[1] * x).abs() < 1e-12);
-        along.fold(0.0, |most: f64, own| {
-            most.max(own.strains[0].hypot(own.strains[1]))
-        })
-    };
-    for (row, state) in groups[0].states.iter().enumerate() {
-        let [x, y] = state.strains;
-        let share = x.hypot(y) / last(state);
-        if ![0.5, 1.0].iter().any(|shown| (share - shown).abs() < 1e-6) {
-            continue;
-        }
-        text += &format!("  {:>7.4} {:>7.4} {:>6}", 1.0 + x, 1.0 + y, state.axis + 1);
-        for own in groups {
-            let stress = own.states[row].stress;
-            let [low, high] = stress.estimate().interval.map(|end| digits(end, 3));
-            let (mean, between) = (digits(stress.mean, 4), digits(stress.between, 2));
-            text += &format!("{:>40}", format!("{mean} ({low} … {high}) {between}"));
-        }
-        if let [first, second] = groups {
-            let own = first.states[row]
-                .stress
-                .difference(&second.states[row].stress);
-            let [low, high] = own.interval.map(|end| digits(end, 3));
-            text += &format!(
-                "{:>30}",
-                format!("{} ({low} … {high})", digits(own.value, 3))
-            );
-        }
-        text += "\n";
     }
     text
 }

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::fit::a_law;
+use super::fit_message::{digits, values};
+use super::interrupt;
 use super::parameter_bounds::{bounds, pair, stated};
 use super::progress::tell_files;
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
-use super::{fit_message, interrupt};
 use gelbench_base::error::Error;
 use gelbench_calibration::calibration::{
     Conversion, Fit, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
@@ -98,7 +99,7 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     let files = [arguments.data, arguments.against].concat();
     write((&arguments.output, &arguments.name), &files, &named)?;
     print_report(|| group_json(&named))?;
-    print(&fit_message::groups(&named))?;
+    print(&message(&named))?;
     Ok(0)
 }
 
@@ -155,4 +156,61 @@ fn write(
     tell_files(&results.finish()?);
     warn(warning.as_slice());
     Ok(())
+}
+
+/// Mean stresses, their intervals and spread, and the difference of two groups, at a few stretches.
+fn message(groups: &[NamedGroup]) -> String {
+    let mut text = String::new();
+    for own in groups {
+        let count = own.group.fits.len();
+        text += &format!(
+            "{}: {count} specimens, {}, mean law {}\n",
+            own.name,
+            own.mean.law.name,
+            values(&own.mean.parameters)
+        );
+    }
+    text += "  stretches         axis";
+    for own in groups {
+        text += &format!("{:>40}", format!("{} [MPa], 95 %, spread", own.name));
+    }
+    text += if groups.len() == 2 {
+        "        difference [MPa], 95 %\n"
+    } else {
+        "\n"
+    };
+    let last = |state: &GroupState| {
+        let [x, y] = state.strains;
+        let others = groups[0].states.iter();
+        let along = others.filter(|own| (own.strains[0] * y - own.strains[1] * x).abs() < 1e-12);
+        along.fold(0.0, |most: f64, own| {
+            most.max(own.strains[0].hypot(own.strains[1]))
+        })
+    };
+    for (row, state) in groups[0].states.iter().enumerate() {
+        let [x, y] = state.strains;
+        let share = x.hypot(y) / last(state);
+        if ![0.5, 1.0].iter().any(|shown| (share - shown).abs() < 1e-6) {
+            continue;
+        }
+        text += &format!("  {:>7.4} {:>7.4} {:>6}", 1.0 + x, 1.0 + y, state.axis + 1);
+        for own in groups {
+            let stress = own.states[row].stress;
+            let [low, high] = stress.estimate().interval.map(|end| digits(end, 3));
+            let (mean, between) = (digits(stress.mean, 4), digits(stress.between, 2));
+            text += &format!("{:>40}", format!("{mean} ({low} … {high}) {between}"));
+        }
+        if let [first, second] = groups {
+            let own = first.states[row]
+                .stress
+                .difference(&second.states[row].stress);
+            let [low, high] = own.interval.map(|end| digits(end, 3));
+            text += &format!(
+                "{:>30}",
+                format!("{} ({low} … {high})", digits(own.value, 3))
+            );
+        }
+        text += "\n";
+    }
+    text
 }

@@ -33,6 +33,10 @@ const NOT_RUN: &[(&str, &str)] = &[
 const SLOW: &[(&str, &str)] = &[
     ("gelbench sweep", "computes whole studies"),
     ("gelbench run", "computes a whole study in three models"),
+    (
+        "gelbench materials group",
+        "fits a law to each of several sheets on rakes",
+    ),
     ("gelbench compare", "solves the study in three models"),
     (
         "ccx",

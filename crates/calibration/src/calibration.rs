@@ -33,10 +33,9 @@ pub use data::{
     RestState, StrainColumn, TableReading, Test, TestData, Times,
 };
 pub use fit::fit;
-pub use fitted::{Fit, MountedFit, Relaxed};
+pub use fitted::{Fit, FurtherProtocol, MountedFit, Protocols, Relaxed};
 pub use group::{Group, GroupState};
 pub use memory::Memory;
-pub use protocols::{FurtherProtocol, Protocols};
 pub use ranking::{Criterion, best, rank};
 pub use regression::{MovedZero, Zero};
 pub use relaxation::{Terms, fit_relaxation};

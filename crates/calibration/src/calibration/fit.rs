@@ -4,7 +4,7 @@ use super::data::TestData;
 use super::fitted::Fit;
 use super::mounted::{mounting, nearest_mounted};
 use super::nearest::nearest;
-use super::protocols::Protocols;
+use super::protocols::protocols;
 use super::settings::FitSettings;
 use crate::error::Error;
 use crate::material::registry::Law;
@@ -25,6 +25,6 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         let at_rest = (as_mounted.parameters, as_mounted.quality.r_squared);
         fit.at_rest_as_mounted = Some(at_rest);
     }
-    fit.protocols = Protocols::of(&fit, tests);
+    fit.protocols = protocols(&fit, tests);
     fit.that_follows(tests)
 }

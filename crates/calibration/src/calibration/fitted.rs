@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::data::{Observation, TestData};
 use super::least_squares::{self, LEAST_SIZE, Residuals};
-use super::protocols::Protocols;
 use super::settings::{FitSettings, MEASURE};
 use super::softened::Softened;
 use super::trust::Quality;
@@ -71,6 +70,35 @@ pub struct MountedFit {
     pub discretisation_percent: f64,
     /// How often the sheet was solved with the law.
     pub rounds: usize,
+}
+
+/// What the protocols of a biaxial test say of a law.
+#[derive(Clone, Debug)]
+pub struct Protocols {
+    /// The root of the mean square of the errors with which each protocol is predicted by the law fitted to the others, in % of the largest
+    /// stress of all.
+    pub left_out_percent: Vec<f64>,
+    /// The protocol that would narrow the widest interval most; `None` where there are no intervals.
+    pub further: Option<FurtherProtocol>,
+}
+
+/// A protocol that was not measured, with as many rows as those that were.
+#[derive(Clone, Copy, Debug)]
+pub struct FurtherProtocol {
+    /// The largest stretches along both axes.
+    pub stretches: [f64; 2],
+    /// The parameter whose standard error is the largest share of its value.
+    pub key: &'static str,
+    /// Its standard error in % of its value, today and with the protocol.
+    pub standard_error_percent: [f64; 2],
+}
+
+impl Protocols {
+    /// The root of the mean square of all errors of prediction in % of the largest stress.
+    pub fn all_left_out_percent(&self) -> f64 {
+        let squares = self.left_out_percent.iter().map(|own| own * own);
+        (squares.sum::<f64>() / self.left_out_percent.len() as f64).sqrt()
+    }
 }
 
 impl Fit {

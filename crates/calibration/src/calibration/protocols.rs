@@ -11,55 +11,26 @@
 use nalgebra::DMatrix;
 
 use super::data::{Observation, Test, TestData};
-use super::fitted::Fit;
+use super::fitted::{Fit, FurtherProtocol, Protocols};
 use super::least_squares::{LEAST_SIZE, jacobian, sum_of_squares};
 use super::nearest::About;
 use super::regression::{Elastic, Misfit, Response, Zero};
 
-/// What the protocols of a biaxial test say of a law.
-#[derive(Clone, Debug)]
-pub struct Protocols {
-    /// The root of the mean square of the errors with which each protocol is predicted by the law fitted to the others, in % of the largest
-    /// stress of all.
-    pub left_out_percent: Vec<f64>,
-    /// The protocol that would narrow the widest interval most; `None` where there are no intervals.
-    pub further: Option<FurtherProtocol>,
-}
-
-/// A protocol that was not measured, with as many rows as those that were.
-#[derive(Clone, Copy, Debug)]
-pub struct FurtherProtocol {
-    /// The largest stretches along both axes.
-    pub stretches: [f64; 2],
-    /// The parameter whose standard error is the largest share of its value.
-    pub key: &'static str,
-    /// Its standard error in % of its value, today and with the protocol.
-    pub standard_error_percent: [f64; 2],
-}
-
-impl Protocols {
-    /// The root of the mean square of all errors of prediction in % of the largest stress.
-    pub fn all_left_out_percent(&self) -> f64 {
-        let squares = self.left_out_percent.iter().map(|own| own * own);
-        (squares.sum::<f64>() / self.left_out_percent.len() as f64).sqrt()
+/// What the protocols of biaxial tests say of a law that was fitted to them; `None` of other tests, or of a single protocol.
+pub fn protocols(fit: &Fit, tests: &[TestData]) -> Option<Protocols> {
+    let tests = fit.mounted.as_ref().map_or(tests, |own| &own.tests);
+    let is_biaxial = tests.iter().all(|test| test.test == Test::Biaxial);
+    let of_record = |zero: &Zero| matches!(zero, Zero::Record { .. });
+    if !is_biaxial || Zero::of(tests).iter().any(of_record) {
+        return None;
     }
-
-    /// Of a fit to biaxial tests of several protocols.
-    pub(in crate::calibration) fn of(fit: &Fit, tests: &[TestData]) -> Option<Self> {
-        let tests = fit.mounted.as_ref().map_or(tests, |own| &own.tests);
-        let is_biaxial = tests.iter().all(|test| test.test == Test::Biaxial);
-        let of_record = |zero: &Zero| matches!(zero, Zero::Record { .. });
-        if !is_biaxial || Zero::of(tests).iter().any(of_record) {
-            return None;
-        }
-        let protocols: Vec<TestData> = tests.iter().flat_map(TestData::by_protocol).collect();
-        let left_out = |number| left_out(fit, &protocols, number);
-        let left_out: Option<Vec<f64>> = (0..protocols.len()).map(left_out).collect();
-        Some(Self {
-            left_out_percent: left_out.filter(|all| all.len() > 1)?,
-            further: further(fit, &protocols),
-        })
-    }
+    let protocols: Vec<TestData> = tests.iter().flat_map(TestData::by_protocol).collect();
+    let left_out = |number| left_out(fit, &protocols, number);
+    let left_out: Option<Vec<f64>> = (0..protocols.len()).map(left_out).collect();
+    Some(Protocols {
+        left_out_percent: left_out.filter(|all| all.len() > 1)?,
+        further: further(fit, &protocols),
+    })
 }
 
 fn largest_stress(tests: &[TestData]) -> f64 {

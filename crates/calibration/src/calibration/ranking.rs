@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use super::data::TestData;
 use super::fit::fit;
-use super::fitted::Fit;
-use super::protocols::Protocols;
+use super::fitted::{Fit, Protocols};
 use super::settings::{FitSettings, MEASURE};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
