@@ -7,7 +7,7 @@ use gelbench_mechanics::material::registry::Law;
 
 use crate::common::{gelbench, root, words};
 
-/// Forces of sheets on rakes by scikit-fem, noise 0.5 %: the law by which they were made is found again where the state as mounted is stated
+/// Forces of sheets on rakes by scikit-fem, noise 0.3 %: the law by which they were made is found again where the state as mounted is stated
 /// and where it is estimated, and the homogeneous reading is off by tens of per cent.
 #[test]
 fn a_law_is_found_again_from_forces_on_rakes_by_another_solver() {

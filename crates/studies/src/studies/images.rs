@@ -111,17 +111,7 @@ impl ImageRequest<'_> {
         let image = first.read()?;
         self.afford(&image)?;
         let region = self.region(image.size(), pixel)?;
-        let ImageSettings {
-            spacing,
-            subset,
-            order,
-            ..
-        } = *self.settings;
-        let settings = Settings {
-            spacing,
-            subset,
-            order,
-        };
+        let settings = self.subsets();
         told("the first image");
         let mut tracker = Tracker::new(&image, &of_file(last, last.read())?, &region, settings)?;
         let numbered: Vec<(usize, ImageFile)> = numbers(others)
@@ -164,6 +154,15 @@ impl ImageRequest<'_> {
             settings: self.settings.clone(),
             warnings,
         })
+    }
+
+    /// What is followed.
+    fn subsets(&self) -> Settings {
+        Settings {
+            spacing: self.settings.spacing,
+            subset: self.settings.subset,
+            order: self.settings.order,
+        }
     }
 
     fn known_pixel(&self) -> Result<f64, Error> {

@@ -39,11 +39,9 @@ pub fn linearise(
                     gradients[2 * axis + 1][cell] = 0.5 * (above - below) / height;
                 }
             }
-            admissible &= law.responses(
-                gradients.each_ref().map(|h| &h[..count]),
-                responses.each_mut().map(|own| &mut own[..count]),
-                true,
-            );
+            let points = gradients.each_ref().map(|h| &h[..count]);
+            let of_points = responses.each_mut().map(|own| &mut own[..count]);
+            admissible &= law.responses(points, of_points, true);
             // A₁₁ A₂₁ A₃₁ A₄₁ A₂₂ A₃₂ A₄₂ A₃₃ A₄₃ A₄₄ over the components 11, 12, 21, 22.
             let [_, _, _, _, _, a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = &responses;
             for cell in 0..count {
