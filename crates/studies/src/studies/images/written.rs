@@ -202,10 +202,10 @@ fn findings(tracked: &TrackedImages) -> Vec<Finding> {
 
 fn figures(tracked: &TrackedImages, frame: &Frame) -> Vec<Figure> {
     let half = 0.5 * tracked.settings.spacing as f64 * tracked.pixel;
-    let label = format!("frame {}", frame.number);
+    let label = format!("frame {}, where the points are at rest", frame.number);
     let panel = |value: &dyn Fn(&Marker) -> f64| {
         let squares = frame.markers.iter().map(|marker| {
-            let [x, y] = [0, 1].map(|axis| marker.place[axis] + marker.displacement[axis]);
+            let [x, y] = marker.place;
             let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
             (corners.map(|[dx, dy]| [x + dx, y + dy]), value(marker))
         });
