@@ -25,10 +25,13 @@ pub fn protocols(fit: &Fit, tests: &[TestData]) -> Option<Protocols> {
         return None;
     }
     let protocols: Vec<TestData> = tests.iter().flat_map(TestData::by_protocol).collect();
+    if protocols.len() < 2 {
+        return None;
+    }
     let left_out = |number| left_out(fit, &protocols, number);
     let left_out: Option<Vec<f64>> = (0..protocols.len()).map(left_out).collect();
     Some(Protocols {
-        left_out_percent: left_out.filter(|all| all.len() > 1)?,
+        left_out_percent: left_out?,
         further: further(fit, &protocols),
     })
 }
