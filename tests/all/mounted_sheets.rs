@@ -102,7 +102,7 @@ fn a_cruciform_has_the_force_of_another_solver() {
     });
     let study = format!(
         "kind = \"specimen\"\nmodels = [\"finite-element\"]\n[material]\ncard = \"sheet.toml\"\n[specimen]\nshape = \"cruciform\"\n\
-         length = \"30 mm\"\nwidth = \"30 mm\"\narm_width = \"10 mm\"\nfillet = \"3 mm\"\nthickness = \"1 mm\"\ncells = 8\n{}\
+         length = \"30 mm\"\nwidth = \"30 mm\"\narm_width = \"10 mm\"\nfillet = \"3 mm\"\nthickness = \"1 mm\"\ncells = 16\n{}\
          [path]\nfactors = [1.0]\nmeasured_group = \"right\"\n",
         supports.concat()
     );
