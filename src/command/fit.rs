@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args};
 use serde_json::Value;
 
 use super::choice::one_of;
-use super::parameter_bounds::{bounds, pair, stated};
+use super::parameter_bounds::{ParameterBounds, bounds};
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
@@ -51,12 +51,8 @@ pub struct FitArguments {
     /// 1 % of the test's largest taken as that 1 %
     #[arg(long, default_value = "absolute", value_parser = one_of(&Weighting::NAMES))]
     weighting: Weighting,
-    /// Keep a parameter within limits, in MPa, rad or as a ratio
-    #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
-    bounds: Vec<String>,
-    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio
-    #[arg(long = "fix", value_name = "KEY=VALUE", value_parser = pair)]
-    fixed: Vec<(String, String)>,
+    #[command(flatten)]
+    parameters: ParameterBounds,
     /// Number of starts that are optimised
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
@@ -97,7 +93,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     tests.iter().for_each(|test| warn(&test.warnings));
     let settings = FitSettings {
         weighting: arguments.weighting,
-        bounds: [bounds(&arguments.bounds)?, stated(&arguments.fixed)?].concat(),
+        bounds: arguments.parameters.bounds()?,
         starts: arguments.starts.into(),
     };
     let base = arguments.card.as_deref().map(load).transpose()?;

@@ -7,13 +7,13 @@ use clap::Args;
 use super::fit::a_law;
 use super::fit_message::{digits, values};
 use super::interrupt;
-use super::parameter_bounds::{bounds, pair, stated};
+use super::parameter_bounds::ParameterBounds;
 use super::progress::tell_files;
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
 use gelbench_base::error::Error;
 use gelbench_calibration::calibration::{
-    Conversion, Fit, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
+    Conversion, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
     card_text,
 };
 use gelbench_mechanics::material::registry::Law;
@@ -34,12 +34,8 @@ pub struct GroupArguments {
     /// Names of the groups
     #[arg(long, value_delimiter = ',', default_value = "first,second")]
     names: Vec<String>,
-    /// Keep a parameter within limits, in MPa, rad or as a ratio
-    #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
-    bounds: Vec<String>,
-    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio
-    #[arg(long = "fix", value_name = "KEY=VALUE", value_parser = pair)]
-    fixed: Vec<(String, String)>,
+    #[command(flatten)]
+    parameters: ParameterBounds,
     /// Name of the written files
     #[arg(long, default_value = "group")]
     name: String,
@@ -52,19 +48,17 @@ pub struct GroupArguments {
     printed: Printed,
 }
 
-/// A group, its states and its mean law.
-struct Averaged {
-    group: Group,
-    states: Vec<GroupState>,
-    mean: Fit,
-}
-
 /// Fits every specimen, averages, compares and writes.
 pub fn group(arguments: GroupArguments) -> Outcome {
     arguments.printed.choose();
+    let groups = if arguments.against.is_empty() { 1 } else { 2 };
+    if arguments.names.len() < groups {
+        let message = format!("--names has {} for {groups} groups", arguments.names.len());
+        return Err(Error::input(message, "such as --names control,treated"));
+    }
     let settings = FitSettings {
         weighting: Weighting::Absolute,
-        bounds: [bounds(&arguments.bounds)?, stated(&arguments.fixed)?].concat(),
+        bounds: arguments.parameters.bounds()?,
         ..FitSettings::default()
     };
     let reading = arguments.reading.reading()?;
@@ -77,25 +71,7 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     if !arguments.against.is_empty() {
         groups.push(fitted(&arguments.against)?);
     }
-    if arguments.names.len() < groups.len() {
-        let message = format!(
-            "--names has {} for {} groups",
-            arguments.names.len(),
-            groups.len()
-        );
-        return Err(Error::input(message, "such as --names control,treated"));
-    }
-    let all = averaged(groups, &settings)?;
-    let names = arguments.names.iter();
-    let named: Vec<NamedGroup> = names
-        .zip(&all)
-        .map(|(name, own)| NamedGroup {
-            name,
-            group: &own.group,
-            states: &own.states,
-            mean: &own.mean,
-        })
-        .collect();
+    let named = named(groups, arguments.names, &settings)?;
     let files = [arguments.data, arguments.against].concat();
     write((&arguments.output, &arguments.name), &files, &named)?;
     print_report(|| group_json(&named))?;
@@ -103,17 +79,22 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     Ok(0)
 }
 
-/// The groups with their states and mean laws.
-fn averaged(groups: Vec<Group>, settings: &FitSettings) -> Result<Vec<Averaged>, Error> {
+/// The groups with their names, states and mean laws.
+fn named(
+    groups: Vec<Group>,
+    names: Vec<String>,
+    settings: &FitSettings,
+) -> Result<Vec<NamedGroup>, Error> {
     let states: Vec<Vec<GroupState>> = match &groups[..] {
         [first, second] => vec![first.states(Some(second)), second.states(Some(first))],
         others => others.iter().map(|own| own.states(None)).collect(),
     };
-    let pairs = groups.into_iter().zip(states);
+    let pairs = groups.into_iter().zip(states).zip(names);
     pairs
-        .map(|(group, states)| {
-            Ok(Averaged {
+        .map(|((group, states), name)| {
+            Ok(NamedGroup {
                 mean: group.mean_law(&states, settings)?,
+                name,
                 group,
                 states,
             })
@@ -133,7 +114,7 @@ fn write(
     results.add(&format!("{name}.csv"), group_table(groups).as_bytes())?;
     for own in groups {
         let stem = format!("{name}-{}", own.name);
-        let test = own.group.mean_test(own.name, own.states);
+        let test = own.group.mean_test(&own.name, &own.states);
         let data = format!("{stem}.csv");
         let conversion = Conversion {
             stress: test.stress_measure,
@@ -146,7 +127,7 @@ fn write(
             reading: Default::default(),
             base_card: None,
         };
-        let card = card_text(own.mean, &[test], &provenance);
+        let card = card_text(&own.mean, &[test], &provenance);
         results.add(&format!("{stem}.toml"), card.as_bytes())?;
     }
     let text = format!("{:#}\n", group_json(groups));
@@ -179,20 +160,16 @@ fn message(groups: &[NamedGroup]) -> String {
     } else {
         "\n"
     };
-    let last = |state: &GroupState| {
-        let [x, y] = state.strains;
-        let others = groups[0].states.iter();
-        let along = others.filter(|own| (own.strains[0] * y - own.strains[1] * x).abs() < 1e-12);
-        along.fold(0.0, |most: f64, own| {
-            most.max(own.strains[0].hypot(own.strains[1]))
-        })
-    };
+    let axes = groups[0].states.iter().map(|state| state.axis).max();
+    let axes = axes.map_or(1, |last| last + 1);
+    let steps = usize::from(Group::STEPS);
     for (row, state) in groups[0].states.iter().enumerate() {
-        let [x, y] = state.strains;
-        let share = x.hypot(y) / last(state);
-        if ![0.5, 1.0].iter().any(|shown| (share - shown).abs() < 1e-6) {
+        // The middle and the end of each protocol.
+        let step = row / axes % steps + 1;
+        if step != steps / 2 && step != steps {
             continue;
         }
+        let [x, y] = state.strains;
         text += &format!("  {:>7.4} {:>7.4} {:>6}", 1.0 + x, 1.0 + y, state.axis + 1);
         for own in groups {
             let stress = own.states[row].stress;

@@ -12,7 +12,7 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print_report, warn};
-use gelbench_images::images::{Order, list};
+use gelbench_images::images::{Order, Settings, list};
 use gelbench_report::output::{self, ResultFolder};
 use gelbench_studies::studies::images::{ImageRequest, ImageSettings, results};
 use gelbench_studies::studies::name;
@@ -39,9 +39,11 @@ impl ImageOptions {
     /// How images are followed.
     pub fn settings(&self) -> ImageSettings {
         ImageSettings {
-            spacing: self.spacing.into(),
-            subset: self.subset.map(usize::from),
-            order: self.subset_shape,
+            subsets: Settings {
+                spacing: self.spacing.into(),
+                subset: self.subset.map(usize::from),
+                order: self.subset_shape,
+            },
             mask: self.mask.clone(),
         }
     }

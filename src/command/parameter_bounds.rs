@@ -1,9 +1,29 @@
 //! Bounds and stated values of a fit's parameters.
 
+use clap::Args;
+
 use super::terminal::together;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::{self, Dimension};
 use gelbench_calibration::calibration::Bounds;
+
+/// What the command line says of the parameters of a fit.
+#[derive(Args)]
+pub struct ParameterBounds {
+    /// Keep a parameter within limits, in MPa, rad or as a ratio
+    #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
+    bounds: Vec<String>,
+    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio
+    #[arg(long = "fix", value_name = "KEY=VALUE", value_parser = pair)]
+    fixed: Vec<(String, String)>,
+}
+
+impl ParameterBounds {
+    /// Limits of the parameters; those of a stated one are equal.
+    pub fn bounds(&self) -> Result<Bounds, Error> {
+        Ok([bounds(&self.bounds)?, stated(&self.fixed)?].concat())
+    }
+}
 
 /// A key with a value, as an option states it.
 pub fn pair(text: &str) -> Result<(String, String), Diagnostic> {
@@ -40,7 +60,7 @@ pub fn bounds(texts: &[String]) -> Result<Bounds, Error> {
 }
 
 /// Stated values as bounds that are equal.
-pub fn stated(pairs: &[(String, String)]) -> Result<Bounds, Error> {
+fn stated(pairs: &[(String, String)]) -> Result<Bounds, Error> {
     let dimensions = [Dimension::Ratio, Dimension::Stress, Dimension::Angle];
     let each = pairs.iter().map(|(key, text)| {
         let value = dimensions

@@ -193,30 +193,19 @@ impl Group {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Statements;
+    use crate::calibration::tests::biaxial::record;
     use crate::material::parameters::{StrainMeasure, StressMeasure};
 
-    fn specimen(number: u32, mu: f64) -> TestData {
-        let law = Law::named("holzapfel-gasser-ogden").unwrap();
+    /// The parameters of a specimen.
+    fn values(number: u32, mu: f64) -> [f64; 5] {
         let k1 = 0.05 * (1.0 + 0.2 * f64::from(number % 3));
-        let values = [mu, k1, 3.0, 0.1, 0.6];
-        let (law, _) = law.with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal);
-        let mut text = "# test: biaxial\n# strain measure: nominal\nstrain_1 [-],strain_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n".to_owned();
-        let mut state = 7 * number + 1;
-        for ratio in [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]] {
-            for row in 0..=15 {
-                let strains = ratio.map(|own| 0.2 * own * f64::from(row) / 15.0);
-                let stress = law.biaxial(strains).map(|stress| {
-                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    stress + 1e-4 * (f64::from(state >> 8) / f64::from(1 << 23) - 1.0)
-                });
-                text += &format!(
-                    "{},{},{},{}\n",
-                    strains[0], strains[1], stress[0], stress[1]
-                );
-            }
-        }
-        TestData::parse(&format!("{number}.csv"), &text, &Statements::new()).unwrap()
+        [mu, k1, 3.0, 0.1, 0.6]
+    }
+
+    fn specimen(number: u32, mu: f64) -> TestData {
+        let law = ("holzapfel-gasser-ogden", &values(number, mu)[..]);
+        let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
+        record(law, (&ratios, 0.2), (1e-3, number.into()))
     }
 
     fn group(numbers: std::ops::Range<u32>, mu: f64) -> Group {
@@ -233,9 +222,12 @@ mod tests {
         let law = Law::named("holzapfel-gasser-ogden").unwrap();
         let right = |mu: f64, strains: [f64; 2], axis: usize| {
             let each = (0..3).map(|number| {
-                let values = [mu, 0.05 * (1.0 + 0.2 * f64::from(number)), 3.0, 0.1, 0.6];
                 let law = law
-                    .with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal)
+                    .with_values(
+                        &values(number, mu),
+                        StressMeasure::Nominal,
+                        StrainMeasure::Nominal,
+                    )
                     .0;
                 law.biaxial(strains)[axis]
             });

@@ -44,7 +44,7 @@ fn largest_stress(tests: &[TestData]) -> f64 {
 /// The error with which a protocol is predicted by the law fitted to the others in % of the largest stress.
 fn left_out(fit: &Fit, protocols: &[TestData], number: usize) -> Option<f64> {
     let mut others = protocols.to_vec();
-    let own = [others.remove(number)];
+    let omitted = [others.remove(number)];
     let start = fit.values();
     let about = About {
         law: fit.law,
@@ -55,7 +55,7 @@ fn left_out(fit: &Fit, protocols: &[TestData], number: usize) -> Option<f64> {
         settings: &fit.settings,
     };
     let values = about.within(f64::INFINITY).ok()?;
-    let response = Elastic::new(fit.law, &own).with_zeros();
+    let response = Elastic::new(fit.law, &omitted).with_zeros();
     let predicted = response.predicted(&values).concat();
     let measured = response.moved_tests(&values);
     let pairs = measured[0].observations.iter().zip(&predicted);
@@ -103,19 +103,19 @@ fn further(fit: &Fit, protocols: &[TestData]) -> Option<FurtherProtocol> {
         let size = slopes.nrows();
         let inverse = (&slopes * &across + variance * DMatrix::identity(size, size)).cholesky()?;
         let gained = across.row(row) * inverse.solve(&across.transpose()).column(row);
-        let left = (1.0 - gained[(0, 0)] / covariance[(row, row)])
+        let remaining = (1.0 - gained[(0, 0)] / covariance[(row, row)])
             .max(0.0)
             .sqrt();
         let largest = Observation::farthest_strains(&protocol[0].observations);
-        Some((left, largest.map(|strain| 1.0 + strain)))
+        Some((remaining, largest.map(|strain| 1.0 + strain)))
     };
     let all = RATIOS.into_iter().filter_map(narrowed);
-    let (left, stretches) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (remaining, stretches) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let percent = 100.0 * share(widest);
     Some(FurtherProtocol {
         stretches,
         key: fit.parameters[widest].key,
-        standard_error_percent: [percent, left * percent],
+        standard_error_percent: [percent, remaining * percent],
     })
 }
 
@@ -185,39 +185,20 @@ fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestDa
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibration::tests::biaxial::record;
     use crate::calibration::{FitSettings, fit};
-    use crate::document::Statements;
-    use crate::material::parameters::{StrainMeasure, StressMeasure};
     use crate::material::registry::Law;
-
-    /// Records of a law at strain ratios of both axes, with noise of 0.3 % of the largest stress that repeats.
-    fn record(name: &str, values: &[f64], ratios: &[[f64; 2]]) -> TestData {
-        let law = Law::named(name).unwrap();
-        let law = law
-            .with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal)
-            .0;
-        let mut text = "# test: biaxial\n# strain measure: nominal\nstrain_1 [-],strain_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n".to_owned();
-        let most = law.biaxial([0.2; 2])[0];
-        let mut state = 1_u32;
-        let mut noise = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            0.003 * most * (f64::from(state >> 8) / f64::from(1 << 23) - 1.0)
-        };
-        for ratio in ratios {
-            for row in 0..=20 {
-                let strains = ratio.map(|own| 0.2 * own * f64::from(row) / 20.0);
-                let stress = law.biaxial(strains);
-                let [first, second] = [stress[0] + noise(), stress[1] + noise()];
-                text += &format!("{},{},{first},{second}\n", strains[0], strains[1]);
-            }
-        }
-        TestData::parse("a.csv", &text, &Statements::new()).unwrap()
-    }
 
     const TISSUE: [f64; 5] = [0.01, 0.05, 3.0, 0.1, 0.6];
 
+    /// Protocols up to a strain of 0.2.
+    fn made(ratios: &[[f64; 2]]) -> [TestData; 1] {
+        let law = ("holzapfel-gasser-ogden", &TISSUE[..]);
+        [record(law, (ratios, 0.2), (0.002, 0))]
+    }
+
     fn protocols(law: &str, ratios: &[[f64; 2]]) -> Protocols {
-        let tests = [record("holzapfel-gasser-ogden", &TISSUE, ratios)];
+        let tests = made(ratios);
         let fit = fit(Law::named(law).unwrap(), &tests, &FitSettings::default()).unwrap();
         fit.protocols.unwrap()
     }
@@ -243,11 +224,7 @@ mod tests {
         let [today, then] = before.standard_error_percent;
         assert!(then < 0.7 * today, "{before:?}");
         let share = before.stretches.map(|stretch| (stretch - 1.0) / 0.2);
-        let tests = [record(
-            "holzapfel-gasser-ogden",
-            &TISSUE,
-            &[&ratios[..], &[share]].concat(),
-        )];
+        let tests = made(&[&ratios[..], &[share]].concat());
         let law = Law::named("holzapfel-gasser-ogden").unwrap();
         let after = fit(law, &tests, &FitSettings::default()).unwrap();
         let index = after

@@ -9,7 +9,7 @@ use crate::material::curve::Mode;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::registry::{CARDS, DATA, Law};
 
-mod biaxial;
+pub mod biaxial;
 mod minimum;
 mod quality;
 mod simple_shear;

@@ -8,15 +8,15 @@ use crate::calibration::{Fit, Group, GroupState};
 use crate::document::write_records;
 
 /// A group with its name, its states and its mean law.
-pub struct NamedGroup<'a> {
+pub struct NamedGroup {
     /// Its name.
-    pub name: &'a str,
+    pub name: String,
     /// The group.
-    pub group: &'a Group,
+    pub group: Group,
     /// Its stresses.
-    pub states: &'a [GroupState],
+    pub states: Vec<GroupState>,
     /// The law of its mean stresses.
-    pub mean: &'a Fit,
+    pub mean: Fit,
 }
 
 /// A table of all states, one record each: strains, mean with its interval and spread of each group, and the difference of two.
@@ -89,7 +89,7 @@ pub fn group_json(groups: &[NamedGroup]) -> Value {
 pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
     let axes = groups[0].states.iter().map(|state| state.axis).max();
     let axes = 0..=axes.unwrap_or(0);
-    let states = || groups.iter().flat_map(|own| own.states);
+    let states = || groups.iter().flat_map(|own| &own.states);
     let highest = states().map(|state| state.stress.estimate().interval[1]);
     let unit = readable(highest.fold(0.0, f64::max));
     let count = axes.clone().count();

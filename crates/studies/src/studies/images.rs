@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use crate::budget::{Budget, Need};
 use crate::error::{Diagnostic, Error};
 use crate::images::{
-    GreyImage, ImageFile, Order, Region, Settings, Tracked, Tracker, is_image_path, list, series,
+    GreyImage, ImageFile, Region, Settings, Tracked, Tracker, is_image_path, list, series,
 };
 use crate::markers::{MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
 
@@ -20,32 +20,12 @@ mod written;
 pub use written::results;
 
 /// How images are followed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ImageSettings {
-    /// Distance of the points in pixels.
-    pub spacing: usize,
-    /// Width of the subsets in pixels; by the pattern where it is not given.
-    pub subset: Option<usize>,
-    /// The degree of the displacement in a subset.
-    pub order: Order,
+    /// Points and subsets.
+    pub subsets: Settings,
     /// An image of the specimen's region, white on black.
     pub mask: Option<PathBuf>,
-}
-
-impl Default for ImageSettings {
-    fn default() -> Self {
-        let Settings {
-            spacing,
-            subset,
-            order,
-        } = Settings::default();
-        Self {
-            spacing,
-            subset,
-            order,
-            mask: None,
-        }
-    }
 }
 
 /// What is to be followed.
@@ -81,7 +61,7 @@ pub struct TrackedImages {
     /// The length of a pixel in mm.
     pub pixel: f64,
     /// How they were followed.
-    pub settings: ImageSettings,
+    pub settings: Settings,
     /// What deserves attention.
     pub warnings: Vec<Diagnostic>,
 }
@@ -111,7 +91,7 @@ impl ImageRequest<'_> {
         let image = first.read()?;
         self.afford(&image)?;
         let region = self.region(image.size(), pixel)?;
-        let settings = self.subsets();
+        let settings = self.settings.subsets;
         told("the first image");
         let mut tracker = Tracker::new(&image, &of_file(last, last.read())?, &region, settings)?;
         let numbered: Vec<(usize, ImageFile)> = numbers(others)
@@ -151,18 +131,9 @@ impl ImageRequest<'_> {
             files: (first.clone(), numbered),
             frames,
             pixel,
-            settings: self.settings.clone(),
+            settings,
             warnings,
         })
-    }
-
-    /// What is followed.
-    fn subsets(&self) -> Settings {
-        Settings {
-            spacing: self.settings.spacing,
-            subset: self.settings.subset,
-            order: self.settings.order,
-        }
     }
 
     fn known_pixel(&self) -> Result<f64, Error> {

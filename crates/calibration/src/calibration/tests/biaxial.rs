@@ -22,12 +22,21 @@ const TISSUES: [(&str, &[f64]); 5] = [
 
 /// Five protocols of a law with a noise of `share` of the largest stress.
 fn made(law: &str, values: &[f64], share: f64, seed: u64) -> TestData {
+    let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.2], [0.2, 1.0]];
+    record((law, values), (&ratios, 0.3), (share, seed))
+}
+
+/// Protocols of a law in some ratios of a largest strain, with a noise of `share` of the largest stress.
+pub fn record(
+    (law, values): (&str, &[f64]),
+    (ratios, most): (&[[f64; 2]], f64),
+    (share, seed): (f64, u64),
+) -> TestData {
     let law = Law::named(law).unwrap();
     let (law, _) = law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.2], [0.2, 1.0]];
     let states = ratios.iter().flat_map(|ratio| {
-        (1..=30).map(move |row| ratio.map(|one| 0.3 * one * f64::from(row) / 30.0))
+        (1..=30).map(move |row| ratio.map(|one| most * one * f64::from(row) / 30.0))
     });
     let states: Vec<[f64; 2]> = states.collect();
     let stresses: Vec<[f64; 2]> = states.iter().map(|state| law.biaxial(*state)).collect();
