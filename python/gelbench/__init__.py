@@ -13,6 +13,7 @@ Plain numbers are mm, N, MPa; texts with a unit and pint quantities are accepted
 from . import corrector
 from ._core import __version__
 from ._errors import Fault, InputError, PerformanceWarning, SolveError, WriteError
+from ._images import Tracked, track
 from ._law import Derivatives
 from ._markers import Correction, correct
 from ._material import Material, Parameter, laws, materials
@@ -48,6 +49,7 @@ __all__ = [
     "State",
     "SweepPlan",
     "SweepTable",
+    "Tracked",
     "WriteError",
     "__version__",
     "biaxial",
@@ -61,4 +63,5 @@ __all__ = [
     "run",
     "salib_problem",
     "sweep",
+    "track",
 ]

@@ -9,15 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from numpy.typing import ArrayLike
+
 from . import _core
 from ._errors import fault
+from ._given import GivenFiles, paths_of
+from ._images import Images, image_options, images_of
 from ._material import Material, card
 from ._material import material as _material
 from ._progress import Progress, callback
 from ._quantities import PathLike, Quantity, number, text, toml
 from ._results import Field, Results
 from ._tests import Data, Estimate
-from ._tests import _table as table
 
 __all__ = ["Correction", "correct"]
 
@@ -86,10 +89,11 @@ def _estimate(one: Mapping[str, Any], unit: str) -> Estimate:
 
 
 def correct(
-    markers: Data,
-    material: Material | PathLike,
-    thickness: Quantity,
+    markers: Data | None = None,
+    material: Material | PathLike | None = None,
+    thickness: Quantity | None = None,
     *,
+    images: Images | None = None,
     free: Sequence[str] = (),
     rigid: Sequence[str] = (),
     known: Mapping[str, Mapping[str, Quantity]] | None = None,
@@ -103,7 +107,7 @@ def correct(
     sheet: str | None = None,
     regions: Mapping[str, Material | PathLike] | None = None,
     conditions: PathLike | None = None,
-    unit: str | None = None,
+    unit: Quantity | None = None,
     array: str | None = None,
     grid: Quantity | None = None,
     columns: Mapping[str, str] | None = None,
@@ -112,16 +116,20 @@ def correct(
     y_axis: str | None = None,
     places: str | None = None,
     rest: PathLike | None = None,
-    mesh: PathLike | None = None,
+    mesh: Any = None,
     mesh_unit: str = "mm",
     merge_nodes: Quantity | None = None,
     allow: Sequence[str] = (),
-    outline: PathLike | None = None,
-    forces: PathLike | None = None,
+    outline: PathLike | ArrayLike | None = None,
+    forces: Data | None = None,
     cell_size: Quantity | None = None,
     refine: bool = False,
     cells: str = "triangle6",
     holes: bool = True,
+    spacing: int = 8,
+    subset: int | None = None,
+    subset_shape: str = "affine",
+    mask: PathLike | ArrayLike | None = None,
     progress: Progress | None = None,
     allow_large: bool = False,
 ) -> Correction:
@@ -133,6 +141,8 @@ def correct(
         The field: files of image correlation programs, one for each frame; a table with ``x [mm]``, ``y [mm]``, ``ux [mm]``,
         ``uy [mm]``, and, if known, ``standard_deviation [mm]`` and ``frame``; or an array n × 4 of these in mm. Rows with
         NaN or masked entries are lost markers.
+    images : path, list of paths or array_like
+        Camera images instead, as of `gelbench.track`; `unit` is the length of a pixel.
     material : Material, str or path
         The material, or its card.
     thickness : quantity
@@ -168,9 +178,12 @@ def correct(
     unit, array, grid, columns, ignore_columns, encoding, y_axis, places, rest
         How files are read; see the options of ``gelbench correct``.
     mesh, mesh_unit, merge_nodes, allow, outline, cell_size, refine, cells, holes
-        The specimen's mesh or outline, and how it is meshed; see the same options. `mesh_unit` is a unit of length.
-    forces : path, optional
+        The specimen's mesh (a file, or a mesh of meshio, PyVista or gmsh) or outline (a file, an array n × 2, or a list of these of which
+        the inner ones are holes [mm]), and how it is meshed; see the same options. `mesh_unit` is a unit of length.
+    forces : path, DataFrame or mapping, optional
         A testing machine's table for the frames; `conditions` names its columns.
+    spacing, subset, subset_shape, mask
+        How images are followed, as of `gelbench.track`.
     progress : callable or tqdm bar, optional
         Is called for each frame.
     allow_large : bool
@@ -188,6 +201,12 @@ def correct(
     gelbench.SolveError
         If no corrected field was found.
     """
+    if material is None or thickness is None:
+        missing = "material" if material is None else "thickness"
+        raise fault(missing, "is missing", "give the specimen's material and its thickness at rest")
+    if (markers is None) == (images is None):
+        wrong = "is missing" if images is None else "is given beside images"
+        raise fault("markers", wrong, "give the field as markers, or as images=")
     own = _material(material)
     said = {
         "noise": noise if noise is None else text(noise, "mm", "noise"),
@@ -211,8 +230,9 @@ def correct(
             what = Path(conditions).read_text(encoding="utf-8")
         except OSError as cause:
             raise fault("conditions", f"{conditions} cannot be read: {cause}", "name a file") from None
+    in_memory = GivenFiles()
     options: dict[str, Any] = {
-        "unit": unit,
+        "unit": unit if unit is None else text(unit, "mm", "unit"),
         "array": array,
         "grid": None if grid is None else number(grid, "mm", "grid"),
         "ignore_columns": list(ignore_columns),
@@ -221,12 +241,12 @@ def correct(
         "y_axis": y_axis,
         "places": places,
         "rest": _path(rest),
-        "mesh": _path(mesh),
+        "mesh": in_memory.mesh(mesh),
         "mesh_unit": mesh_unit,
         "merge_nodes": None if merge_nodes is None else number(merge_nodes, "mm", "merge_nodes"),
         "allow": list(allow),
-        "outline": _path(outline),
-        "forces": _path(forces),
+        "outline": in_memory.outline(outline),
+        "forces": in_memory.optional_table(forces, "forces"),
         "cell_size": None if cell_size is None else number(cell_size, "mm", "cell_size"),
         "refine": refine,
         "cells": cells,
@@ -237,33 +257,23 @@ def correct(
     size = number(thickness, "mm", "thickness")
     if not 0.0 < size < np.inf:
         raise fault("thickness", f"is {thickness!r}", "it must be positive")
-    told = callback(progress)
-    files = _files(markers)
-    if files is not None:
-        name = Path(conditions or files[0]).stem
-        return Correction(*_core.correct(name, files, card(own), size, what, options, told))
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "markers.csv"
-        file.write_text(table(markers, "markers", COLUMNS)[1], encoding="utf-8")
-        return Correction(*_core.correct("markers", [str(file)], card(own), size, what, options, told))
+    files, frames = ([], []) if images is None else images_of(images)
+    if images is None:
+        files = paths_of(markers) or [_table_of(markers, in_memory)]
+    options["images"] = image_options(frames, spacing, subset, subset_shape, mask)
+    options["in_memory"] = in_memory.files
+    name = Path(conditions or (files[0] if files else "images")).stem
+    return Correction(*_core.correct(name, files, card(own), size, what, options, callback(progress)))
 
 
 def _path(path: PathLike | None) -> str | None:
     return None if path is None else os.fspath(path)
 
 
-def _files(markers: Any) -> list[str] | None:
-    if isinstance(markers, (str, os.PathLike)):
-        path: os.PathLike[str] | str = markers
-        return [os.fspath(path)]
-    if isinstance(markers, (list, tuple)) and markers and all(isinstance(one, (str, os.PathLike)) for one in markers):
-        paths: Sequence[PathLike] = markers
-        return [os.fspath(path) for path in paths]
+def _table_of(markers: Any, in_memory: GivenFiles) -> str:
     if not hasattr(markers, "keys") and np.ndim(markers) != 2:
-        raise fault("markers", f"has {np.ndim(markers)} dimensions", "give files, a table, or an array n × 4")
-    return None
+        raise fault("markers", f"has {np.ndim(markers)} dimensions", "give files, a table, or an array n × 4; images as images=")
+    return in_memory.table(markers, "markers", COLUMNS)
 
 
 def _edges(

@@ -57,15 +57,42 @@ def laws() -> dict[str, str]:
 class Material:
     """A hyperelastic material of a thin sheet: a law with its parameters, and where they come from.
 
-    Create one with `from_card`, `from_text` or `from_law`; `gelbench.fit` creates one from test data. Materials are equal
-    if the texts of their cards are.
+    `from_card`, `from_text` and `from_law` create one too, and `gelbench.fit` from test data. Materials are equal if the texts of their
+    cards are.
+
+    Parameters
+    ----------
+    law : str
+        Name of a law, see `gelbench.laws`.
+    name : str, optional
+        Name of the material; that of the law if omitted.
+    **values : quantity
+        Parameters of the law [MPa, –], or ``youngs_modulus``, ``shear_modulus``, ``bulk_modulus`` [MPa] and ``poisson_ratio`` instead of
+        one; ``density``, such as ``"1020 kg/m^3"``; ``convention`` of Ogden's law.
+
+    Raises
+    ------
+    gelbench.InputError
+        With every fault.
+
+    Examples
+    --------
+    >>> gb.Material("gent", mu=0.05, jm=30)
+    <gelbench.Material gent: gent (mu=0.05, jm=30)>
     """
 
     __slots__ = ("_card", "_reference")
 
-    def __init__(self, card: _core.MaterialCard, reference: str | None = None) -> None:
-        self._card = card
-        self._reference = reference
+    def __init__(self, law: str, *, name: str | None = None, **values: Quantity) -> None:
+        told = {key: text(value, "", key) for key, value in values.items()}
+        self._card = _core.MaterialCard.of_law(law, name or law, told)
+        self._reference: str | None = None
+
+    @classmethod
+    def _of(cls, card: _core.MaterialCard, reference: str | None = None) -> Material:
+        made = cls.__new__(cls)
+        made._card, made._reference = card, reference
+        return made
 
     @classmethod
     def from_card(cls, card: PathLike) -> Material:
@@ -86,7 +113,7 @@ class Material:
         except TypeError:
             raise fault("material", f"{card!r} is not a card", "give a Material, the name of a card, or the path of one") from None
         own = _core.MaterialCard.load(name, ".")
-        return cls(own, name if name in materials() else str(Path(name).resolve()))
+        return cls._of(own, name if name in materials() else str(Path(name).resolve()))
 
     @classmethod
     def from_text(cls, text: str, name: str = "card") -> Material:
@@ -97,7 +124,7 @@ class Material:
         gelbench.InputError
             With every fault of the card.
         """
-        return cls(_core.MaterialCard.parse(name, text))
+        return cls._of(_core.MaterialCard.parse(name, text))
 
     @classmethod
     def from_law(
@@ -145,7 +172,7 @@ class Material:
                 PerformanceWarning,
                 stacklevel=2,
             )
-        return cls(_core.MaterialCard.of_python(name, rows, list(within)))
+        return cls._of(_core.MaterialCard.of_python(name, rows, list(within)))
 
     def with_parameters(self, **values: Quantity) -> Material:
         """The same law with other values of some parameters.
@@ -166,7 +193,7 @@ class Material:
             If the law has no such parameter or is not one of gelbench's.
         """
         units = {key: own.unit.strip("–") for key, own in self.parameters.items()}
-        return Material(self._card.with_parameters({key: text(value, units.get(key, ""), key) for key, value in values.items()}))
+        return Material._of(self._card.with_parameters({key: text(value, units.get(key, ""), key) for key, value in values.items()}))
 
     @property
     def name(self) -> str:
@@ -345,7 +372,7 @@ class Material:
 
 
 def _of_text(text: str, name: str, reference: str | None) -> Material:
-    return Material(_core.MaterialCard.parse(name, text), reference)
+    return Material._of(_core.MaterialCard.parse(name, text), reference)
 
 
 def material(value: Material | PathLike) -> Material:

@@ -40,6 +40,18 @@ class Plate(StudyInMemory):
         Other keys of a study, by section where they have one, such as ``{"title": "Gel", "corrector": {"scheme": "gauss"}}``;
         ``gelbench keys`` and the guide list them. Settings that are arguments are refused here.
 
+    Attributes
+    ----------
+    length, width, thickness : float
+        Dimensions at rest [mm]; quantities may be assigned.
+    material : Material
+        The material; another one, or its card, may be assigned.
+
+    Raises
+    ------
+    gelbench.InputError
+        With every fault, also when a dimension is assigned.
+
     Examples
     --------
     >>> plate = gb.Plate(length=150, width="5 cm", thickness=2, material="pva-10")
@@ -47,6 +59,7 @@ class Plate(StudyInMemory):
     12.874...
     """
 
+    _section = "plate"
     STRETCHES = (0.15, 0.3, 0.5, 0.75, 1.0)
     """Stretches if none are given."""
 
@@ -70,6 +83,7 @@ class Plate(StudyInMemory):
             "cells": [whole(count, "cells", 1) for count in cells],
         }
         self._sections = merged({"plate": own}, settings, ARGUMENTS)
+        self._check()
 
     def _text(self, factors: Factors | None, card: str) -> str:
         load = {"stretches": factor_texts(factors, self.STRETCHES)}

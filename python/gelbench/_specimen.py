@@ -104,6 +104,18 @@ class Specimen(StudyInMemory):
         ``narrow_length``, ``narrow_width``, ``shoulder_length``, ``inner_radius``, ``outer_radius``; ``angle`` [rad]; of a square on rakes
         ``tine_spacing``, ``tine_inset``, ``tine_diameter`` and the number of ``tines`` at each side; of a cruciform ``arm_width``, ``fillet``.
 
+    Attributes
+    ----------
+    thickness and all measures that are stated : float
+        Dimensions at rest [mm, rad]; quantities may be assigned.
+    material : Material
+        The material; another one, or its card, may be assigned.
+
+    Raises
+    ------
+    gelbench.InputError
+        With every fault, also when a dimension is assigned.
+
     Examples
     --------
     >>> strip = gb.Specimen(
@@ -112,6 +124,7 @@ class Specimen(StudyInMemory):
     >>> strip.solve("finite-element").force
     """
 
+    _section = "specimen"
     FACTORS = (1.0,)
     """Load factors if none are given."""
 
@@ -231,6 +244,7 @@ class Specimen(StudyInMemory):
         self._sections = merged({"specimen": own}, settings, ARGUMENTS)
         self._conditions = {"support": _entries(supports, "supports"), "load": _entries(loads or {}, "loads")}
         self._measured = measured
+        self._check()
 
     def _text(self, factors: Factors | None, card: str) -> str:
         path = {"factors": factor_texts(factors, self.FACTORS), "measured_group": self._measured}

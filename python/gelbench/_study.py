@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import SolveError, WriteError, fault
+from ._errors import InputError, SolveError, WriteError, fault
 from ._material import Material, in_memory, needs_card, on_disk, shipped
 from ._material import card as core_card
 from ._material import material as _material
@@ -30,20 +30,57 @@ Settings: TypeAlias = "Mapping[str, Any]"
 Files: TypeAlias = "dict[str, bytes]"
 """Objects in memory, by the names used in a study."""
 
+TEXTS = ("shape", "lattice", "file", "file_unit")
+"""Keys of a sheet that are no quantities."""
+
+
+def _unit(dimension: str) -> str:
+    return "rad" if dimension == "angle" else "mm"
+
+
 class StudyInMemory:
     """A study that is solved."""
 
     material: Material
     _sections: dict[str, Any]
     _mesh: _core.GivenMesh | None = None
+    _section: str
+    """The section of a study that states the sheet."""
+
+    def __getattr__(self, name: str) -> Any:
+        # Dimensions are numbers: mm, rad of an angle.
+        own = self._dimensions()
+        if name not in own:
+            raise AttributeError(f"a {type(self).__name__} has no attribute {name}; it has {', '.join(['material', *own])}")
+        value = own[name]
+        return number(value, _unit(name), name) if isinstance(value, str) and name not in TEXTS else value
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "material":
             value = _material(value)
         elif not name.startswith("_"):
-            kind = type(self).__name__
-            raise AttributeError(f"{name} of a {kind} cannot be assigned; create another {kind} with it")
+            own = self._dimensions()
+            if not isinstance(own.get(name), str) or name in TEXTS:
+                kind = type(self).__name__
+                raise AttributeError(f"{name} of a {kind} cannot be assigned; create another {kind} with it")
+            before, own[name] = own[name], text(value, _unit(name), name)
+            try:
+                self._check()
+            except InputError:
+                own[name] = before
+                raise
+            return
         super().__setattr__(name, value)
+
+    def _dimensions(self) -> dict[str, Any]:
+        sections: dict[str, Any] = self.__dict__.get("_sections", {})
+        found: dict[str, Any] = sections.get(self._section, {})
+        return found
+
+    def _check(self) -> None:
+        """Raises at once what is wrong with the study."""
+        study, files = self._here(None)
+        _core.check_sheet(study, files, self._mesh)
 
     def study(self, factors: Factors | None = None, *, card: PathLike | None = None) -> str:
         """The text of the study, which ``gelbench run`` computes with bit-identical results.

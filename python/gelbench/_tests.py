@@ -97,7 +97,7 @@ class Fit:
         self._picture: bytes = picture
         self.json: dict[str, Any] = json.loads(text)
         """All figures, as ``gelbench materials fit`` writes it."""
-        self.material = Material(own)
+        self.material = Material._of(own)
         """The material."""
 
     @property

@@ -1,8 +1,9 @@
 //! Measured displacement fields.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use gelbench::document::TextEncoding;
+use gelbench::document::{TextEncoding, with_files};
 use gelbench::error::Error;
 use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
 use gelbench::material::Card;
@@ -16,6 +17,7 @@ use pyo3::prelude::*;
 use std::time::Instant;
 
 use crate::errors::{input, refused};
+use crate::images::ImageOptions;
 use crate::material::{MaterialCard, watched};
 use crate::results::{OfFrames, Results};
 use crate::running::run;
@@ -45,6 +47,9 @@ pub struct Options {
     cells: String,
     holes: bool,
     regions: Vec<(String, Py<MaterialCard>)>,
+    images: ImageOptions,
+    /// Tables and meshes in memory, by the names that stand for them.
+    in_memory: BTreeMap<PathBuf, Vec<u8>>,
     allow_large: bool,
 }
 
@@ -111,7 +116,7 @@ impl Options {
 }
 
 /// The length of a unit, or of a pixel, in mm.
-fn length_unit(text: &str) -> Result<f64, Error> {
+pub fn length_unit(text: &str) -> Result<f64, Error> {
     let named = units::factor(text, Dimension::Length);
     let found = named.or_else(|_| units::parse(text, Dimension::Length));
     found.map_err(|fault| refused(fault.to_string()))
@@ -158,7 +163,7 @@ pub fn correct(
         conditions.regions.extend(regions);
         let request = Request {
             reading: options.reading()?,
-            images: Default::default(),
+            images: options.images.settings()?,
             material: card.name.clone(),
             thickness,
             mesh: options.mesh()?,
@@ -171,10 +176,10 @@ pub fn correct(
             files: files.clone(),
         };
         let start = Instant::now();
-        let mut study = match options.refine {
-            true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what))?,
-            false => MarkerStudy::prepare_with(card, request)?,
-        };
+        let mut study = with_files(options.in_memory, || match options.refine {
+            true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what)),
+            false => MarkerStudy::prepare_with(card, request),
+        })?;
         let told = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
         let estimates = study.estimate(&told)?;
         let seconds = start.elapsed().as_secs_f64();

@@ -6,12 +6,15 @@ use std::sync::Arc;
 
 use gelbench::error::Error;
 use gelbench::material::curve::Mode;
-use gelbench::material::registry::{CARDS, LAWS};
+use gelbench::material::registry::{CARDS, LAWS, Law};
 use gelbench::material::stability::stable_range;
 use gelbench::material::{Card, HyperelasticLaw};
+use gelbench::units::{self, Dimension};
 use gelbench_base::document::{EditedDocument, NewValue, name_of};
 use gelbench_base::error::suggestion;
 use gelbench_mechanics::material::curve::simple_shear;
+use gelbench_mechanics::material::Known;
+use gelbench_mechanics::material::parameters::{StrainMeasure, StressMeasure};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -96,6 +99,50 @@ impl MaterialCard {
     }
 }
 
+/// What is known of a material, by the keys of a card; plain numbers are in MPa where a unit is needed.
+fn known(law: &str, values: &BTreeMap<String, String>) -> Result<Known, Error> {
+    let law = Law::named(law).ok_or_else(|| {
+        let names: Vec<_> = LAWS.iter().map(|law| law.name).collect();
+        let hint = suggestion(law, &names, "laws are");
+        input(format!("there is no law `{law}`"), hint)
+    })?;
+    let measures = (StressMeasure::Nominal, StrainMeasure::Nominal);
+    let (_, entries) = law.with_values(&[], measures.0, measures.1);
+    let mut known = Known::of(law);
+    for (key, value) in values {
+        let parameter = entries.parameters.iter().find(|one| one.key == key);
+        let stress = || {
+            let unit = if value.parse::<f64>().is_ok() { " MPa" } else { "" };
+            units::parse(&format!("{value}{unit}"), Dimension::Stress)
+                .map_err(|fault| refused(format!("{key}: {fault}")))
+        };
+        match (&**key, parameter) {
+            (_, Some(one)) => {
+                let unit = match one.dimension {
+                    Dimension::Ratio => "",
+                    other => other.internal_unit(),
+                };
+                let value = match value.parse::<f64>() {
+                    Ok(_) => format!("{value} {unit}").trim_end().to_owned(),
+                    Err(_) => value.clone(),
+                };
+                known.parameters.push((key.clone(), value));
+            }
+            ("youngs_modulus", _) => known.moduli.young = Some(stress()?),
+            ("shear_modulus", _) => known.moduli.shear = Some(stress()?),
+            ("bulk_modulus", _) => known.moduli.bulk = Some(stress()?),
+            ("poisson_ratio", _) => {
+                let ratio = units::parse(value, Dimension::Ratio);
+                let ratio = ratio.map_err(|fault| refused(format!("{key}: {fault}")))?;
+                known.moduli.poisson_ratio = Some(ratio);
+            }
+            ("density", _) => known.density = Some(value.clone()),
+            _ => known.parameters.push((key.clone(), value.clone())),
+        }
+    }
+    Ok(known)
+}
+
 /// A card for a computation that can be ended.
 pub fn watched(card: Card, watch: &Arc<Watch>) -> Card {
     Card {
@@ -129,6 +176,19 @@ impl MaterialCard {
     #[staticmethod]
     fn parse(py: Python<'_>, name: &str, text: &str) -> PyResult<Self> {
         let card = Card::parse(name, &format!("{name}.toml"), text);
+        card.map(Self::of).map_err(|error| exception(py, &error))
+    }
+
+    /// A law with what is known of it: parameters, moduli, density, convention; numbers or texts with a unit.
+    #[staticmethod]
+    fn of_law(
+        py: Python<'_>,
+        law: &str,
+        name: &str,
+        values: BTreeMap<String, String>,
+    ) -> PyResult<Self> {
+        let text = known(law, &values).and_then(|known| known.card_text(name));
+        let card = text.and_then(|text| Card::parse(name, name, &text));
         card.map(Self::of).map_err(|error| exception(py, &error))
     }
 

@@ -73,6 +73,20 @@ pub fn run_sheet(
     })
 }
 
+/// Reads the study of a plate or a specimen, and raises what is wrong with it.
+#[pyfunction]
+#[pyo3(signature = (study, files, mesh=None))]
+pub fn check_sheet(
+    py: Python<'_>,
+    study: &str,
+    files: Files,
+    mesh: Option<&GivenMesh>,
+) -> PyResult<()> {
+    // Whether a study is too large is said of the models that are solved.
+    let read = py.detach(|| read_sheet(study, files, mesh, true));
+    read.map(drop).map_err(|error| exception(py, &error))
+}
+
 /// The kind of a study, and its name.
 fn sheet_kind(specimen: &Specimen) -> (&'static Kind, &'static str) {
     match specimen.along {

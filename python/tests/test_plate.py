@@ -245,7 +245,13 @@ def test_ten_thousand_calls_leave_nothing_behind():
 
 def test_what_is_assigned_to_a_plate_has_an_effect_or_is_refused():
     plate = gb.Plate(30, 10, 2, "neo-hooke", cells=(6, 2))
-    for name in ("thickness", "length", "cells", "factors"):
+    plate.thickness = "0.1 cm"
+    assert (plate.thickness, plate.length, plate.cells) == (1.0, 30.0, [6, 2])
+    with pytest.raises(gb.InputError, match="width"):
+        plate.width = -3
+    assert plate.width == 10.0
+    plate.thickness = 2
+    for name in ("cells", "factors"):
         with pytest.raises(AttributeError, match="create another Plate"):
             setattr(plate, name, 99)
     soft = plate.solve("mass-spring", 0.2).force

@@ -12,7 +12,7 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print_report, warn};
-use gelbench_images::images::{Order, Settings, list};
+use gelbench_images::images::{ImageFile, Order, Settings, list};
 use gelbench_report::output::{self, ResultFolder};
 use gelbench_studies::studies::images::{ImageRequest, ImageSettings, results};
 use gelbench_studies::studies::name;
@@ -44,7 +44,8 @@ impl ImageOptions {
                 subset: self.subset.map(usize::from),
                 order: self.subset_shape,
             },
-            mask: self.mask.clone(),
+            mask: self.mask.as_deref().map(|mask| ImageFile::new(mask, 0)),
+            in_memory: Vec::new(),
         }
     }
 

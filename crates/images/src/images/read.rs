@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::{DynamicImage, ImageReader, Limits};
 use rayon::prelude::*;
@@ -24,15 +25,23 @@ const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 /// The ends of names of files that are images.
 const ENDS: [&str; 6] = ["png", "tif", "tiff", "bmp", "jpg", "jpeg"];
 
+/// Values none of which is larger are fractions of white, with noise.
+const FRACTION: f32 = 2.0;
+
+/// White of 16 bit.
+const WHITE: f32 = 65535.0;
+
 const KINDS: &str = "give a PNG, TIFF, BMP or JPEG image of 8 or 16 bit";
 
-/// One image of a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// One image of a file, or one in memory.
+#[derive(Clone, Debug, PartialEq)]
 pub struct ImageFile {
-    /// The file.
+    /// The file, or the name of an image in memory.
     pub path: PathBuf,
     /// The page of a TIFF file, from 0.
     pub page: usize,
+    /// The image that is in memory.
+    in_memory: Option<Arc<GreyImage>>,
 }
 
 /// Whether a file is an image by the end of its name.
@@ -139,12 +148,8 @@ fn in_order(name: &str) -> String {
 /// # Errors
 /// [`Error::Input`] where it cannot be read.
 pub fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
-    let page = |page| ImageFile {
-        path: path.to_owned(),
-        page,
-    };
     if !is_tiff(path) {
-        return Ok(vec![page(0)]);
+        return Ok(vec![ImageFile::new(path, 0)]);
     }
     let mut decoder = decoder(path)?;
     let mut count = 1;
@@ -154,7 +159,7 @@ pub fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
             .map_err(|fault| refuse(path, fault, KINDS))?;
         count += 1;
     }
-    Ok((0..count).map(page).collect())
+    Ok((0..count).map(|page| ImageFile::new(path, page)).collect())
 }
 
 fn open(path: &Path) -> Result<BufReader<File>, Error> {
@@ -182,11 +187,42 @@ fn check_size(width: u32, height: u32) -> Result<(), String> {
 }
 
 impl ImageFile {
+    /// The image of a file, or of a page of a TIFF file.
+    pub fn new(path: &Path, page: usize) -> Self {
+        Self {
+            path: path.to_owned(),
+            page,
+            in_memory: None,
+        }
+    }
+
+    /// An image in memory, row by row from the top.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it has too many or too few pixels, or values that are not numbers.
+    pub fn of_values(
+        name: &str,
+        [width, height]: [usize; 2],
+        values: Vec<f32>,
+    ) -> Result<Self, Error> {
+        let image = of_values(width, height, in_grey_values(values)).map_err(|fault| {
+            let hint = "give arrays of rows × columns, grey values from 0 to 255 or 65535, or fractions of white";
+            Error::input(format!("{name}: {fault}"), hint)
+        })?;
+        Ok(Self {
+            in_memory: Some(Arc::new(image)),
+            ..Self::new(Path::new(name), 0)
+        })
+    }
+
     /// The image in grey; of colours the luminance.
     ///
     /// # Errors
     /// [`Error::Input`] with the file, what is wrong and what to do. The size is checked before anything is decoded.
     pub fn read(&self) -> Result<GreyImage, Error> {
+        if let Some(image) = &self.in_memory {
+            return Ok((**image).clone());
+        }
         let refuse = |fault: String| refuse(&self.path, fault, KINDS);
         if is_tiff(&self.path) {
             let mut decoder = decoder(&self.path)?;
@@ -197,6 +233,7 @@ impl ImageFile {
             }
             return of_tiff(decoder).map_err(refuse);
         }
+        drop(open(&self.path)?);
         of_other(|| open(&self.path)).map_err(refuse)
     }
 
@@ -283,10 +320,24 @@ fn of_tiff<R: std::io::Read + Seek>(mut decoder: Decoder<R>) -> Result<GreyImage
     let values = match decoder.read_image().map_err(|fault| fault.to_string())? {
         DecodingResult::U8(samples) => greys(&samples, each, f32::from),
         DecodingResult::U16(samples) => greys(&samples, each, f32::from),
-        DecodingResult::F32(samples) => greys(&samples, each, |value: f32| value),
+        DecodingResult::F32(samples) => in_grey_values(greys(&samples, each, |value: f32| value)),
         _ => return Err("its samples are neither of 8 nor of 16 bit".to_owned()),
     };
-    let (width, height) = (width as usize, height as usize);
+    of_values(width as usize, height as usize, values)
+}
+
+/// Fractions of white as grey values of 16 bit, because the variance of rounding is one of whole grey values; others as they are.
+fn in_grey_values(values: Vec<f32>) -> Vec<f32> {
+    if values.iter().any(|value| *value > FRACTION) {
+        return values;
+    }
+    values.into_iter().map(|value| value * WHITE).collect()
+}
+
+/// An image of checked values.
+fn of_values(width: usize, height: usize, values: Vec<f32>) -> Result<GreyImage, String> {
+    let side = |length: usize| u32::try_from(length).map_err(|fault| fault.to_string());
+    check_size(side(width)?, side(height)?)?;
     if values.len() != width * height {
         return Err("its samples are fewer than its pixels".to_owned());
     }

@@ -32,11 +32,16 @@ pub fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Nois
 
 /// How many steps of the grid wide patches are that share no pixel: three speckles, and wide enough that the noise moves a quarter of them by
 /// less than an eighth of a speckle, for which the images are linear; at most an eighth of the image.
-pub fn patch_steps(reference: &Reference, grid: &Grid, spacing: usize, noise: &Noise) -> usize {
+pub fn patch_steps(
+    reference: &Reference,
+    grid: &Grid,
+    spacing: usize,
+    noise: &Noise,
+    speckle: f64,
+) -> usize {
     const SPECKLES: f64 = 3.0;
     const LINEAR: f64 = 0.125;
     let size = reference.image.size();
-    let speckle = speckle(reference, noise);
     let most = (size[0].min(size[1]) / 8 / spacing).max(1);
     let mut steps = ((SPECKLES * speckle / spacing as f64).round() as usize).clamp(1, most);
     let deviation = |steps| {

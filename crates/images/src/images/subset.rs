@@ -32,6 +32,8 @@ pub struct Subset {
     overlap: f64,
     noise: Noise,
     pixels: Vec<Pixel>,
+    /// The number of pixels before any was carried out of an image.
+    whole: usize,
     matrices: Matrices,
 }
 
@@ -119,27 +121,15 @@ impl Subset {
             return None;
         }
         let half = (width / 2).max(1) as f64;
-        let centre = centre.map(|c| c as f64);
-        Self::of_pixels(pixels, centre, half, count, reference.overlap, *noise)
-    }
-
-    fn of_pixels(
-        pixels: Vec<Pixel>,
-        centre: [f64; 2],
-        half: f64,
-        count: usize,
-        overlap: f64,
-        noise: Noise,
-    ) -> Option<Self> {
-        let matrices = Matrices::new(&pixels, half, count, overlap, &noise)?;
         Some(Self {
-            centre,
+            matrices: Matrices::new(&pixels, half, count, reference.overlap, noise)?,
+            centre: centre.map(|c| c as f64),
             count,
             half,
-            overlap,
-            noise,
+            overlap: reference.overlap,
+            noise: *noise,
+            whole: pixels.len(),
             pixels,
-            matrices,
         })
     }
 
@@ -194,55 +184,62 @@ impl Subset {
         const MOST: usize = 40;
         /// Pixels.
         const SMALL: f64 = 1e-3;
-        let (mut warp, whole) = (guess, self.pixels.len() as f64);
-        let count = self.count.max(3);
+        let mut warp = guess;
         for _ in 0..MOST {
-            let place = |x: f64, y: f64| warp.at(x, y, count);
-            let sums = loop {
-                match self.sums(image, &place) {
-                    Ok(sums) => break sums,
-                    Err(inside) => {
-                        if (inside.len() as f64) < LEAST_SHARE * whole {
-                            return None;
-                        }
-                        self = Self::of_pixels(
-                            inside,
-                            self.centre,
-                            self.half,
-                            self.count,
-                            self.overlap,
-                            self.noise,
-                        )?;
-                    }
-                }
-            };
-            let f = warp.deformation_gradient();
-            let q = self.step(&sums, noise);
-            let mut largest = 0.0_f64;
-            for k in 0..self.count {
-                let scale = self.half.powi(-DEGREES[k]);
-                let change = f * Vector2::new(q[2 * k], q[2 * k + 1]);
-                largest += change.norm();
-                warp.terms[k][0] += change.x * scale;
-                warp.terms[k][1] += change.y * scale;
-            }
-            let sound = largest.is_finite() && warp.deformation_gradient().determinant() > 0.05;
-            if !sound || largest > 2.0 * self.half {
-                return None;
-            }
-            if largest < SMALL {
+            if self.improve(image, &mut warp, noise)? < SMALL {
                 return self.found(image, warp, noise);
             }
         }
         None
     }
 
+    /// One step of [`Self::find`]: the displacement of the images' misfit that is linear about a guess, wherever noise would lead the search.
+    pub fn find_linear(mut self, image: &Spline, guess: Warp, noise: &Noise) -> Option<Match> {
+        let mut warp = guess;
+        self.improve(image, &mut warp, noise)?;
+        // Covariance and similarity are those about the guess.
+        Some(Match {
+            warp,
+            ..self.found(image, guess, noise)?
+        })
+    }
+
+    /// One step; its length in pixels. `None` where it leads too far.
+    fn improve(&mut self, image: &Spline, warp: &mut Warp, noise: &Noise) -> Option<f64> {
+        let sums = self.sums_inside(image, warp)?;
+        let f = warp.deformation_gradient();
+        let q = self.step(&sums, noise);
+        let mut largest = 0.0_f64;
+        for k in 0..self.count {
+            let scale = self.half.powi(-DEGREES[k]);
+            let change = f * Vector2::new(q[2 * k], q[2 * k + 1]);
+            largest += change.norm();
+            warp.terms[k][0] += change.x * scale;
+            warp.terms[k][1] += change.y * scale;
+        }
+        let sound = largest.is_finite() && warp.deformation_gradient().determinant() > 0.05;
+        (sound && largest <= 2.0 * self.half).then_some(largest)
+    }
+
+    /// The sums about a field; pixels that it carries out of the image are left out, and `None` where they are most.
+    fn sums_inside(&mut self, image: &Spline, warp: &Warp) -> Option<Sums> {
+        loop {
+            match self.sums(image, warp) {
+                Ok(sums) => return Some(sums),
+                Err(inside) => {
+                    if (inside.len() as f64) < LEAST_SHARE * self.whole as f64 {
+                        return None;
+                    }
+                    self.matrices =
+                        Matrices::new(&inside, self.half, self.count, self.overlap, &self.noise)?;
+                    self.pixels = inside;
+                }
+            }
+        }
+    }
+
     /// The sums, or the pixels that are inside of the image where some are not.
-    fn sums(
-        &self,
-        image: &Spline,
-        place: &dyn Fn(f64, f64) -> [f64; 2],
-    ) -> Result<Sums, Vec<Pixel>> {
+    fn sums(&self, image: &Spline, warp: &Warp) -> Result<Sums, Vec<Pixel>> {
         let mut sums = Sums {
             count: self.pixels.len() as f64,
             products: [0.0; 12],
@@ -250,12 +247,12 @@ impl Subset {
             square: 0.0,
             product: 0.0,
         };
-        let scale = 1.0 / self.half;
+        let (scale, functions_of_warp) = (1.0 / self.half, warp.functions());
         let mut outside = false;
         let mut is_inside = vec![];
         for (index, pixel) in self.pixels.iter().enumerate() {
             let (x, y) = (f64::from(pixel.x), f64::from(pixel.y));
-            let [u, v] = place(x, y);
+            let [u, v] = warp.at(x, y, functions_of_warp);
             let Some(value) = image.value(self.centre[0] + x + u, self.centre[1] + y + v) else {
                 if !outside {
                     is_inside = vec![true; self.pixels.len()];
@@ -327,8 +324,7 @@ impl Subset {
     }
 
     fn found(&self, image: &Spline, warp: Warp, noise: &Noise) -> Option<Match> {
-        let count = self.count.max(3);
-        let sums = self.sums(image, &|x, y| warp.at(x, y, count)).ok()?;
+        let sums = self.sums(image, &warp).ok()?;
         self.concluded(&sums, warp, noise)
     }
 
@@ -358,7 +354,7 @@ impl Subset {
 
     /// Adds the squares of the residuals, each divided by the variance that a pixel of unit variance gives it.
     pub(super) fn classify(&self, image: &Spline, found: &Match, classes: &mut Classes) {
-        let count = self.count.max(3);
+        let count = found.warp.functions();
         for pixel in &self.pixels {
             let (x, y) = (f64::from(pixel.x), f64::from(pixel.y));
             let [u, v] = found.warp.at(x, y, count);

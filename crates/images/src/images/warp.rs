@@ -68,6 +68,35 @@ impl Warp {
         self.deformation_gradient() - Matrix2::identity()
     }
 
+    /// The number of functions that it is made of.
+    pub fn functions(&self) -> usize {
+        if self.terms[3..].iter().flatten().any(|term| *term != 0.0) {
+            Order::Quadratic.functions()
+        } else {
+            Order::Affine.functions()
+        }
+    }
+
+    /// The quadratic displacement that takes given values, in pixels, on three by three points about the centre: `value` gives them by steps of `half` to
+    /// the right and down.
+    pub fn sampled(half: f64, value: impl Fn(f64, f64) -> [f64; 2]) -> Self {
+        let at = |x: f64, y: f64| Vector2::from(value(x, y));
+        let [middle, left, right] = [at(0.0, 0.0), at(-1.0, 0.0), at(1.0, 0.0)];
+        let [up, down] = [at(0.0, -1.0), at(0.0, 1.0)];
+        let twist = at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0);
+        let terms = [
+            middle,
+            (right - left) / (2.0 * half),
+            (down - up) / (2.0 * half),
+            (right + left - 2.0 * middle) / (2.0 * half * half),
+            twist / (4.0 * half * half),
+            (down + up - 2.0 * middle) / (2.0 * half * half),
+        ];
+        Self {
+            terms: terms.map(Into::into),
+        }
+    }
+
     /// The displacement at a distance from the centre, with so many functions.
     #[inline]
     pub fn at(&self, x: f64, y: f64, count: usize) -> [f64; 2] {

@@ -25,7 +25,9 @@ pub struct ImageSettings {
     /// Points and subsets.
     pub subsets: Settings,
     /// An image of the specimen's region, white on black.
-    pub mask: Option<PathBuf>,
+    pub mask: Option<ImageFile>,
+    /// Images in memory, which are followed instead of those of files.
+    pub in_memory: Vec<ImageFile>,
 }
 
 /// What is to be followed.
@@ -85,7 +87,10 @@ impl ImageRequest<'_> {
     /// [`Error::Input`] with the file, what is wrong and what to do.
     pub fn follow(&self, told: &dyn Fn(&str)) -> Result<TrackedImages, Error> {
         let pixel = self.known_pixel()?;
-        let files = list(self.files)?;
+        let files = match &*self.settings.in_memory {
+            [] => list(self.files)?,
+            images => images.to_vec(),
+        };
         let (first, others) = in_time(&files)?;
         let last = others.last().unwrap_or(first);
         let image = first.read()?;
@@ -157,14 +162,8 @@ impl ImageRequest<'_> {
 
     fn region(&self, size: [usize; 2], pixel: f64) -> Result<Region, Error> {
         if let Some(mask) = &self.settings.mask {
-            let file = ImageFile {
-                path: mask.clone(),
-                page: 0,
-            };
-            return of_file(
-                &file,
-                file.read().and_then(|mask| Region::of_mask(&mask, size)),
-            );
+            let region = mask.read().and_then(|mask| Region::of_mask(&mask, size));
+            return of_file(mask, region);
         }
         let Some(outline) = self.outline else {
             return Ok(Region::whole(size));

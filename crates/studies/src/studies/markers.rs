@@ -134,7 +134,7 @@ impl MarkerStudy {
     /// As [`Self::prepare`].
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
         let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
-        let mut field = images::read_field(&request)?;
+        let (mut field, images) = images::read_field(&request)?;
         let told = request
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
@@ -172,7 +172,7 @@ impl MarkerStudy {
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))
             .flatten();
-        Ok(Self {
+        let mut study = Self {
             card,
             regions,
             thickness: request.thickness,
@@ -188,7 +188,11 @@ impl MarkerStudy {
             doubts: of_reading(doubts, thickness),
             mistake: None,
             unknown_gap,
-        })
+        };
+        if let Some(images) = images {
+            images.measure_about_equilibrium(&mut study);
+        }
+        Ok(study)
     }
 
     /// The frames with their estimates.
