@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::fit::a_law;
-use super::fit_message::{digits, values};
+use super::fit_message::values;
 use super::interrupt;
 use super::parameter_bounds::ParameterBounds;
 use super::progress::tell_files;
@@ -18,7 +18,7 @@ use gelbench_calibration::calibration::{
 };
 use gelbench_mechanics::material::registry::Law;
 use gelbench_report::output::{ResultFolder, write_picture};
-use gelbench_report::results::{NamedGroup, group_json, group_picture, group_table};
+use gelbench_report::results::{NamedGroup, digits, group_json, group_picture, group_table};
 
 #[derive(Args)]
 pub struct GroupArguments {
