@@ -172,15 +172,15 @@ pub(super) fn notes(fit: &Fit) -> Vec<String> {
     let parameter = |(index, own): (usize, &Parameter)| {
         let estimate = quality.estimates.get(index);
         let error = estimate.filter(|_| quality.has_intervals() && !quality.held[index]);
-        let error = error.map_or_else(String::new, |own| {
-            format!(" ± {}", digits(own.standard_error, 2))
-        });
-        let value = format!(
-            "{} = {}{error} {}",
-            own.key,
-            digits(own.value, 4),
-            own.unit()
-        );
+        let number = match error.map(|own| own.standard_error) {
+            Some(error) if error > 0.0 && error < own.value.abs() => {
+                // As many decimals as the error has with two digits.
+                let decimals = (1.0 - error.log10().floor()).max(0.0) as usize;
+                format!("{:.decimals$} ± {error:.decimals$}", own.value)
+            }
+            _ => digits(own.value, 4),
+        };
+        let value = format!("{} = {number} {}", own.key, own.unit());
         value.trim_end_matches([' ', '–']).to_owned()
     };
     let shown = fit.parameters.iter().take(MOST).enumerate();

@@ -182,7 +182,9 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
     let largest = largest.fold(0.0, f64::max);
     let stress = format!("{} stress", fit.stress_measure().title());
     let over = |title: String, x: Axis, lines| chart(title, x, &stress, largest, lines);
-    let title = format!("{} fitted to {}", title_case(fit.law.name), names(tests));
+    let softening = fit.softened.as_ref().map_or("", |_| " with softening");
+    let law = title_case(fit.law.name);
+    let title = format!("{law}{softening} fitted to {}", names(tests));
     let mut charts = if let Some(relaxed) = &fit.relaxed {
         let times = courses.iter().flat_map(|course| &course.rows);
         let [shortest, longest] = extremes(times.map(|row| row[TIME]).filter(|time| *time > 0.0));

@@ -15,6 +15,9 @@ const WIDTH: u32 = 860;
 const BELOW: f64 = 15.0;
 const BESIDE: f64 = 8.0;
 
+/// Between a label and the numbers of a vertical axis.
+const APART: f64 = 4.0;
+
 /// Charts one below the other as one picture, with their heights in points.
 pub(super) fn stacked(
     charts: &[(LineChart, u32)],
@@ -134,7 +137,7 @@ fn beside(axis: &Scaled, look: Look) -> f64 {
     let numbers = axis.ticks.at.iter();
     let numbers = numbers.map(|(_, label)| look.number().width(label));
     let label = look.name().line_height() * axis.label.len() as f64;
-    EDGE + label + numbers.fold(0.0, f64::max) + BESIDE
+    EDGE + label + APART + numbers.fold(0.0, f64::max) + BESIDE
 }
 
 /// Of every chart the limits of its horizontal axis, which it shares with those above and below that have the same.
@@ -153,7 +156,7 @@ fn same_names(one: &LineChart, other: &LineChart) -> bool {
     let names = |chart: &LineChart| -> Vec<_> {
         let named = chart.lines.iter().filter(|line| !line.label.is_empty());
         named
-            .map(|line| (line.label.clone(), line.colour, line.stroke))
+            .map(|line| (line.label.clone(), line.colour))
             .collect()
     };
     names(one) == names(other) && one.band == other.band && other.notes.is_empty()
@@ -298,15 +301,15 @@ impl<'a> Frame<'a> {
             let at = [0.5 * (left + right), bottom + below];
             sheet.write_lines(&self.x.label, at, Align::Centre, look.name());
         }
-        let numbers = self.y.ticks.at.iter();
-        let widest = numbers.map(|(_, label)| look.number().width(label));
         for (at, label) in &self.y.ticks.at {
             let [_, y] = self.place([0.0, *at]);
             sheet.axis(&[[left - 4.0, y], [left, y]]);
             sheet.write(label, [left - BESIDE, y], Align::Right, look.number());
         }
-        let beside = BESIDE + widest.fold(0.0, f64::max) + 0.5 * look.name().line_height();
-        let at = [left - beside, 0.5 * (top + bottom)];
+        // In line with those of the charts above and below.
+        let lines = self.y.label.len() as f64;
+        let last = EDGE + (lines - 0.5) * look.name().line_height();
+        let at = [last, 0.5 * (top + bottom)];
         sheet.write_upwards(&self.y.label, at, look.name());
     }
 
@@ -319,6 +322,8 @@ impl<'a> Frame<'a> {
         }
         sheet.put(line.pen(look).and_then(|pen| Mark::line(&places, pen)));
         let radius = match (places.len(), look.is_narrow()) {
+            // A curve below can be seen between them.
+            (201.., _) => 1.5,
             (61.., _) => 2.0,
             (_, true) => 3.0,
             (_, false) => 4.0,
@@ -356,10 +361,8 @@ impl Line {
     /// Its markers at places; `None` where it has none.
     pub(super) fn markers(&self, places: &[[f64; 2]], radius: f64, look: Look) -> Option<Mark> {
         let colour = look.line(self.colour);
-        // What many points lie on can be seen through them.
-        let cover = if places.len() > 200 { 130 } else { 255 };
         match self.stroke {
-            Stroke::Marked | Stroke::Points => Mark::discs(places, radius, colour, cover),
+            Stroke::Marked | Stroke::Points => Mark::discs(places, radius, colour),
             Stroke::Ringed => Mark::rings(places, radius + 2.0, Pen::new(colour, 2.0)),
             Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => None,
         }

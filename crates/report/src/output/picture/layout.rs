@@ -10,8 +10,9 @@ use crate::results::Scale;
 /// The width of a picture for a screen in points.
 const WIDTH: u32 = 960;
 
-/// The height of the words above a panel.
+/// The height of the words above a panel, and of a panel without any.
 pub(super) const LABEL_HEIGHT: f64 = 24.0;
+const NO_LABEL_HEIGHT: f64 = 6.0;
 
 /// A plate that is wider than long is drawn no higher than this.
 const HIGHEST_PLATE: f64 = 420.0;
@@ -31,6 +32,7 @@ pub(super) struct Layout {
     low: [f64; 2],
     high: [f64; 2],
     points_per_mm: f64,
+    above: f64,
     x: Ticks,
     y: Ticks,
     width: f64,
@@ -64,6 +66,7 @@ impl Layout {
             low,
             high,
             points_per_mm,
+            above: LABEL_HEIGHT,
             x,
             y,
             width: if look.is_printed() {
@@ -72,6 +75,12 @@ impl Layout {
                 (left + needed + GAP + EDGE).min(whole)
             },
         }
+    }
+
+    /// The same of panels without words above them.
+    pub fn without_labels(self) -> Self {
+        let above = NO_LABEL_HEIGHT;
+        Self { above, ..self }
     }
 
     /// The whole picture's width.
@@ -84,7 +93,7 @@ impl Layout {
     }
 
     pub fn panel_top(&self, index: usize) -> f64 {
-        self.top + (LABEL_HEIGHT + self.size(1)) * index as f64
+        self.top + (self.above + self.size(1)) * index as f64
     }
 
     /// The lower end of the axis below so many panels.
@@ -99,7 +108,7 @@ impl Layout {
 
     /// A place on the plate of a panel.
     pub fn place(&self, panel: usize, [x, y]: [f64; 2]) -> [f64; 2] {
-        let top = self.panel_top(panel) + LABEL_HEIGHT;
+        let top = self.panel_top(panel) + self.above;
         [
             self.left + (x - self.low[0]) * self.points_per_mm,
             top + (self.high[1] - y) * self.points_per_mm,
@@ -113,7 +122,7 @@ impl Layout {
         for panel in 0..panels {
             self.draw_width_axis(sheet, panel);
         }
-        let middle = 0.5 * (self.panel_top(0) + LABEL_HEIGHT + self.panel_top(panels));
+        let middle = 0.5 * (self.panel_top(0) + self.above + self.panel_top(panels));
         let name = self.y.numbers.labelled("y [mm]");
         let at = [EDGE + 0.5 * self.look.name().line_height(), middle];
         sheet.write_upwards(&[name], at, self.look.name());

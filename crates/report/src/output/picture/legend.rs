@@ -34,6 +34,9 @@ struct Entry<'a> {
 const MARGIN: f64 = 8.0;
 const APART: f64 = 18.0;
 
+/// Above names below an area.
+const ABOVE: f64 = 4.0;
+
 /// All names of a chart where they are to stand.
 pub(super) struct Legend<'a> {
     look: Look,
@@ -60,8 +63,8 @@ impl<'a> Legend<'a> {
         let wide = entries.iter().map(|entry| entry.width).fold(0.0, f64::max);
         let high: f64 = entries.iter().map(height).sum();
         let size = [wide, high].map(|length| length + 2.0 * MARGIN);
-        let inside = room(area, size, is_free);
-        let (mut at, mut placed) = ([left, bottom + 0.5 * line], Vec::new());
+        let inside = room(area, size, is_free).filter(|_| !entries.is_empty());
+        let (mut at, mut placed) = ([left, bottom + 0.5 * line + ABOVE], Vec::new());
         if let Some(inside) = inside {
             at = inside.low.map(|end| end + MARGIN);
             at[1] += 0.5 * line;

@@ -45,8 +45,8 @@ impl Pen {
 pub(super) enum Mark {
     /// Lines of one pen, which do not darken each other where they cross.
     Lines(Path, Pen),
-    /// An area of a colour, which covers so much of what is below, up to 255.
-    Area(Path, Colour, u8),
+    /// An area of a colour.
+    Area(Path, Colour),
     /// Words.
     Words(Words),
 }
@@ -71,7 +71,7 @@ impl Mark {
         let mut path = PathBuilder::new();
         follow(&mut path, corners);
         path.close();
-        path.finish().map(|path| Self::Area(path, colour, 255))
+        path.finish().map(|path| Self::Area(path, colour))
     }
 
     /// The area of a rectangle.
@@ -80,8 +80,8 @@ impl Mark {
     }
 
     /// Discs around places, filled with a colour.
-    pub fn discs(centres: &[[f64; 2]], radius: f64, colour: Colour, cover: u8) -> Option<Self> {
-        circles(centres, radius).map(|path| Self::Area(path, colour, cover))
+    pub fn discs(centres: &[[f64; 2]], radius: f64, colour: Colour) -> Option<Self> {
+        circles(centres, radius).map(|path| Self::Area(path, colour))
     }
 
     /// Rings around places.

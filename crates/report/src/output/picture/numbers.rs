@@ -161,9 +161,12 @@ fn powers([low, high]: [f64; 2], most: usize) -> Option<Vec<(f64, String)>> {
         ticks
     });
     let chosen = choices.find(|ticks| (FEWEST..=most.max(5)).contains(&ticks.len()))?;
-    let is_plain = chosen
+    // Decades are always powers of ten, so that all axes of a picture have them alike.
+    let has_parts = chosen.iter().any(|(mantissa, _)| *mantissa != 1.0);
+    let is_small = chosen
         .iter()
         .all(|(_, exponent)| (-2..=3).contains(exponent));
+    let is_plain = has_parts && is_small;
     let label = |tick: &(f64, i32)| {
         if is_plain {
             plain(tick.0 * 10f64.powi(tick.1))
@@ -324,7 +327,7 @@ mod tests {
     fn logarithmic_ticks_are_written_alike_and_three_at_least() {
         let logarithmic = |low, high| labels([low, high], Scale::Logarithmic);
         assert_eq!(logarithmic(-3.7, 0.1), ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
-        assert_eq!(logarithmic(-2.0, 0.1), ["0.01", "0.1", "1"]);
+        assert_eq!(logarithmic(-1.3, 0.1), ["0.1", "0.3", "1"]);
         assert_eq!(logarithmic(-3.8, -2.9), ["2×10⁻⁴", "5×10⁻⁴", "10⁻³"]);
         assert_eq!(logarithmic(-12.0, 0.0)[..2], ["10⁻¹²", "10⁻¹⁰"]);
         assert!(logarithmic(0.31, 0.36).len() >= 3);

@@ -40,6 +40,7 @@ impl MeshFigure {
             widest,
             self.cells.iter().flatten().copied(),
         )
+        .without_labels()
     }
 
     /// What is written around the mesh, and the size of the picture.

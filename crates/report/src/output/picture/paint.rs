@@ -100,7 +100,7 @@ impl Painter {
                     self.fill(&outlines, pen.colour, pen.cover);
                 }
             }
-            Mark::Area(path, colour, cover) => self.fill(path, *colour, *cover),
+            Mark::Area(path, colour) => self.fill(path, *colour, 255),
             Mark::Words(words) => {
                 if let Some(curves) = letters::curves(words) {
                     self.fill(&curves, words.colour, 255);

@@ -119,8 +119,8 @@ impl Vectors {
             content.save_state();
             match mark {
                 Mark::Lines(path, pen) => draw_lines(&mut content, path, *pen, covers),
-                Mark::Area(path, colour, cover) => {
-                    covers.set(&mut content, *cover);
+                Mark::Area(path, colour) => {
+                    covers.set(&mut content, 255);
                     fill_with(&mut content, *colour);
                     follow(&mut content, path);
                     content.fill_nonzero();

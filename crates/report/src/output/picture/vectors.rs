@@ -84,7 +84,6 @@ fn hexadecimal([red, green, blue]: Colour) -> String {
 }
 
 fn element(mark: &Mark) -> DrawResult<String> {
-    let share = |cover: u8| f64::from(cover) / 255.0;
     Ok(match mark {
         Mark::Lines(path, pen) => {
             let caps = match pen.dashes {
@@ -95,16 +94,14 @@ fn element(mark: &Mark) -> DrawResult<String> {
                 "<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{:.3}\" {caps} stroke-linejoin=\"round\" d=\"{}\"/>\n",
                 hexadecimal(pen.colour),
                 pen.width,
-                share(pen.cover),
+                f64::from(pen.cover) / 255.0,
                 data(path)?
             )
         }
-        Mark::Area(path, colour, cover) => format!(
-            "<path fill=\"{}\" fill-opacity=\"{:.3}\" d=\"{}\"/>\n",
-            hexadecimal(*colour),
-            share(*cover),
-            data(path)?
-        ),
+        Mark::Area(path, colour) => {
+            let colour = hexadecimal(*colour);
+            format!("<path fill=\"{colour}\" d=\"{}\"/>\n", data(path)?)
+        }
         Mark::Words(words) => {
             let [x, y] = words.start();
             let turned = if words.is_turned {
