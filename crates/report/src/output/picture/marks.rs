@@ -175,19 +175,31 @@ pub(super) struct Words {
 const HALF_A_CAPITAL: f64 = 0.365;
 
 impl Words {
-    /// The left end of their base line before they are turned.
+    /// The place on their base line that they are aligned to.
+    pub fn base(&self) -> [f64; 2] {
+        let down = HALF_A_CAPITAL * f64::from(self.letters.size);
+        let [x, y] = self.at;
+        if self.is_turned {
+            [x + down, y]
+        } else {
+            [x, y + down]
+        }
+    }
+
+    /// The end of their base line at which they begin.
     pub fn start(&self) -> [f64; 2] {
         let width = self.letters.width(&self.words);
-        let left = match self.align {
+        let before = match self.align {
             Align::Left => 0.0,
-            Align::Centre => -0.5 * width,
-            Align::Right => -width,
+            Align::Centre => 0.5 * width,
+            Align::Right => width,
         };
-        let down = HALF_A_CAPITAL * f64::from(self.letters.size);
+        let [x, y] = self.base();
         if self.is_turned {
-            return [self.at[0] + down, self.at[1] - left];
+            [x, y + before]
+        } else {
+            [x - before, y]
         }
-        [self.at[0] + left, self.at[1] + down]
     }
 
     /// What they cover, with their accents and descenders.

@@ -10,7 +10,7 @@ use tiny_skia::{Path, PathSegment, Pixmap};
 use super::encode::encode;
 use super::letters::Face;
 use super::look::MILLIMETRES;
-use super::marks::{Colour, Letters, Mark, Words};
+use super::marks::{Align, Colour, Letters, Mark, Words};
 use super::{DrawResult, Size};
 
 /// The parts of a picture, from below.
@@ -103,14 +103,19 @@ fn element(mark: &Mark) -> DrawResult<String> {
             format!("<path fill=\"{colour}\" d=\"{}\"/>\n", data(path)?)
         }
         Mark::Words(words) => {
-            let [x, y] = words.start();
+            let [x, y] = words.base();
+            let anchor = match words.align {
+                Align::Left => "start",
+                Align::Centre => "middle",
+                Align::Right => "end",
+            };
             let turned = if words.is_turned {
                 format!(" transform=\"rotate(-90 {x:.2} {y:.2})\"")
             } else {
                 String::new()
             };
             format!(
-                "<text x=\"{x:.2}\" y=\"{y:.2}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"{}\" font-weight=\"{}\" \
+                "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"{}\" font-weight=\"{}\" \
                  fill=\"{}\"{turned}>{}</text>\n",
                 words.letters.size,
                 weight(words.letters),
