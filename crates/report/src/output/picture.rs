@@ -14,6 +14,7 @@ mod bar;
 mod canvas;
 mod charts;
 mod colours;
+mod design;
 mod encode;
 mod fields;
 mod layout;
@@ -32,12 +33,6 @@ mod vectors;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct PictureFault(String);
-
-/// Why a picture could not be drawn, in the words of a library.
-type DrawResult<T> = Result<T, Box<dyn std::error::Error>>;
-
-/// Width and height in points of the design.
-type Size = (u32, u32);
 
 /// A picture of a report, or the warning in its place.
 pub type Drawn = Result<Vec<u8>, Diagnostic>;

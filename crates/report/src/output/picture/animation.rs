@@ -3,7 +3,7 @@
 use png::{BlendOp, DisposeOp, Writer};
 use tiny_skia::Pixmap;
 
-use super::DrawResult;
+use super::design::DrawResult;
 use super::encode::{Part, colours, encoder, whole};
 use super::look::Look;
 use super::paint::Painter;

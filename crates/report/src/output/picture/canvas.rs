@@ -1,11 +1,12 @@
 //! A picture of marks above what is shaded, as a file of any format.
 
+use super::design::{DrawResult, Size};
 use super::encode::encode;
+use super::letters::Letters;
 use super::look::Look;
-use super::marks::{Align, Letters, Mark, Words};
+use super::marks::{Align, Mark, Words};
 use super::paint::Painter;
 use super::vectors::Vectors;
-use super::{DrawResult, Size};
 use crate::results::PictureFormat;
 
 /// Paints what is too much to be drawn on an area of `size` points, draws marks above it, and returns a file of the format.

@@ -1,11 +1,12 @@
 //! Line charts one below the other. Everything is placed by the measured size of its words.
 
 use super::canvas::{EDGE, GAP, Sheet, Title, render};
+use super::design::{DrawResult, Size};
 use super::legend::{JOINS, Legend};
 use super::look::Look;
 use super::marks::{Align, Mark, Pen, Rectangle};
 use super::numbers::Ticks;
-use super::{DrawResult, Size, thin};
+use super::thin;
 use crate::results::{Axis, Line, LineChart, PictureFormat, Stroke};
 
 /// The width of a picture for a screen in points.
@@ -106,6 +107,9 @@ impl<'a> Plan<'a> {
                 .is_some_and(|above| same_names(above.chart, chart));
             top = frame.finish(look, is_told, left, f64::from(width) - EDGE);
             frames.push(frame);
+            if !frames[frames.len() - 1].is_above_its_like {
+                top = place_below(&mut frames, top);
+            }
         }
         Self {
             size: (width, (top - GAP + EDGE) as u32),
@@ -149,6 +153,21 @@ fn shared_ranges(charts: &[(LineChart, u32)]) -> Vec<[f64; 2]> {
         alike.iter().map(move |_| limits)
     });
     ranges.collect()
+}
+
+/// Places the names that stand below the last chart of those with a common axis; the upper end of what is below them.
+fn place_below(frames: &mut [Frame], top: f64) -> f64 {
+    let alike = frames.iter().rev().skip(1);
+    let alike = alike.take_while(|frame| frame.is_above_its_like).count();
+    let last = frames.len() - 1;
+    let mut bottom = top - GAP;
+    for frame in &mut frames[last - alike..last] {
+        if let Some(legend) = &mut frame.legend {
+            legend.move_to(bottom);
+            bottom += legend.below;
+        }
+    }
+    bottom + GAP
 }
 
 /// Whether two charts have the same names in their legends.
@@ -218,9 +237,14 @@ impl<'a> Frame<'a> {
             })
         };
         let legend = Legend::of(self.chart, look, self.area, &is_free, [left, right, bottom]);
-        let end = bottom + legend.below + GAP;
+        // Names of charts with a common axis stand below all of them.
+        let below = if self.is_above_its_like {
+            0.0
+        } else {
+            legend.below
+        };
         self.legend = Some(legend);
-        end
+        bottom + below + GAP
     }
 
     /// Where a point is whose positions on the axes are given.

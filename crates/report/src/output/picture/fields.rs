@@ -2,11 +2,11 @@
 
 use super::bar::Bar;
 use super::canvas::{EDGE, GAP, Sheet, render};
+use super::design::{DrawResult, Size};
 use super::layout::{LABEL_HEIGHT, Layout};
 use super::look::Look;
 use super::marks::{Align, Mark, Pen};
 use super::paint::Painter;
-use super::{DrawResult, Size};
 use crate::results::{FieldFigure, Panel, PictureFormat, Values};
 
 /// The width of the outlines of the sheet, deformed and at rest, and of lines of equal values.

@@ -164,8 +164,8 @@ impl Layout {
     }
 }
 
-/// What ticks take between numbers and a panel.
-const NUMBERS: f64 = AWAY + TICK + 5.0;
+/// What ticks take between numbers and a panel, and the gap between numbers and a label.
+const NUMBERS: f64 = AWAY + TICK + 9.0;
 
 /// The ticks of an axis of a height, of a low one the ends alone.
 fn vertical(range: [f64; 2], height: f64) -> Ticks {

@@ -45,6 +45,8 @@ pub(super) struct Legend<'a> {
     pub inside: Option<Rectangle>,
     /// The height of what stands below the area.
     pub below: f64,
+    /// The upper end of that.
+    top: f64,
 }
 
 impl<'a> Legend<'a> {
@@ -89,6 +91,17 @@ impl<'a> Legend<'a> {
             entries: placed,
             inside,
             below: if inside.is_some() { 0.0 } else { lowest },
+            top: bottom,
+        }
+    }
+
+    /// Moves what stands below the area to another upper end.
+    pub fn move_to(&mut self, top: f64) {
+        if self.inside.is_none() {
+            for (_, at) in &mut self.entries {
+                at[1] += top - self.top;
+            }
+            self.top = top;
         }
     }
 

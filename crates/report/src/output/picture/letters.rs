@@ -5,7 +5,49 @@ use std::sync::LazyLock;
 use ab_glyph::{Font, FontRef, GlyphId, OutlineCurve, Point};
 use tiny_skia::{Path, PathBuilder};
 
-use super::marks::{Letters, Words};
+/// The size and weight of letters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Letters {
+    pub size: u32,
+    pub is_bold: bool,
+}
+
+impl Letters {
+    /// Regular letters.
+    pub fn regular(size: u32) -> Self {
+        let is_bold = false;
+        Self { size, is_bold }
+    }
+
+    /// Bold letters.
+    pub fn bold(size: u32) -> Self {
+        let is_bold = true;
+        Self { size, is_bold }
+    }
+
+    /// How wide words are in points.
+    pub fn width(self, words: &str) -> f64 {
+        width(words, self)
+    }
+
+    /// From one line of words to the next.
+    pub fn line_height(self) -> f64 {
+        1.3 * f64::from(self.size)
+    }
+
+    /// Words in lines of some width; a word that is too long has a line of its own.
+    pub fn lines(self, words: &str, width: f64) -> Vec<String> {
+        let mut lines: Vec<String> = Vec::new();
+        for word in words.split(' ') {
+            let longer = lines.last().map(|line| format!("{line} {word}"));
+            match longer.filter(|line| self.width(line) <= width) {
+                Some(longer) => *lines.last_mut().expect("a line was made longer") = longer,
+                None => lines.push(word.to_owned()),
+            }
+        }
+        lines
+    }
+}
 
 /// A font: its name, and its file.
 pub(super) struct Face {
@@ -56,17 +98,22 @@ pub(super) fn width(words: &str, letters: Letters) -> f64 {
     f64::from(thousandths) / 1000.0 * f64::from(letters.size)
 }
 
-/// Words as curves; `None` of words without any.
-pub(super) fn curves(words: &Words) -> Option<Path> {
-    let face = Face::of(words.letters);
-    let scale = words.letters.size as f32 / face.units_per_em();
-    let [left, base] = words.start().map(|end| end as f32);
+/// Words as curves from the beginning of their base line on, which may run upwards; `None` of words without any.
+pub(super) fn curves(
+    words: &str,
+    letters: Letters,
+    start: [f64; 2],
+    is_turned: bool,
+) -> Option<Path> {
+    let face = Face::of(letters);
+    let scale = letters.size as f32 / face.units_per_em();
+    let [left, base] = start.map(|end| end as f32);
     let mut path = PathBuilder::new();
     let mut along = 0.0;
-    for letter in words.words.chars().map(|letter| face.font.glyph_id(letter)) {
+    for letter in words.chars().map(|letter| face.font.glyph_id(letter)) {
         let at = |point: Point| {
             let [x, y] = [scale * (point.x + along), scale * point.y];
-            if words.is_turned {
+            if is_turned {
                 (left - y, base - x)
             } else {
                 (left + x, base - y)
@@ -121,42 +168,32 @@ fn draw(
 
 #[cfg(test)]
 mod tests {
-    use super::super::marks::Align;
     use super::*;
 
     #[test]
-    fn letters_are_as_wide_as_they_are_measured_and_around_their_place() {
-        let mut words = Words {
-            words: "HIH".into(),
-            at: [100.0, 50.0],
-            align: Align::Centre,
-            letters: Letters::regular(20),
-            colour: [0; 3],
-            is_turned: false,
+    fn letters_are_as_wide_as_they_are_measured_from_their_start_on() {
+        let letters = Letters::regular(20);
+        let width = width("HIH", letters) as f32;
+        let drawn = |is_turned| {
+            let path = curves("HIH", letters, [100.0, 50.0], is_turned);
+            path.unwrap().bounds()
         };
-        for is_turned in [false, true] {
-            words.is_turned = is_turned;
-            let (drawn, told) = (curves(&words).unwrap().bounds(), words.bounds());
-            let middle = [drawn.left() + drawn.right(), drawn.top() + drawn.bottom()];
-            assert!((0.5 * middle[0] - 100.0).abs() < 0.5, "{drawn:?}");
-            assert!((0.5 * middle[1] - 50.0).abs() < 0.5, "{drawn:?}");
-            assert!(f64::from(drawn.left()) > told.low[0]);
-            assert!(f64::from(drawn.bottom()) < told.high[1]);
-        }
-        let width = |words: &str| width(words, Letters::regular(20));
-        assert!((width("mm") - 2.0 * width("m")).abs() < 1e-3);
+        let [flat, turned] = [false, true].map(drawn);
+        assert!(flat.left() > 100.0 && flat.right() < 100.0 + width);
+        assert!(flat.width() > 0.8 * width && flat.bottom() <= 50.0);
+        assert!(turned.bottom() < 50.0 && turned.top() > 50.0 - width);
+        assert!(turned.height() > 0.8 * width && turned.right() <= 100.0);
+        // Of a space there is nothing to be seen.
+        assert!(curves(" ", letters, [0.0; 2], false).is_none());
     }
 
     #[test]
-    fn spaces_have_no_curves() {
-        let words = Words {
-            words: " ".into(),
-            at: [0.0; 2],
-            align: Align::Left,
-            letters: Letters::bold(20),
-            colour: [0; 3],
-            is_turned: false,
-        };
-        assert!(curves(&words).is_none());
+    fn words_are_broken_where_they_have_no_room() {
+        let bold = Letters::bold(17);
+        assert_eq!(bold.lines("Von Mises stress", 900.0), ["Von Mises stress"]);
+        assert_eq!(
+            bold.lines("Von Mises stress", 110.0),
+            ["Von Mises", "stress"]
+        );
     }
 }

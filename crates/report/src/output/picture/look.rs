@@ -1,6 +1,7 @@
 //! How a picture looks: its width, its colours, its letters.
 
-use super::marks::{Colour, Letters, Pen};
+use super::letters::Letters;
+use super::marks::{Colour, Pen};
 use crate::results::{PALETTE, Palette, PictureStyle, PictureWidth};
 
 /// Millimetres of a printed picture for each point of the design: letters of 12 points become 7.2 of a printer's.

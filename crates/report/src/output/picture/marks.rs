@@ -2,7 +2,7 @@
 
 use tiny_skia::{Path, PathBuilder};
 
-use super::letters;
+use super::letters::{Letters, curves};
 
 /// Red, green and blue.
 pub(super) type Colour = [u8; 3];
@@ -115,50 +115,6 @@ pub(super) enum Align {
     Right,
 }
 
-/// The size and weight of letters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Letters {
-    pub size: u32,
-    pub is_bold: bool,
-}
-
-impl Letters {
-    /// Regular letters.
-    pub fn regular(size: u32) -> Self {
-        let is_bold = false;
-        Self { size, is_bold }
-    }
-
-    /// Bold letters.
-    pub fn bold(size: u32) -> Self {
-        let is_bold = true;
-        Self { size, is_bold }
-    }
-
-    /// How wide words are in points.
-    pub fn width(self, words: &str) -> f64 {
-        letters::width(words, self)
-    }
-
-    /// From one line of words to the next.
-    pub fn line_height(self) -> f64 {
-        1.3 * f64::from(self.size)
-    }
-
-    /// Words in lines of some width; a word that is too long has a line of its own.
-    pub fn lines(self, words: &str, width: f64) -> Vec<String> {
-        let mut lines: Vec<String> = Vec::new();
-        for word in words.split(' ') {
-            let longer = lines.last().map(|line| format!("{line} {word}"));
-            match longer.filter(|line| self.width(line) <= width) {
-                Some(longer) => *lines.last_mut().expect("a line was made longer") = longer,
-                None => lines.push(word.to_owned()),
-            }
-        }
-        lines
-    }
-}
-
 /// One line of words, its middle height at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Words {
@@ -200,6 +156,11 @@ impl Words {
         } else {
             [x - before, y]
         }
+    }
+
+    /// Their outlines; `None` of words without any.
+    pub fn curves(&self) -> Option<Path> {
+        curves(&self.words, self.letters, self.start(), self.is_turned)
     }
 
     /// What they cover, with their accents and descenders.
@@ -277,15 +238,5 @@ mod tests {
         assert!(!inside.meets([[-1.0, 1.9], [1.0, 3.0]]));
         assert!(!inside.meets([[5.0, -9.0], [5.0, 9.0]]));
         assert!(!inside.meets([[5.0, 1.0], [9.0, 1.0]]));
-    }
-
-    #[test]
-    fn words_are_broken_where_they_have_no_room() {
-        let bold = Letters::bold(17);
-        assert_eq!(bold.lines("Von Mises stress", 900.0), ["Von Mises stress"]);
-        assert_eq!(
-            bold.lines("Von Mises stress", 110.0),
-            ["Von Mises", "stress"]
-        );
     }
 }

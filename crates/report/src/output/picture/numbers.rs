@@ -1,6 +1,6 @@
 //! Round numbers, and how axes and colour bars write them.
 
-use super::marks::Letters;
+use super::letters::Letters;
 use crate::results::Scale;
 use crate::statistics::extremes;
 

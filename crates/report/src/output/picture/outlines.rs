@@ -1,11 +1,11 @@
 //! Meshes by the outlines of their cells, and their named groups.
 
 use super::canvas::{EDGE, GAP, Sheet, render};
+use super::design::{DrawResult, Size};
 use super::layout::Layout;
 use super::look::Look;
 use super::marks::{Align, Colour, Mark, Pen, Rectangle};
 use super::paint::Painter;
-use super::{DrawResult, Size};
 use crate::results::{MeshFigure, NamedLines, PALETTE, PictureFormat};
 
 const ROW_HEIGHT: f64 = 20.0;

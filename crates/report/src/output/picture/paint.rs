@@ -2,8 +2,7 @@
 
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, Pixmap, Stroke, StrokeDash, Transform};
 
-use super::DrawResult;
-use super::letters;
+use super::design::DrawResult;
 use super::marks::{Colour, Mark, Pen};
 use crate::statistics::extremes;
 
@@ -102,7 +101,7 @@ impl Painter {
             }
             Mark::Area(path, colour) => self.fill(path, *colour, 255),
             Mark::Words(words) => {
-                if let Some(curves) = letters::curves(words) {
+                if let Some(curves) = words.curves() {
                     self.fill(&curves, words.colour, 255);
                 }
             }

@@ -12,11 +12,11 @@ use pdf_writer::types::{
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
 use tiny_skia::{Path, PathSegment};
 
-use super::DrawResult;
+use super::design::DrawResult;
 use super::encode::{colours, whole};
-use super::letters::Face;
+use super::letters::{Face, Letters};
 use super::look::MILLIMETRES;
-use super::marks::{Colour, Letters, Mark, Pen, Words};
+use super::marks::{Colour, Mark, Pen, Words};
 use super::vectors::Vectors;
 
 /// Points of a printer for each point of the design.

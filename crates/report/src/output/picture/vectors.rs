@@ -7,11 +7,11 @@ use base64::engine::general_purpose::STANDARD;
 use quick_xml::escape::escape;
 use tiny_skia::{Path, PathSegment, Pixmap};
 
+use super::design::{DrawResult, Size};
 use super::encode::encode;
-use super::letters::Face;
+use super::letters::{Face, Letters};
 use super::look::MILLIMETRES;
-use super::marks::{Align, Colour, Letters, Mark, Words};
-use super::{DrawResult, Size};
+use super::marks::{Align, Colour, Mark, Words};
 
 /// The parts of a picture, from below.
 pub(super) struct Vectors {
