@@ -51,6 +51,7 @@ mod materials;
 mod message;
 mod new_card;
 mod parameter_bounds;
+mod pictures;
 mod progress;
 mod reference;
 mod schema;

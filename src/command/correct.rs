@@ -19,7 +19,6 @@ mod frames;
 mod job;
 mod joint;
 mod options;
-mod pictures;
 mod request;
 pub mod values;
 

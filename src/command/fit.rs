@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::choice::one_of;
 use super::parameter_bounds::{ParameterBounds, bounds};
+use super::pictures::StyleOptions;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
@@ -22,7 +23,7 @@ use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::card::FitRecord;
 use gelbench_mechanics::material::registry::{CARDS, DATA, LAWS, Law};
 use gelbench_report::output::{self, ResultFolder};
-use gelbench_report::results::{Drawing, fit_json, fit_picture};
+use gelbench_report::results::{Drawing, PictureStyle, fit_json, fit_picture};
 
 #[derive(Args)]
 #[command(group = ArgGroup::new("laws").required(true))]
@@ -66,6 +67,8 @@ pub struct FitArguments {
     reading: ReadingArguments,
     #[command(flatten)]
     printed: Printed,
+    #[command(flatten)]
+    style: StyleOptions,
 }
 
 /// A card by its name or path.
@@ -117,6 +120,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         data: &arguments.data,
         reading,
         base: arguments.card.as_deref(),
+        style: arguments.style.style(),
     };
     let warning = written.into_folder(folder, &stem)?;
     warn(warning.as_slice());
@@ -221,12 +225,14 @@ struct Written<'a> {
     reading: Statements,
     /// The card on top of whose law softening was fitted.
     base: Option<&'a str>,
+    style: PictureStyle,
 }
 
 impl Written<'_> {
     /// Writes card, figures and picture, all of them or none; returns a warning where the picture cannot be drawn.
     fn into_folder(self, folder: &Path, stem: &str) -> Result<Option<Diagnostic>, Error> {
-        let [card, json, png] = ["toml", "json", "png"].map(|ending| format!("{stem}.{ending}"));
+        let [card, json, png, svg, pdf] =
+            ["toml", "json", "png", "svg", "pdf"].map(|ending| format!("{stem}.{ending}"));
         let files: Vec<String> = self
             .data
             .iter()
@@ -235,7 +241,7 @@ impl Written<'_> {
         guard(
             &folder.join(&card),
             &files,
-            &[&png, &json].map(|name| folder.join(name)),
+            &[&png, &svg, &pdf, &json].map(|name| folder.join(name)),
         )?;
         let inputs: Vec<&Path> = self.data.iter().map(PathBuf::as_path).collect();
         let mut results = ResultFolder::open(folder, &format!("materials fit {stem}"), &inputs)?;
@@ -254,7 +260,7 @@ impl Written<'_> {
         let text = calibration::card_text(self.fit, self.tests, &provenance);
         let figures = fit_json(self.fit, self.tests);
         let picture = fit_picture(self.fit, self.tests);
-        let warning = add_law(&mut results, stem, &text, &figures, &picture)?;
+        let warning = add_law(&mut results, stem, &text, &figures, (&picture, &self.style))?;
         tell_files(&results.finish()?);
         Ok(warning)
     }
@@ -266,11 +272,11 @@ pub fn add_law(
     stem: &str,
     text: &str,
     figures: &Value,
-    picture: &Drawing,
+    (picture, style): (&Drawing, &PictureStyle),
 ) -> Result<Option<Diagnostic>, Error> {
     results.add(&format!("{stem}.toml"), text.as_bytes())?;
     results.add(&format!("{stem}.json"), format!("{figures:#}\n").as_bytes())?;
-    Ok(output::write_picture(results, &format!("{stem}.png"), picture)?.err())
+    output::write_picture(results, stem, picture, style)
 }
 
 /// What was not written by a fit to the same data, or was changed since, is never replaced by one.

@@ -5,6 +5,7 @@ use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::material::curve::{Mode, samples};
 use gelbench_mechanics::material::parameters::Parameter;
+use gelbench_report::results::digits;
 
 /// Parameters, figures, stability, predictions and warnings of a fit.
 pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
@@ -201,19 +202,6 @@ fn figures(fit: &Fit) -> String {
         fit.fitted.youngs_modulus(),
         fit.fitted.shear_modulus()
     )
-}
-
-/// A number with so many significant digits.
-pub fn digits(value: f64, digits: i32) -> String {
-    let exponent = value.abs().log10().floor();
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    if !(-5.0..=6.0).contains(&exponent) {
-        return format!("{value:.*e}", digits as usize - 1);
-    }
-    let decimals = (digits - 1 - exponent as i32).max(0) as usize;
-    format!("{value:.decimals$}")
 }
 
 fn correlation(fit: &Fit) -> String {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::fit::a_law;
-use super::fit_message::{digits, values};
+use super::fit_message::values;
 use super::interrupt;
 use super::parameter_bounds::ParameterBounds;
+use super::pictures::StyleOptions;
 use super::progress::tell_files;
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
@@ -18,7 +19,9 @@ use gelbench_calibration::calibration::{
 };
 use gelbench_mechanics::material::registry::Law;
 use gelbench_report::output::{ResultFolder, write_picture};
-use gelbench_report::results::{NamedGroup, group_json, group_picture, group_table};
+use gelbench_report::results::{
+    NamedGroup, PictureStyle, digits, group_json, group_picture, group_table,
+};
 
 #[derive(Args)]
 pub struct GroupArguments {
@@ -46,6 +49,8 @@ pub struct GroupArguments {
     reading: ReadingArguments,
     #[command(flatten)]
     printed: Printed,
+    #[command(flatten)]
+    style: StyleOptions,
 }
 
 /// Fits every specimen, averages, compares and writes.
@@ -73,7 +78,12 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     }
     let named = named(groups, arguments.names, &settings)?;
     let files = [arguments.data, arguments.against].concat();
-    write((&arguments.output, &arguments.name), &files, &named)?;
+    write(
+        (&arguments.output, &arguments.name),
+        &arguments.style.style(),
+        &files,
+        &named,
+    )?;
     print_report(|| group_json(&named))?;
     print(&message(&named))?;
     Ok(0)
@@ -105,6 +115,7 @@ fn named(
 /// Writes figures, table and picture, and of each group the mean as test data with its card.
 fn write(
     (folder, name): (&Path, &str),
+    style: &PictureStyle,
     files: &[PathBuf],
     groups: &[NamedGroup],
 ) -> Result<(), Error> {
@@ -133,7 +144,7 @@ fn write(
     let text = format!("{:#}\n", group_json(groups));
     results.add(&format!("{name}.json"), text.as_bytes())?;
     let picture = group_picture(groups);
-    let warning = write_picture(&mut results, &format!("{name}.png"), &picture)?.err();
+    let warning = write_picture(&mut results, name, &picture, style)?;
     tell_files(&results.finish()?);
     warn(warning.as_slice());
     Ok(())

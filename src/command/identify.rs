@@ -10,6 +10,7 @@ use super::correct::exit_code;
 use super::fit::add_law;
 use super::interrupt;
 use super::large::Large;
+use super::pictures::StyleOptions;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, save, warn, warn_words};
 use gelbench_base::budget::{Budget, Need};
@@ -85,6 +86,8 @@ pub struct Options {
     large: Large,
     #[command(flatten)]
     printed: Printed,
+    #[command(flatten)]
+    style: StyleOptions,
 }
 
 /// Identifies, prints, and writes law, picture and figures.
@@ -121,7 +124,13 @@ pub fn run(options: Options) -> Outcome {
     let json = identification_json(&found, &recording, &file_name(&path));
     let law = law_text(&found, &recording, &file_name(&path));
     let picture = identification_picture(&found, &recording);
-    let warnings = add_law(&mut results, &stem, &law, &json, &picture)?;
+    let warnings = add_law(
+        &mut results,
+        &stem,
+        &law,
+        &json,
+        (&picture, &options.style.style()),
+    )?;
     let files = results.finish()?;
     drop(progress);
     tell_files(&files);

@@ -40,8 +40,8 @@ const DOORS: &[(&str, &[&str])] = &[
     ),
     ("image::", &["crates/images/src/images/read.rs"]),
     ("tiff::", &["crates/images/src/images/read.rs"]),
-    ("plotters::", &["crates/report/src/output/picture"]),
-    ("resvg::", &["crates/report/src/output/picture"]),
+    ("tiny_skia::", &["crates/report/src/output/picture"]),
+    ("pdf_writer::", &["crates/report/src/output/picture/pdf.rs"]),
     (
         "png::",
         &[

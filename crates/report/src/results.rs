@@ -49,7 +49,7 @@ pub use array::{Array, Components};
 pub use block::{Block, Content, Figure, Table};
 pub use card_curves::card_curves;
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, from_rest};
-pub use check::{Check, Wanted, check_lines, requirements, verdict};
+pub use check::{Check, Wanted, check_lines, digits, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
 pub use fields::{Animation, FieldFigure, Frame, Panel, Values};

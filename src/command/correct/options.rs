@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args};
 
-use super::pictures::PictureOptions;
 use super::values::{CELLS, HOLES, PLACES, Y_AXIS};
 use super::values::{encoding, force, force_column, gap, length, region, scale_error, size, unit};
 use crate::command::choice::one_of;
 use crate::command::images::ImageOptions;
 use crate::command::large::Large;
+use crate::command::pictures::PictureOptions;
 use crate::command::terminal::Printed;
 use gelbench_base::document::TextEncoding;
 use gelbench_estimation::estimation::{JointSettings, MeasuredForce, Physics, Robust};

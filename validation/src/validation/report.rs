@@ -45,11 +45,21 @@ pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {
         }
         blocks.push(Block::Heading(2, case.title.clone()));
         blocks.extend(outcome.warning_paragraphs());
-        blocks.extend(outcome.blocks.iter().cloned());
+        // Pictures are numbered over all cases; those that have no place among the blocks follow them.
+        let first = figures.len();
+        let placed = outcome.blocks.iter().map(|block| match block {
+            Block::Figure(index, caption) => Block::Figure(first + index, caption.clone()),
+            other => other.clone(),
+        });
+        blocks.extend(placed);
+        let mut own = outcome.blocks.iter();
+        let are_placed = own.any(|block| matches!(block, Block::Figure(..)));
         let material = outcome.material.iter();
         blocks.extend(material.flat_map(|material| material.blocks.clone()));
         for figure in &outcome.figures {
-            blocks.push(Block::Figure(figures.len(), figure.caption.clone()));
+            if !are_placed {
+                blocks.push(Block::Figure(figures.len(), figure.caption.clone()));
+            }
             figures.push(figure.clone());
         }
     }

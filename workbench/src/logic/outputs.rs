@@ -25,7 +25,7 @@ use super::studies::{NamedFile, StudyQuestion, paths};
 pub enum Format {
     /// Pixels.
     Png,
-    /// Lines and letters as curves.
+    /// Lines as curves and words as text.
     Svg,
 }
 

@@ -61,6 +61,46 @@ pub fn cycles(
     ends.windows(2).map(of_cycle).collect()
 }
 
+impl Softened {
+    /// The path of a test along one axis with so many steps from each observation to the next: what is drawn of the strain, and the
+    /// stress of the softened law in the measure of the data, in MPa.
+    pub fn path(
+        &self,
+        data: &TestData,
+        law: &dyn HyperelasticLaw,
+        axis: usize,
+        steps: u32,
+    ) -> Vec<[f64; 2]> {
+        let rows = data.observations.iter().filter(|one| one.axis == axis);
+        let rows: Vec<&Observation> = rows.collect();
+        let mut most = data.energy_before(law);
+        let mut point = |one: &Observation| {
+            let [energy, stress] = data.state_of(law, one);
+            most = most.max(energy);
+            let [factor, _] = self.softening.factor(energy, most);
+            let stress = data
+                .stress_measure
+                .of_nominal(factor * stress, one.strains[axis]);
+            [data.drawn_strain(one), stress]
+        };
+        let mut path: Vec<[f64; 2]> = rows.first().map(|one| point(one)).into_iter().collect();
+        for pair in rows.windows(2) {
+            path.extend((1..=steps).map(|step| {
+                let share = f64::from(step) / f64::from(steps);
+                let strain = |axis: usize| {
+                    let [from, to] = [0, 1].map(|end: usize| pair[end].strains[axis]);
+                    from + share * (to - from)
+                };
+                point(&Observation {
+                    strains: [0, 1].map(strain),
+                    ..*pair[1]
+                })
+            }));
+        }
+        path
+    }
+}
+
 /// A row along the axis that does work.
 struct Row {
     strain: f64,

@@ -11,7 +11,7 @@ use super::explorer::Explorer;
 use super::folder::{ResultFolder, free_name, kept, refuse_file, refuse_inputs};
 use super::html::html;
 use super::markdown::markdown_of_files;
-use super::picture::{Drawn, PictureFault, picture, png};
+use super::picture::{Drawn, PictureFault, picture};
 use super::vtk;
 use crate::document::name_of;
 use crate::error::{Diagnostic, Error};
@@ -79,7 +79,8 @@ pub fn write(
     let mut warnings = Vec::new();
     for (name, content) in &outcome.files {
         if let Content::Picture(drawing) = content {
-            warnings.extend(write_picture(folder, name, drawing)?.err());
+            let style = PictureStyle::default();
+            warnings.extend(write_picture(folder, name, drawing, &style)?);
         }
     }
     let pictures = write_pictures(folder, &outcome.figures, &outcome.style)?;
@@ -99,7 +100,7 @@ pub fn write(
     Ok(warnings)
 }
 
-/// Draws a picture for a screen and writes it, if it can be drawn.
+/// Draws a picture and writes it in the formats of a style, whatever the ending of its name; a warning where it cannot be drawn.
 ///
 /// # Errors
 /// [`Error::Write`] when it cannot be written.
@@ -107,12 +108,13 @@ pub fn write_picture(
     folder: &mut dyn TakesFiles,
     name: &str,
     drawing: &Drawing,
-) -> Result<Drawn, Error> {
-    let drawn = png(drawing).map_err(|fault| missing(name, &fault));
-    if let Ok(picture) = &drawn {
-        folder.add(name, picture)?;
+    style: &PictureStyle,
+) -> Result<Option<Diagnostic>, Error> {
+    let picture = ReportPicture::draw(name, drawing, style);
+    for (name, bytes) in &picture.files {
+        folder.add(name, bytes)?;
     }
-    Ok(drawn)
+    Ok(picture.png.err())
 }
 
 fn missing(name: &str, fault: &PictureFault) -> Diagnostic {
@@ -127,11 +129,11 @@ struct ReportPicture {
 }
 
 impl ReportPicture {
-    fn draw(figure: &Figure, style: &PictureStyle) -> Self {
-        let stem = figure.name.strip_suffix(".png").unwrap_or(&figure.name);
+    fn draw(name: &str, drawing: &Drawing, style: &PictureStyle) -> Self {
+        let stem = name.strip_suffix(".png").unwrap_or(name);
         let drawn = |format| {
-            let drawn = picture(&figure.drawing, format, style);
-            drawn.map_err(|fault| missing(&figure.name, &fault))
+            let drawn = picture(drawing, format, style);
+            drawn.map_err(|fault| missing(name, &fault))
         };
         let png = drawn(PictureFormat::Png);
         let (mut files, mut fault) = (Vec::new(), None);
@@ -161,7 +163,7 @@ fn write_pictures(
     style: &PictureStyle,
 ) -> Result<Vec<ReportPicture>, Error> {
     let drawn = figures.par_iter();
-    let drawn = drawn.map(|figure| ReportPicture::draw(figure, style));
+    let drawn = drawn.map(|figure| ReportPicture::draw(&figure.name, &figure.drawing, style));
     let drawn: Vec<ReportPicture> = drawn.collect();
     for (name, bytes) in drawn.iter().flat_map(|picture| &picture.files) {
         folder.add(name, bytes)?;

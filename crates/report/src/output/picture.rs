@@ -1,7 +1,7 @@
-//! Pictures. The only folder that knows plotters and resvg.
+//! Pictures. The only folder that knows tiny-skia and pdf-writer.
 //!
-//! Figures are drawn as SVG with the letters of an embedded font as curves, so that they look the same on every
-//! machine, whatever fonts it has.
+//! A figure is laid out as marks: lines, areas, discs and words of an embedded font, which look the same on every machine. Marks
+//! are then pixels, SVG or PDF.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -10,15 +10,18 @@ use crate::results::{Drawing, PictureFormat, PictureStyle};
 use look::Look;
 
 mod animation;
+mod bar;
 mod canvas;
+mod charts;
 mod colours;
 mod design;
 mod encode;
 mod fields;
 mod layout;
+mod legend;
 mod letters;
-mod lines;
 mod look;
+mod marks;
 mod numbers;
 mod outlines;
 mod paint;
@@ -53,7 +56,7 @@ pub fn picture(
 ) -> Result<Vec<u8>, PictureFault> {
     let look = Look::of(style);
     let drawn = catch_unwind(AssertUnwindSafe(|| match drawing {
-        Drawing::Charts(charts) => lines::stacked(charts, look, format),
+        Drawing::Charts(charts) => charts::stacked(charts, look, format),
         Drawing::Field(figure) => figure.drawn(look, format),
         Drawing::Animation(animation) => animation.png(look.on_screen()),
         Drawing::Mesh(figure) => figure.drawn(look, format),
@@ -66,10 +69,7 @@ pub fn picture(
 
 /// Red, green and blue of a colour bar from its lower to its upper end, of values of one sign or of both.
 pub fn bar_colours(is_signed: bool) -> Vec<[u8; 3]> {
-    let bar = Look::of(&PictureStyle::default()).bar(is_signed);
-    bar.iter()
-        .map(|colour| [colour.0, colour.1, colour.2])
-        .collect()
+    Look::of(&PictureStyle::default()).bar(is_signed)
 }
 
 #[cfg(test)]

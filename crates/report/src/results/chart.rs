@@ -163,6 +163,8 @@ pub struct LineChart {
     pub lines: Vec<Line>,
     /// A band along x that is shaded, with its name.
     pub band: Option<([f64; 2], String)>,
+    /// What is said beside the names of the lines.
+    pub notes: Vec<String>,
 }
 
 impl LineChart {
@@ -174,6 +176,7 @@ impl LineChart {
             y,
             lines,
             band: None,
+            notes: Vec::new(),
         }
     }
 

@@ -245,13 +245,26 @@ pub fn requirements(checks: &[Check]) -> Block {
         .column("requirement", |check| check.quantity.clone())
         .column("unit", |check| check.unit.to_owned())
         .column("computed", |check| known(check.computed))
-        .column("own error of what it is compared with", |check| {
+        .column("discretisation error of the reference", |check| {
             check.own_error.map_or("–".into(), number)
         })
         .column("wanted", |check| check.wanted())
         .column("source", |check| check.source.to_owned())
         .column("result", |check| check.result())
         .block()
+}
+
+/// A number with so many significant digits.
+pub fn digits(value: f64, digits: i32) -> String {
+    let exponent = value.abs().log10().floor();
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    if !(-5.0..=6.0).contains(&exponent) {
+        return format!("{value:.*e}", digits as usize - 1);
+    }
+    let decimals = (digits - 1 - exponent as i32).max(0) as usize;
+    format!("{value:.decimals$}")
 }
 
 #[cfg(test)]

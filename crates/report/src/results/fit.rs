@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::digits;
 use crate::calibration::{Fit, MovedZero, Protocols, Softened, TestData, Zero};
 use crate::material::curve::samples;
 use crate::material::parameters::Parameter;
@@ -161,4 +162,45 @@ fn softening_json(softened: &Softened) -> Value {
             "dissipated_by_softening_mJ_per_mm3": cycle.dissipated,
         })).collect::<Vec<_>>(),
     })
+}
+
+/// The parameters with their standard errors, and how far the law is from the data.
+pub(super) fn notes(fit: &Fit) -> Vec<String> {
+    /// So many have room in a picture.
+    const MOST: usize = 6;
+    let quality = &fit.quality;
+    let parameter = |(index, own): (usize, &Parameter)| {
+        let estimate = quality.estimates.get(index);
+        let error = estimate.filter(|_| quality.has_intervals() && !quality.held[index]);
+        let number = match error.map(|own| own.standard_error) {
+            Some(error) if error > 0.0 && error < own.value.abs() => {
+                // As many decimals as the error has with two digits.
+                let decimals = (1.0 - error.log10().floor()).max(0.0) as usize;
+                format!("{:.decimals$} ± {error:.decimals$}", own.value)
+            }
+            _ => digits(own.value, 4),
+        };
+        let value = format!("{} = {number} {}", own.key, own.unit());
+        value.trim_end_matches([' ', '–']).to_owned()
+    };
+    let shown = fit.parameters.iter().take(MOST).enumerate();
+    let mut notes: Vec<String> = shown.map(parameter).collect();
+    if fit.parameters.len() > MOST {
+        notes.push(format!(
+            "and {} more parameters",
+            fit.parameters.len() - MOST
+        ));
+    }
+    notes.push(format!("mean error {} %", digits(quality.nmad_percent, 2)));
+    notes
+}
+
+/// `Mooney-Rivlin` for `mooney-rivlin`.
+pub(super) fn title_case(name: &str) -> String {
+    let parts = name.split('-').map(|part| {
+        let mut letters = part.chars();
+        let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+        first.into_iter().chain(letters).collect::<String>()
+    });
+    parts.collect::<Vec<_>>().join("-")
 }

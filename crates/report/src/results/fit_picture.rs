@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::fit::{notes, title_case};
 use super::stress_unit::readable;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke};
 use crate::calibration::{Fit, Test, TestData, Times};
@@ -16,13 +17,12 @@ const MOST_MARKERS: usize = 1000;
 /// Times that span more than this factor are drawn on a logarithmic scale.
 const WIDE: f64 = 300.0;
 
-/// Time since the first row in s, stretch, number of the row, measured and fitted stress in MPa.
-type Row = [f64; 5];
+/// Time since the first row in s, stretch, measured and fitted stress in MPa.
+type Row = [f64; 4];
 const TIME: usize = 0;
 const STRETCH: usize = 1;
-const NUMBER: usize = 2;
-const MEASURED: usize = 3;
-const FITTED: usize = 4;
+const MEASURED: usize = 2;
+const FITTED: usize = 3;
 
 /// The observations of one file along one axis, in the order of the file.
 struct Course<'a> {
@@ -73,14 +73,24 @@ impl<'a> Course<'a> {
         self.colour.map(|part| part / 2)
     }
 
-    /// Measured stresses as markers, and the fitted ones as a curve.
-    fn lines(&self, x: usize, scale: Scale) -> [Line; 2] {
+    /// Measured stresses as markers.
+    fn measured(&self, x: usize, scale: Scale) -> Line {
         let measured = spread(self.points(x, |row| row[MEASURED]), scale);
-        let fitted = shown(self.points(x, |row| row[FITTED]), scale);
-        [
-            self.markers(&self.label, measured),
-            Line::new("", fitted, self.dark(), Stroke::Solid),
-        ]
+        self.markers(&self.label, measured)
+    }
+
+    /// The fitted stresses as a curve; of a law with softening over the stretch also between the rows.
+    fn fitted(&self, fit: &Fit, x: usize, scale: Scale) -> Line {
+        /// From one row to the next.
+        const STEPS: u32 = 8;
+        let points = match &fit.softened {
+            Some(softened) if x == STRETCH => {
+                let path = softened.path(self.data, &*fit.fitted, self.axis, STEPS);
+                path.into_iter().map(|[x, y]| [1.0 + x, y]).collect()
+            }
+            _ => self.points(x, |row| row[FITTED]),
+        };
+        Line::new("", shown(points, scale), self.dark(), Stroke::Solid)
     }
 
     fn residuals(&self, x: usize, scale: Scale) -> Line {
@@ -115,10 +125,10 @@ fn rows(data: &TestData, predicted: &[f64], axis: usize) -> Vec<Row> {
         _ => f64::NAN,
     };
     let rows = data.observations.iter().zip(predicted).enumerate();
-    let rows = rows.filter(|(_, (one, _))| one.axis == axis).enumerate();
-    rows.map(|(number, (row, (one, fitted)))| {
+    let rows = rows.filter(|(_, (one, _))| one.axis == axis);
+    rows.map(|(row, (one, fitted))| {
         let stretch = 1.0 + data.drawn_strain(one);
-        [time(row), stretch, number as f64, one.stress, *fitted]
+        [time(row), stretch, one.stress, *fitted]
     })
     .collect()
 }
@@ -160,8 +170,8 @@ fn chart(title: String, x: Axis, stress: &str, largest: f64, mut lines: Vec<Line
 fn residual_chart(x: Axis, lines: Vec<Line>) -> LineChart {
     let points = lines.iter().flat_map(|line| &line.points);
     let largest = points.fold(0.0, |most: f64, point| most.max(point[1].abs()));
-    let title = "Residuals: measured less fitted".to_owned();
-    chart(title, x, "stress", largest, lines)
+    // Below the stresses, whose axis it shares.
+    chart(String::new(), x, "measured − fitted", largest, lines)
 }
 
 /// Data with the fitted stresses, and the residuals below.
@@ -172,8 +182,10 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
     let largest = largest.fold(0.0, f64::max);
     let stress = format!("{} stress", fit.stress_measure().title());
     let over = |title: String, x: Axis, lines| chart(title, x, &stress, largest, lines);
-    let law = fit.law.name;
-    Drawing::Charts(if let Some(relaxed) = &fit.relaxed {
+    let softening = fit.softened.as_ref().map_or("", |_| " with softening");
+    let law = title_case(fit.law.name);
+    let title = format!("{law}{softening} fitted to {}", names(tests));
+    let mut charts = if let Some(relaxed) = &fit.relaxed {
         let times = courses.iter().flat_map(|course| &course.rows);
         let [shortest, longest] = extremes(times.map(|row| row[TIME]).filter(|time| *time > 0.0));
         let cyclic = courses.iter().any(Course::turns_back);
@@ -184,42 +196,40 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
         };
         let time = || Axis::new("time since the first row [s]", scale);
         let terms = relaxed.material.relaxation.len();
-        let title = format!("{law} with {terms} terms of a Prony series");
-        let mut charts = vec![(over(title, time(), lines(&courses, TIME, scale)), 380)];
+        let title = format!("{title}, with {terms} Prony terms");
+        let residuals = courses.iter().map(|course| course.residuals(TIME, scale));
+        let mut charts = vec![
+            (over(title, time(), lines(fit, &courses, TIME, scale)), 380),
+            (residual_chart(time(), residuals.collect()), 220),
+        ];
         if cyclic {
             let title = "Over the stretch".to_owned();
-            let lines = lines(&courses, STRETCH, Scale::Interval);
+            let lines = lines(fit, &courses, STRETCH, Scale::Interval);
             charts.push((over(title, Axis::stretch(), lines), 320));
         }
-        let residuals = courses.iter().map(|course| course.residuals(TIME, scale));
-        charts.push((residual_chart(time(), residuals.collect()), 220));
         charts
-    } else if fit.softened.is_some() {
-        let title = format!("{law} with softening after Ogden and Roxburgh");
-        let lines = lines(&courses, STRETCH, Scale::Interval);
-        let residuals = courses.iter();
-        let residuals = residuals.map(|course| course.residuals(NUMBER, Scale::Linear));
-        let rows = Axis::linear("row of the test");
-        vec![
-            (over(title, Axis::stretch(), lines), 460),
-            (residual_chart(rows, residuals.collect()), 250),
-        ]
     } else {
-        let title = format!("{law} fitted to {}", names(tests));
-        let lines = curves_with_bands(fit, &courses);
+        let lines = if fit.softened.is_some() {
+            lines(fit, &courses, STRETCH, Scale::Interval)
+        } else {
+            curves_with_bands(fit, &courses)
+        };
+        let residuals = courses.iter();
+        let residuals = residuals.map(|course| course.residuals(STRETCH, Scale::Interval));
         // As long as the curve's axis, with the slack that the residuals do not have.
         let stretches = lines.iter().flat_map(|line| &line.points);
         let zero = extremes(stretches.map(|[x, _]| *x)).map(|x| [x, 0.0]);
-        let residuals = courses.iter();
-        let residuals = residuals.map(|course| course.residuals(STRETCH, Scale::Interval));
-        let residuals = [Line::new("", zero, INK, Stroke::Solid)]
+        let residuals = [Line::new("", zero, INK, Stroke::Thin)]
             .into_iter()
             .chain(residuals);
+        let axis = deformation(tests);
         vec![
-            (over(title, deformation(tests), lines), 460),
-            (residual_chart(deformation(tests), residuals.collect()), 250),
+            (over(title, axis.clone(), lines), 460),
+            (residual_chart(axis, residuals.collect()), 250),
         ]
-    })
+    };
+    charts[0].0.notes = notes(fit);
+    Drawing::Charts(charts)
 }
 
 /// The tests with the fitted stresses and their names in the legend: the law alone has a curve for each protocol of a biaxial test.
@@ -254,10 +264,19 @@ fn deformation(tests: &[TestData]) -> Axis {
 }
 
 /// Measured and fitted stresses of all courses, with an entry in the legend.
-fn lines(courses: &[Course], x: usize, scale: Scale) -> Vec<Line> {
-    let lines = courses.iter().flat_map(|course| course.lines(x, scale));
-    let legend = Line::new("fitted", [], INK, Stroke::Solid);
-    lines.chain([legend]).collect()
+fn lines(fit: &Fit, courses: &[Course], x: usize, scale: Scale) -> Vec<Line> {
+    let curves = courses.iter().map(|course| course.fitted(fit, x, scale));
+    let points = courses.iter().map(|course| course.measured(x, scale));
+    let legend = Line::new("fitted", [], curve_colour(courses), Stroke::Solid);
+    curves.chain(points).chain([legend]).collect()
+}
+
+/// The colour of the curves in the legend: that of the only one, or else none of theirs.
+fn curve_colour(courses: &[Course]) -> [u8; 3] {
+    match courses {
+        [only] => only.dark(),
+        _ => INK,
+    }
 }
 
 /// 95 % bands, data and the curve of the law, which is dashed where it is unstable, with their names for the legend.
@@ -297,8 +316,7 @@ fn curves_with_bands(fit: &Fit, courses: &[Course]) -> Vec<Line> {
             };
             bands.push(Line::new(label, left_out, LEFT_OUT, Stroke::Points));
         }
-        let [measured, _] = course.lines(STRETCH, Scale::Interval);
-        points.push(measured);
+        points.push(course.measured(STRETCH, Scale::Interval));
     }
     let has_bands = bands.iter().any(|line| line.stroke == Stroke::Filled);
     let legend = [
@@ -307,8 +325,19 @@ fn curves_with_bands(fit: &Fit, courses: &[Course]) -> Vec<Line> {
         (has_bands, "95 % band of the curve", Stroke::Filled),
     ];
     let legend = legend.into_iter().filter(|(shown, ..)| *shown);
-    let legend = legend.map(|(_, label, stroke)| Line::new(label, [], INK, stroke));
-    let drawn = [bands, points, curves].into_iter().flatten();
+    let band = match courses {
+        [only] => only.colour,
+        _ => INK,
+    };
+    let legend = legend.map(|(_, label, stroke)| {
+        let colour = if stroke == Stroke::Filled {
+            band
+        } else {
+            curve_colour(courses)
+        };
+        Line::new(label, [], colour, stroke)
+    });
+    let drawn = [bands, curves, points].into_iter().flatten();
     drawn.chain(legend).collect()
 }
 

@@ -26,7 +26,7 @@ impl Default for PictureStyle {
 pub enum PictureFormat {
     /// A bitmap.
     Png,
-    /// Lines and letters as curves, shaded fields as pixels among them.
+    /// Lines as curves and words as text with their font, shaded fields as pixels among them.
     Svg,
     /// The same as a document.
     Pdf,

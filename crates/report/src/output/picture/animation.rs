@@ -1,9 +1,8 @@
 //! Fields that move, as an animated PNG: every browser plays it, and other programs show its first picture.
 
 use png::{BlendOp, DisposeOp, Writer};
-use resvg::tiny_skia::Pixmap;
+use tiny_skia::Pixmap;
 
-use super::canvas::{Area, rasterise};
 use super::design::DrawResult;
 use super::encode::{Part, colours, encoder, whole};
 use super::look::Look;
@@ -13,22 +12,24 @@ use crate::results::{Animation, FieldFigure, Panel, Scale};
 impl Animation {
     /// The animation as an APNG that plays again and again; of every picture only the part that moves is stored.
     pub(super) fn png(&self, look: Look) -> DrawResult<Vec<u8>> {
+        let first = self.frames.first().ok_or("it has no frames")?;
         let all = self.frames.iter().flat_map(|frame| &frame.panels);
-        let together = self.figure(String::new(), all.cloned().collect());
-        let (layout, range) = (together.layout(look), together.range());
+        let together = self.figure(first.time, all.cloned().collect());
+        let plan = together.plan(look, first.panels.len())?;
         let pictures = self.frames.iter().map(|frame| {
-            let title = format!("{}, t = {:.3} s", self.title, frame.time);
-            let figure = self.figure(title, frame.panels.clone());
-            let paint = |painter: &mut Painter| figure.paint(painter, &layout, &range);
-            let draw = |area: &Area<'_>| figure.draw(area, &layout, &range);
-            rasterise(figure.size(&layout), look, 1.0, paint, draw)
+            let figure = self.figure(frame.time, frame.panels.clone());
+            let mut painter = Painter::new(plan.size(), look.paper(), 1.0)?;
+            figure.paint(&mut painter, &plan);
+            let marks = figure.marks(&plan);
+            marks.iter().for_each(|mark| painter.draw(mark));
+            Ok(painter.image)
         });
         self.encode(pictures)
     }
 
-    fn figure(&self, title: String, panels: Vec<Panel>) -> FieldFigure {
+    fn figure(&self, time: f64, panels: Vec<Panel>) -> FieldFigure {
         FieldFigure {
-            title,
+            title: format!("{}, t = {time:.3} s", self.title),
             quantity: self.quantity.clone(),
             scale: Scale::Linear,
             panels,

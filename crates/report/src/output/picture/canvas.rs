@@ -1,48 +1,38 @@
-//! What all pictures are drawn with: an area, fonts, numbers on axes.
+//! A picture of marks above what is shaded, as a file of any format.
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use resvg::{tiny_skia, usvg};
-
-use super::design::{DrawResult, FINE};
+use super::design::{DrawResult, Size};
 use super::encode::encode;
-use super::letters;
+use super::letters::Letters;
 use super::look::Look;
+use super::marks::{Align, Mark, Words};
 use super::paint::Painter;
 use super::vectors::Vectors;
-use crate::results::{PictureFormat, Scale};
-use crate::statistics::extremes;
+use crate::results::PictureFormat;
 
-/// What draws above a painted area.
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Paints on an area of `size` points what is too much to be drawn, draws above it, and returns a file of the format.
+/// Paints what is too much to be drawn on an area of `size` points, draws marks above it, and returns a file of the format.
 pub(super) fn render(
-    size: (u32, u32),
+    size: Size,
     look: Look,
     format: PictureFormat,
-    paint: impl FnOnce(&mut Painter<'_>),
-    draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
+    paint: impl FnOnce(&mut Painter),
+    marks: Vec<Mark>,
 ) -> DrawResult<Vec<u8>> {
+    let mut painter = Painter::new(size, look.paper(), look.pixels())?;
     if format == PictureFormat::Png {
-        let image = rasterise(size, look, look.pixels(), paint, draw)?;
-        return Ok(encode(&image, Some(look))?);
+        paint(&mut painter);
+        marks.iter().for_each(|mark| painter.draw(mark));
+        return Ok(encode(&painter.image, Some(look))?);
     }
-    let mut image = blank(size, look, look.pixels())?;
-    let before = image.clone();
-    let mut painter = Painter {
-        image: &mut image,
-        pixels_per_point: look.pixels(),
-        above: Some(Vec::new()),
-    };
+    let before = painter.image.clone();
+    painter.above = Some(Vec::new());
     paint(&mut painter);
-    let lines = painter.above.unwrap_or_default();
+    let mut all = painter.above.unwrap_or_default();
+    all.extend(marks);
     let vectors = Vectors {
         size,
         paper: look.paper(),
-        image: (image != before).then_some(image),
-        lines,
-        drawn: drawn(size, draw)?,
+        image: (painter.image != before).then_some(painter.image),
+        marks: all,
     };
     match format {
         PictureFormat::Svg => vectors.svg(),
@@ -50,147 +40,110 @@ pub(super) fn render(
     }
 }
 
-fn blank(size: (u32, u32), look: Look, pixels_per_point: f32) -> DrawResult<tiny_skia::Pixmap> {
-    let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
-    let image = tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1));
-    let mut image = image.ok_or_else(|| format!("it would have {} × {} points", size.0, size.1))?;
-    let RGBColor(red, green, blue) = look.paper();
-    image.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
-    Ok(image)
+/// Between the edge of a picture and what is in it, and between parts of it.
+pub(super) const EDGE: f64 = 12.0;
+pub(super) const GAP: f64 = 8.0;
+
+/// What is drawn so far, from below.
+pub(super) struct Sheet {
+    pub look: Look,
+    pub marks: Vec<Mark>,
 }
 
-/// What is drawn as SVG, its letters as curves.
-fn drawn(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> DrawResult<()>) -> DrawResult<String> {
-    letters::register();
-    let mut svg = String::new();
-    {
-        let area =
-            SVGBackend::with_string(&mut svg, (FINE * size.0, FINE * size.1)).into_drawing_area();
-        draw(&area)?;
-        area.present()?;
+impl Sheet {
+    pub fn new(look: Look) -> Self {
+        let marks = Vec::new();
+        Self { look, marks }
     }
-    svg.retain(in_xml);
-    letters::as_curves(&svg)
-}
 
-/// Paints on an area of `size` points with so many pixels a point, then draws above it.
-pub(super) fn rasterise(
-    size: (u32, u32),
-    look: Look,
-    pixels_per_point: f32,
-    paint: impl FnOnce(&mut Painter<'_>),
-    draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
-) -> DrawResult<tiny_skia::Pixmap> {
-    let tree = usvg::Tree::from_str(&drawn(size, draw)?, &usvg::Options::default())?;
-    let mut image = blank(size, look, pixels_per_point)?;
-    paint(&mut Painter {
-        image: &mut image,
-        pixels_per_point,
-        above: None,
-    });
-    let scale = pixels_per_point / FINE as f32;
-    let transform = tiny_skia::Transform::from_scale(scale, scale);
-    resvg::render(&tree, transform, &mut image.as_mut());
-    Ok(image)
-}
-
-/// Whether XML can hold a character.
-fn in_xml(character: char) -> bool {
-    matches!(character, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..)
-}
-
-/// A line of some width in points.
-pub(super) fn stroke(colour: RGBColor, width: u32) -> ShapeStyle {
-    colour.stroke_width(FINE * width)
-}
-
-/// A number as an axis shows it: no trailing zeros, a true minus sign.
-pub(super) fn tick(value: f64) -> String {
-    let text = format!("{value:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        return "0".to_owned();
+    /// Draws a mark, unless there is nothing to be seen of it.
+    pub fn put(&mut self, mark: Option<Mark>) {
+        self.marks.extend(mark);
     }
-    text.replace('-', "−")
+
+    /// Draws an axis or one of its ticks.
+    pub fn axis(&mut self, places: &[[f64; 2]]) {
+        self.put(Mark::line(places, self.look.axis()));
+    }
+
+    /// Writes words around the middle height of a place.
+    pub fn write(&mut self, words: &str, at: [f64; 2], align: Align, letters: Letters) {
+        self.marks.push(Mark::Words(Words {
+            words: words
+                .chars()
+                .filter(|letter| !letter.is_control())
+                .collect(),
+            at,
+            align,
+            letters,
+            colour: self.look.ink(),
+            is_turned: false,
+        }));
+    }
+
+    /// Writes lines of words one below the other; the middle height of a further line.
+    pub fn write_lines(
+        &mut self,
+        lines: &[String],
+        [x, mut y]: [f64; 2],
+        align: Align,
+        letters: Letters,
+    ) -> f64 {
+        for line in lines {
+            self.write(line, [x, y], align, letters);
+            y += letters.line_height();
+        }
+        y
+    }
+
+    /// Writes lines of words upwards, beside one another around a height, the last of them at a place.
+    pub fn write_upwards(&mut self, lines: &[String], [x, y]: [f64; 2], letters: Letters) {
+        for (line, back) in lines.iter().rev().zip(0..) {
+            let at = [x - f64::from(back) * letters.line_height(), y];
+            self.write(line, at, Align::Centre, letters);
+            if let Some(Mark::Words(words)) = self.marks.last_mut() {
+                words.is_turned = true;
+            }
+        }
+    }
 }
 
-/// A power of ten by its exponent: 10⁻³.
-pub(super) fn power_of_ten(exponent: f64) -> String {
-    let digits = format!("{exponent:.0}");
-    let superscript = digits.chars().map(|digit| match digit {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        other => char::from_u32('⁰' as u32 + other as u32 - '0' as u32).unwrap_or(other),
-    });
-    format!("10{}", superscript.collect::<String>())
+/// What stands above a part of a picture.
+pub(super) struct Title {
+    lines: Vec<String>,
+    letters: Letters,
+    at: [f64; 2],
 }
 
-impl Scale {
-    /// The position of a value; values that a logarithm does not take have none.
-    pub(super) fn position(self, value: f64) -> Option<f64> {
-        let position = match self {
-            Self::Linear | Self::Interval => value,
-            Self::Logarithmic => value.log10(),
+impl Title {
+    /// A title from a left end: in smaller letters, then in several lines where there is no room.
+    pub fn new(words: &str, look: Look, [left, top]: [f64; 2], width: f64) -> Self {
+        const SMALLEST: u32 = 12;
+        let mut letters = look.title();
+        while letters.width(words) > width && letters.size > SMALLEST {
+            letters.size -= 1;
+        }
+        let lines = if words.is_empty() {
+            Vec::new()
+        } else {
+            letters.lines(words, width)
         };
-        position.is_finite().then_some(position)
+        let at = [left, top + 0.5 * letters.line_height()];
+        Self { lines, letters, at }
     }
 
-    /// The value at a position.
-    pub(super) fn value(self, position: f64) -> f64 {
-        match self {
-            Self::Linear | Self::Interval => position,
-            Self::Logarithmic => 10f64.powf(position),
-        }
+    /// Its height with the gap below it; without words the gap alone.
+    pub fn height(&self) -> f64 {
+        self.letters.line_height() * self.lines.len() as f64 + GAP
     }
 
-    pub(super) fn label(self, position: f64) -> String {
-        match self {
-            Self::Linear | Self::Interval => tick(position),
-            Self::Logarithmic if (position - position.round()).abs() < 1e-6 => {
-                power_of_ten(position.round())
-            }
-            Self::Logarithmic => String::new(),
-        }
+    /// The width of its longest line.
+    pub fn width(&self) -> f64 {
+        let widths = self.lines.iter().map(|line| self.letters.width(line));
+        widths.fold(0.0, f64::max)
     }
 
-    /// Limits that hold all positions: whole decades, or a little more than the values take.
-    pub(super) fn limits(self, positions: impl Iterator<Item = f64>) -> (f64, f64) {
-        let [low, high] = extremes(positions);
-        if low > high {
-            return (0.0, 1.0);
-        }
-        match self {
-            Self::Logarithmic => (low.floor(), high.ceil().max(low.floor() + 1.0)),
-            Self::Linear | Self::Interval => {
-                let margin = if high > low {
-                    0.05 * (high - low)
-                } else {
-                    0.5 * high.abs().max(1.0)
-                };
-                // Zero is shown where it is near.
-                let from_zero = self == Self::Linear && low >= 0.0 && low < 0.4 * high;
-                (if from_zero { 0.0 } else { low - margin }, high + margin)
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_labelled_as_people_write_them() {
-        assert_eq!(tick(0.1 + 0.2), "0.3");
-        assert_eq!(tick(-40.0), "−40");
-        assert_eq!(tick(-1e-9), "0");
-        assert_eq!(power_of_ten(-10.0), "10⁻¹⁰");
-        assert_eq!(Scale::Logarithmic.label(0.5), "");
-        assert_eq!(
-            Scale::Logarithmic.limits([-2.3, 0.4].into_iter()),
-            (-3.0, 1.0)
-        );
+    pub fn draw(&self, sheet: &mut Sheet) {
+        sheet.write_lines(&self.lines, self.at, Align::Left, self.letters);
     }
 }

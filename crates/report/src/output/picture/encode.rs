@@ -1,7 +1,7 @@
 //! Pixels as PNG files.
 
 use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, PixelDimensions, Unit};
-use resvg::tiny_skia::Pixmap;
+use tiny_skia::Pixmap;
 
 use super::look::{Look, MILLIMETRES};
 

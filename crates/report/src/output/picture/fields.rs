@@ -1,169 +1,115 @@
-//! Fields on deformed plates, several side by side on one colour scale.
+//! Fields on deformed plates, one below the other on one colour scale.
 
-use plotters::style::RGBColor;
-use plotters::style::text_anchor::HPos;
+use super::bar::Bar;
+use super::canvas::{EDGE, GAP, Sheet, render};
+use super::design::{DrawResult, Size};
+use super::layout::{LABEL_HEIGHT, Layout};
+use super::look::Look;
+use super::marks::{Align, Mark, Pen};
+use super::paint::Painter;
+use crate::results::{FieldFigure, Panel, PictureFormat, Values};
 
-use super::canvas::{Area, render};
-use super::colours::Range;
-use super::design::DrawResult;
-use super::layout::{AXIS_HEIGHT, Heading, LABEL_HEIGHT, LEFT, Layout, Pen};
-use super::look::{Look, short, text_width};
-use super::numbers::{Numbers, ticks};
-use super::paint::{Painter, Thin};
-use crate::results::{FieldFigure, Panel, PictureFormat, Scale, Values};
+/// The width of the outlines of the sheet, deformed and at rest, and of lines of equal values.
+const OUTLINE: f32 = 0.8;
+const AT_REST: f32 = 0.7;
+const CONTOUR: f32 = 0.5;
 
-/// The outline of the deformed sheet.
-fn outline_pen(look: Look) -> Thin {
-    Thin {
-        colour: look.ink(),
-        width: 0.8,
-        cover: 255,
-    }
-}
+/// How much lines of equal values cover, up to 255.
+const CONTOUR_COVER: u8 = 110;
 
-/// The outline at rest.
-fn rest_pen(look: Look) -> Thin {
-    Thin {
-        colour: look.rest(),
-        width: 0.7,
-        cover: 255,
-    }
-}
-
-/// Lines of equal values.
-const CONTOUR: Thin = Thin {
-    colour: RGBColor(0, 0, 0),
-    width: 0.5,
-    cover: 110,
-};
-
-/// How far the arrow at an end of the colour bar reaches.
-const ARROW: f64 = 14.0;
-
-const AT_REST: &str = "thin lines: at rest";
-
-/// The height of these words below the axis.
-const KEY_HEIGHT: f64 = 14.0;
-
-/// The least distance of numbers beside the colour bar.
-const APART: f64 = 15.0;
+/// What is said of the outlines at rest.
+const REST: &str = "thin lines: at rest";
 
 /// Fields on so many triangles at most have contour lines.
 const MOST_CONTOURED: usize = 400_000;
 
+/// Where everything is in a picture of fields.
+pub(super) struct Plan {
+    layout: Layout,
+    bar: Bar,
+    /// Where it is said what thin lines are.
+    rest: Option<([f64; 2], Align)>,
+}
+
+impl Plan {
+    /// Width and height in points.
+    pub fn size(&self) -> Size {
+        (self.layout.width() as u32, self.bar.bottom as u32)
+    }
+}
+
 impl FieldFigure {
     /// The figure as a file.
     pub(super) fn drawn(&self, look: Look, format: PictureFormat) -> DrawResult<Vec<u8>> {
-        let (layout, range) = (self.layout(look), self.range());
-        let paint = |painter: &mut Painter| self.paint(painter, &layout, &range);
-        let draw = |area: &Area<'_>| self.draw(area, &layout, &range);
-        render(self.size(&layout), look, format, paint, draw)
+        let plan = self.plan(look, self.panels.len())?;
+        let paint = |painter: &mut Painter| self.paint(painter, &plan);
+        render(plan.size(), look, format, paint, self.marks(&plan))
     }
 
-    /// Width and height in points.
-    pub(super) fn size(&self, layout: &Layout) -> (u32, u32) {
-        let below = if self.says_below(layout.look) {
-            KEY_HEIGHT
-        } else {
-            0.0
-        };
-        let bottom = layout.panel_top(self.panels.len()) + AXIS_HEIGHT + below;
-        (layout.width() as u32, bottom as u32)
-    }
-
-    /// Whether what thin lines are stands below the axis, as there is no room beside the names of narrow panels.
-    fn says_below(&self, look: Look) -> bool {
-        look.is_narrow() && self.has_rest()
-    }
-
-    fn has_rest(&self) -> bool {
-        let first = self.panels.first();
-        first.is_some_and(|panel| !panel.surface.rest.is_empty())
-    }
-
-    fn heading(&self, look: Look) -> Heading {
-        Heading::new(look, &self.title, &self.quantity)
-    }
-
-    pub(super) fn layout(&self, look: Look) -> Layout {
+    /// The plan of so many panels below one another, with the colours of all that there are.
+    pub(super) fn plan(&self, look: Look, panels: usize) -> DrawResult<Plan> {
+        if panels == 0 || self.panels.is_empty() {
+            return Err("it has no panels".into());
+        }
         let surfaces = self.panels.iter().map(|panel| &panel.surface);
         let places = surfaces.flat_map(|surface| {
             let rest = surface.rest.iter().flatten();
             surface.points.iter().chain(rest).copied()
         });
-        let words = self.panels.iter().map(|panel| text_width(&panel.label, 14));
-        let words = words.fold(0.0, f64::max) + text_width(AT_REST, 12);
-        Layout::of(look, &self.heading(look), words, places)
+        let name = |panel: &Panel| look.name().width(&panel.label);
+        let names = self.panels.iter().map(name).fold(0.0, f64::max);
+        let rest = look.number().width(REST);
+        let least = names + 2.0 * GAP + rest;
+        let layout = Layout::of(look, &self.title, least, places);
+        let has_rest = !self.panels[0].surface.rest.is_empty();
+        let right = layout.width() - EDGE;
+        let mut bottom = layout.bottom(panels);
+        let above = [layout.right(), layout.top + 0.5 * LABEL_HEIGHT];
+        let rest = if layout.left + least <= layout.right() {
+            (above, Align::Right)
+        } else {
+            let below = [layout.left, bottom + 0.5 * look.number().line_height()];
+            bottom += look.number().line_height() * f64::from(u8::from(has_rest));
+            (below, Align::Left)
+        };
+        let room = [layout.left, bottom + GAP, layout.right(), right];
+        let bar = Bar::of(look, &self.panels, &self.quantity, self.scale, room);
+        Ok(Plan {
+            layout,
+            bar,
+            rest: has_rest.then_some(rest),
+        })
     }
 
-    pub(super) fn range(&self) -> Range {
-        Range::of(self.panels.iter(), self.scale)
-    }
-
-    /// Draws what is written around the plates, with a layout and a range of colours, which may be those of several figures.
-    pub(super) fn draw(&self, area: &Area<'_>, layout: &Layout, range: &Range) -> DrawResult<()> {
+    /// What is written around the plates, by a plan which may be that of several figures.
+    pub(super) fn marks(&self, plan: &Plan) -> Vec<Mark> {
+        let layout = &plan.layout;
         let look = layout.look;
-        let pen = Pen { area, look };
-        self.heading(look).draw(&pen, layout)?;
-        let room = layout.bar()[0] - LEFT - 4.0;
+        let mut sheet = Sheet::new(look);
+        layout.draw(&mut sheet, &self.title, self.panels.len());
         for (index, panel) in self.panels.iter().enumerate() {
-            let place = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
-            let label = if look.is_printed() {
-                short(&panel.label, 14, room)
-            } else {
-                &panel.label
-            };
-            pen.write(label, place, look.text(14), HPos::Left)?;
-            if index == 0 && self.has_rest() && !look.is_narrow() {
-                let label = [layout.right(), place[1]];
-                pen.write(AT_REST, label, look.text(12), HPos::Right)?;
-            }
-            layout.draw_width_axis(&pen, index)?;
+            let place = [layout.left, layout.panel_top(index) + 0.5 * LABEL_HEIGHT];
+            let room = layout.width() - EDGE - layout.left;
+            let label = short(&panel.label, room, look);
+            sheet.write(label, place, Align::Left, look.name());
         }
-        let last = self.panels.len().checked_sub(1).ok_or("it has no panels")?;
-        layout.draw_length_axis(&pen, last)?;
-        if self.says_below(look) {
-            let y = layout.panel_top(last + 1) + AXIS_HEIGHT;
-            pen.write(AT_REST, [LEFT, y], look.text(12), HPos::Left)?;
+        if let Some((at, align)) = plan.rest {
+            sheet.write(REST, at, align, look.number());
         }
-        self.draw_bar(&pen, layout, range)
-    }
-
-    /// The ends of the colour bar, without its arrows.
-    fn bar(&self, layout: &Layout, range: &Range) -> [f64; 2] {
-        let bottom = layout.panel_top(self.panels.len());
-        let arrow = |beyond: Option<f64>| if beyond.is_some() { ARROW } else { 0.0 };
-        [
-            layout.top + LABEL_HEIGHT + arrow(range.above),
-            bottom - arrow(range.below),
-        ]
-    }
-
-    fn paint_bar(&self, painter: &mut Painter, layout: &Layout, range: &Range) {
-        let ([left, right], [top, bottom]) = (layout.bar(), self.bar(layout, range));
-        let middle = 0.5 * (left + right);
-        let table = layout.look.bar(range.is_signed);
-        let mut shade = |corners, shares| painter.shade(corners, shares, &|share| share, &table);
-        let [a, b, c, d] = [[left, bottom], [right, bottom], [right, top], [left, top]];
-        shade([a, b, c], [0.0, 0.0, 1.0]);
-        shade([a, c, d], [0.0, 1.0, 1.0]);
-        if range.below.is_some() {
-            shade([a, b, [middle, bottom + ARROW]], [0.0; 3]);
-        }
-        if range.above.is_some() {
-            shade([d, c, [middle, top - ARROW]], [1.0; 3]);
-        }
+        plan.bar.draw(&mut sheet);
+        sheet.marks
     }
 
     /// Paints the colour bar and the plates.
-    pub(super) fn paint(&self, painter: &mut Painter, layout: &Layout, range: &Range) {
-        self.paint_bar(painter, layout, range);
-        let table = layout.look.bar(range.is_signed);
-        let (ticks, _) = ticks([range.low, range.high], self.scale);
+    pub(super) fn paint(&self, painter: &mut Painter, plan: &Plan) {
+        let Plan { layout, bar, .. } = plan;
+        let look = layout.look;
+        let range = &bar.range;
+        let table = look.bar(range.is_signed);
+        bar.paint(painter, &table);
         // At zero a field of both signs is white, and noise would draw lines there.
-        let levels = ticks
-            .iter()
-            .filter(|(at, _)| !(range.is_signed && at.abs() < 1e-12));
+        let levels = bar.ticks.at.iter();
+        let levels = levels.filter(|(at, _)| !(range.is_signed && at.abs() < 1e-12));
         let levels: Vec<f64> = levels.map(|(at, _)| self.scale.value(*at)).collect();
         let share = |value: f64| {
             if value.is_nan() {
@@ -172,90 +118,37 @@ impl FieldFigure {
                 range.share(self.scale.position(value).unwrap_or(range.low))
             }
         };
+        let contour = Pen::new([0; 3], CONTOUR).covering(CONTOUR_COVER);
         for (index, panel) in self.panels.iter().enumerate() {
             let place = |place: [f64; 2]| layout.place(index, place);
             let rest = placed(&panel.surface.rest, &place);
-            painter.lines(rest.iter().map(|line| &line[..]), rest_pen(layout.look));
+            let pen = Pen::new(look.rest(), AT_REST);
+            if let Some(rest) = Mark::lines(rest.iter().map(|line| &line[..]), pen) {
+                painter.draw(&rest);
+            }
             let mut contours = Vec::new();
             let triangles = panel.surface.triangles.iter();
             for (triangle, values) in triangles.zip(panel.corners()) {
                 let corners = triangle.map(|point| place(panel.surface.points[point as usize]));
                 painter.shade(corners, values, &share, &table);
                 if has_contours(panel) {
-                    contours.extend(
-                        levels
-                            .iter()
-                            .filter_map(|at| crossing(corners, values, *at)),
-                    );
+                    let levels = levels.iter();
+                    contours.extend(levels.filter_map(|at| crossing(corners, values, *at)));
                 }
             }
-            painter.lines_above(contours.iter().map(|line| &line[..]), CONTOUR);
+            painter.lines_above(contours.iter().map(|line| &line[..]), contour);
             let outline = placed(&panel.surface.outline, &place);
-            let pen = outline_pen(layout.look);
+            let pen = Pen::new(look.ink(), OUTLINE);
             painter.lines_above(outline.iter().map(|line| &line[..]), pen);
         }
     }
+}
 
-    /// What is written beside the colour bar, and its frame; an arrow at an end says that values lie beyond it.
-    fn draw_bar(&self, pen: &Pen, layout: &Layout, range: &Range) -> DrawResult<()> {
-        let [left, right] = layout.bar();
-        let [top, bottom] = self.bar(layout, range);
-        let height = |share: f64| bottom + share * (top - bottom);
-        let (ticks, numbers) = ticks([range.low, range.high], self.scale);
-        let mut last = f64::INFINITY;
-        for (position, label) in ticks {
-            let y = height(range.share(position));
-            pen.line(&[[right, y], [right + 4.0, y]])?;
-            if last - y < APART {
-                continue;
-            }
-            last = y;
-            pen.write(&label, [right + 8.0, y], pen.look.text(13), HPos::Left)?;
-        }
-        let mut frame = vec![[left, top], [left, bottom]];
-        if let Some(least) = range.below {
-            let tip = [0.5 * (left + right), bottom + ARROW];
-            frame.push(tip);
-            self.draw_extreme(pen, numbers, "min", least, [right + 8.0, bottom + ARROW])?;
-        }
-        frame.extend([[right, bottom], [right, top]]);
-        if let Some(most) = range.above {
-            let tip = [0.5 * (left + right), top - ARROW];
-            frame.push(tip);
-            self.draw_extreme(pen, numbers, "max", most, [right + 8.0, top - ARROW])?;
-        }
-        frame.push([left, top]);
-        pen.line(&frame)?;
-        match numbers.power() {
-            Some(power) => pen.write(
-                &power,
-                [left, layout.top + 0.5 * LABEL_HEIGHT],
-                pen.look.text(13),
-                HPos::Left,
-            ),
-            None => Ok(()),
-        }
-    }
-
-    /// What lies beyond an end of the bar.
-    fn draw_extreme(
-        &self,
-        pen: &Pen,
-        numbers: Numbers,
-        which: &str,
-        value: f64,
-        place: [f64; 2],
-    ) -> DrawResult<()> {
-        let value = match self.scale {
-            Scale::Logarithmic => Numbers::default().between(value),
-            Scale::Linear | Scale::Interval => numbers.between(value),
-        };
-        pen.write(
-            &format!("{which} {value}"),
-            place,
-            pen.look.text(12),
-            HPos::Left,
-        )
+/// Words without what stands in brackets at their end, where the whole has no room.
+fn short(words: &str, width: f64, look: Look) -> &str {
+    match words.split_once(" (") {
+        Some((begin, _)) if look.name().width(words) > width => begin,
+        _ => words,
     }
 }
 

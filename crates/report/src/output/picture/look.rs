@@ -1,8 +1,7 @@
 //! How a picture looks: its width, its colours, its letters.
 
-use plotters::prelude::*;
-
-use super::design::{FAMILY, FINE};
+use super::letters::Letters;
+use super::marks::{Colour, Pen};
 use crate::results::{PALETTE, Palette, PictureStyle, PictureWidth};
 
 /// Millimetres of a printed picture for each point of the design: letters of 12 points become 7.2 of a printer's.
@@ -12,44 +11,57 @@ pub(super) const MILLIMETRES: f64 = 0.2125;
 const COLOURS: usize = 256;
 
 /// ColorBrewer's `RdBu`, blue first: readable with every colour vision.
-const BLUE_TO_RED: [RGBColor; 11] = [
-    RGBColor(5, 48, 97),
-    RGBColor(33, 102, 172),
-    RGBColor(67, 147, 195),
-    RGBColor(146, 197, 222),
-    RGBColor(209, 229, 240),
-    RGBColor(247, 247, 247),
-    RGBColor(253, 219, 199),
-    RGBColor(244, 165, 130),
-    RGBColor(214, 96, 77),
-    RGBColor(178, 24, 43),
-    RGBColor(103, 0, 31),
+const BLUE_TO_RED: [Colour; 11] = [
+    [5, 48, 97],
+    [33, 102, 172],
+    [67, 147, 195],
+    [146, 197, 222],
+    [209, 229, 240],
+    [247, 247, 247],
+    [253, 219, 199],
+    [244, 165, 130],
+    [214, 96, 77],
+    [178, 24, 43],
+    [103, 0, 31],
 ];
 
 /// `cividis`: from blue over grey to yellow, lighter and lighter.
-const BLUE_TO_YELLOW: [RGBColor; 9] = [
-    RGBColor(0, 34, 78),
-    RGBColor(26, 56, 111),
-    RGBColor(66, 78, 108),
-    RGBColor(95, 99, 110),
-    RGBColor(124, 123, 120),
-    RGBColor(155, 147, 117),
-    RGBColor(187, 173, 108),
-    RGBColor(221, 201, 88),
-    RGBColor(254, 232, 56),
+const BLUE_TO_YELLOW: [Colour; 9] = [
+    [0, 34, 78],
+    [26, 56, 111],
+    [66, 78, 108],
+    [95, 99, 110],
+    [124, 123, 120],
+    [155, 147, 117],
+    [187, 173, 108],
+    [221, 201, 88],
+    [254, 232, 56],
+];
+
+/// `viridis`: from violet over green to yellow, lighter and lighter.
+const VIRIDIS: [Colour; 9] = [
+    [68, 1, 84],
+    [71, 44, 122],
+    [59, 81, 139],
+    [44, 113, 142],
+    [33, 144, 141],
+    [39, 173, 129],
+    [92, 200, 99],
+    [170, 220, 50],
+    [253, 231, 37],
 ];
 
 /// ColorBrewer's `YlGnBu`: the paper's colour for little, dark for much.
-const LIGHT_TO_DARK: [RGBColor; 9] = [
-    RGBColor(255, 255, 217),
-    RGBColor(237, 248, 177),
-    RGBColor(199, 233, 180),
-    RGBColor(127, 205, 187),
-    RGBColor(65, 182, 196),
-    RGBColor(29, 145, 192),
-    RGBColor(34, 94, 168),
-    RGBColor(37, 52, 148),
-    RGBColor(8, 29, 88),
+const LIGHT_TO_DARK: [Colour; 9] = [
+    [255, 255, 217],
+    [237, 248, 177],
+    [199, 233, 180],
+    [127, 205, 187],
+    [65, 182, 196],
+    [29, 145, 192],
+    [34, 94, 168],
+    [37, 52, 148],
+    [8, 29, 88],
 ];
 
 /// The colours of lines on black, in the order of [`PALETTE`]: Okabe's and Ito's, the darker ones lighter.
@@ -127,142 +139,113 @@ impl Look {
     }
 
     /// A colour on black or on white paper.
-    fn tone(self, on_black: [u8; 3], on_white: [u8; 3]) -> RGBColor {
-        let [red, green, blue] = if self.is_dark() { on_black } else { on_white };
-        RGBColor(red, green, blue)
+    fn tone(self, on_black: [u8; 3], on_white: [u8; 3]) -> Colour {
+        if self.is_dark() { on_black } else { on_white }
     }
 
     /// Behind everything.
-    pub fn paper(self) -> RGBColor {
+    pub fn paper(self) -> Colour {
         self.tone([18, 20, 24], [255; 3])
     }
 
     /// Text and axes.
-    pub fn ink(self) -> RGBColor {
+    pub fn ink(self) -> Colour {
         self.tone([232; 3], [38; 3])
     }
 
     /// Grid lines.
-    pub fn pale(self) -> RGBColor {
+    pub fn pale(self) -> Colour {
         self.tone([58, 62, 70], [225; 3])
     }
 
     /// A band behind lines.
-    pub fn band(self) -> RGBColor {
+    pub fn band(self) -> Colour {
         self.tone([34, 44, 58], [229, 237, 246])
     }
 
     /// Outlines at rest.
-    pub fn rest(self) -> RGBColor {
+    pub fn rest(self) -> Colour {
         self.tone([150; 3], [120; 3])
     }
 
     /// A line's colour, which the data give for white paper.
-    pub fn line(self, colour: [u8; 3]) -> RGBColor {
+    pub fn line(self, colour: [u8; 3]) -> Colour {
         let table = match self.palette {
             Palette::Default => PALETTE,
             Palette::Dark => ON_BLACK,
             Palette::Print => PRINTED,
         };
         let index = PALETTE.iter().position(|known| *known == colour);
-        let [red, green, blue] = match index {
+        match index {
             Some(index) => table[index],
             // Black and its shades.
             None if self.is_dark() => colour.map(|part| 255 - part),
             None => colour,
-        };
-        RGBColor(red, green, blue)
+        }
     }
 
     /// The colour of a line as an area has it: mixed with the paper.
-    pub fn area(self, colour: [u8; 3]) -> RGBColor {
+    pub fn area(self, colour: [u8; 3]) -> Colour {
         self.mixed(colour, 4)
     }
 
     /// The same for an area beside another one of this colour.
-    pub fn darker_area(self, colour: [u8; 3]) -> RGBColor {
+    pub fn darker_area(self, colour: [u8; 3]) -> Colour {
         self.mixed(colour, 2)
     }
 
     /// One part in so many of a line's colour, the others of the paper's.
-    fn mixed(self, colour: [u8; 3], parts: i32) -> RGBColor {
+    fn mixed(self, colour: [u8; 3], parts: i32) -> Colour {
         let (line, paper) = (self.line(colour), self.paper());
-        let mixed = |line: u8, paper: u8| {
-            let (line, paper) = (i32::from(line), i32::from(paper));
+        [0, 1, 2].map(|part| {
+            let (line, paper) = (i32::from(line[part]), i32::from(paper[part]));
             (paper - (paper - line) / parts) as u8
-        };
-        RGBColor(
-            mixed(line.0, paper.0),
-            mixed(line.1, paper.1),
-            mixed(line.2, paper.2),
-        )
+        })
     }
 
     /// The colours of a bar from its lower to its upper end.
-    pub fn bar(self, is_signed: bool) -> Vec<RGBColor> {
-        let share = |index: usize| (index as f32 + 0.5) / COLOURS as f32;
-        let between = |anchors: &[RGBColor]| {
-            let map = DerivedColorMap::new(anchors);
-            (0..COLOURS)
-                .map(|index| map.get_color(share(index)))
-                .collect()
-        };
+    pub fn bar(self, is_signed: bool) -> Vec<Colour> {
         match (self.palette, is_signed) {
             (Palette::Print, true) => between(&BLUE_TO_YELLOW),
             (Palette::Print, false) => between(&LIGHT_TO_DARK),
             (_, true) => between(&BLUE_TO_RED),
-            (_, false) => (0..COLOURS)
-                .map(|index| ViridisRGB.get_color(share(index)))
-                .collect(),
+            (_, false) => between(&VIRIDIS),
         }
     }
 
-    pub fn text(self, size: u32) -> TextStyle<'static> {
-        (FAMILY, FINE * size).into_font().color(&self.ink())
+    /// The letters of titles.
+    pub fn title(self) -> Letters {
+        Letters::bold(if self.is_narrow() { 14 } else { 17 })
     }
 
-    pub fn bold(self, size: u32) -> TextStyle<'static> {
-        (FAMILY, FINE * size, FontStyle::Bold)
-            .into_font()
-            .color(&self.ink())
+    /// The letters of names: of axes, lines and panels.
+    pub fn name(self) -> Letters {
+        Letters::regular(if self.is_narrow() { 12 } else { 13 })
     }
 
-    /// A line of some width in points in the colour of the axes.
-    pub fn axis(self) -> ShapeStyle {
-        self.ink().stroke_width(FINE)
+    /// The letters of numbers and remarks.
+    pub fn number(self) -> Letters {
+        Letters::regular(12)
+    }
+
+    /// A thin line in the colour of the axes.
+    pub fn axis(self) -> Pen {
+        Pen::new(self.ink(), 1.0)
     }
 }
 
-/// Most points that a letter takes, for each point of its size.
-const LETTER: f64 = 0.62;
-
-/// The width that words take at most, in points.
-pub(super) fn text_width(words: &str, size: u32) -> f64 {
-    LETTER * f64::from(size) * words.chars().count() as f64
-}
-
-/// Words in lines of some width in points; a word that is too long has a line of its own.
-pub(super) fn lines(words: &str, size: u32, width: f64) -> Vec<String> {
-    let most = (width / (LETTER * f64::from(size))) as usize;
-    let mut lines: Vec<String> = Vec::new();
-    for word in words.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + word.chars().count() < most => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
-/// Words without what stands in brackets at their end, where the whole has no room.
-pub(super) fn short(words: &str, size: u32, width: f64) -> &str {
-    match words.split_once(" (") {
-        Some((begin, _)) if lines(words, size, width).len() > 1 => begin,
-        _ => words,
-    }
+/// A table of colours between some that are evenly apart.
+fn between(anchors: &[Colour]) -> Vec<Colour> {
+    let at = |index: usize| {
+        let along = (index as f64 + 0.5) / COLOURS as f64 * (anchors.len() - 1) as f64;
+        let first = along as usize;
+        let [from, to] = [anchors[first], anchors[first + 1]];
+        [0, 1, 2].map(|part| {
+            let (from, to) = (f64::from(from[part]), f64::from(to[part]));
+            (from + (along - first as f64) * (to - from)).round() as u8
+        })
+    };
+    (0..COLOURS).map(at).collect()
 }
 
 #[cfg(test)]
@@ -339,7 +322,7 @@ mod tests {
                 continue;
             }
             let look = look(palette);
-            let mut all: Vec<RGBColor> = PALETTE.map(|one| look.line(one)).into();
+            let mut all: Vec<Colour> = PALETTE.map(|one| look.line(one)).into();
             all.push(look.paper());
             for (index, one) in all.iter().enumerate() {
                 for other in &all[..index] {
@@ -351,16 +334,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn words_are_broken_where_they_have_no_room() {
-        assert_eq!(lines("Von Mises stress", 17, 900.0), ["Von Mises stress"]);
-        assert_eq!(
-            lines("Von Mises stress", 17, 110.0),
-            ["Von Mises", "stress"]
-        );
-        assert_eq!(short("elements (Q2)", 14, 100.0), "elements");
-        assert_eq!(short("elements (Q2)", 14, 200.0), "elements (Q2)");
     }
 }

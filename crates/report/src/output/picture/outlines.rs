@@ -1,46 +1,73 @@
 //! Meshes by the outlines of their cells, and their named groups.
 
-use plotters::style::RGBColor;
-use plotters::style::text_anchor::HPos;
-
-use super::canvas::{Area, render};
-use super::design::DrawResult;
-use super::layout::{AXIS_HEIGHT, Heading, LEFT, Layout, Pen};
+use super::canvas::{EDGE, GAP, Sheet, render};
+use super::design::{DrawResult, Size};
+use super::layout::Layout;
 use super::look::Look;
-use super::paint::{Painter, Thin};
+use super::marks::{Align, Colour, Mark, Pen, Rectangle};
+use super::paint::Painter;
 use crate::results::{MeshFigure, NamedLines, PALETTE, PictureFormat};
 
-const ROW_HEIGHT: f64 = 22.0;
+const ROW_HEIGHT: f64 = 20.0;
 
-/// What is left free to the right of the names.
-const EDGE: f64 = 100.0;
-
-/// Most points that a name takes for each of its characters.
-const CHARACTER: f64 = 9.0;
+/// From the left end of a sample to its name, and from a name to the next sample.
+const SAMPLE: f64 = 28.0;
+const APART: f64 = 18.0;
 
 impl MeshFigure {
     /// The figure as a file, in true proportions.
     pub(super) fn drawn(&self, look: Look, format: PictureFormat) -> DrawResult<Vec<u8>> {
-        let heading = Heading::new(look, &self.title, "");
-        let layout = Layout::of(look, &heading, 0.0, self.cells.iter().flatten().copied());
-        let bottom = layout.panel_top(1) + AXIS_HEIGHT;
-        let (names, rows) = legend(&self.groups, layout.width());
-        let paint = |painter: &mut Painter| self.paint(painter, &layout);
-        let draw = |area: &Area<'_>| {
-            let pen = Pen { area, look };
-            heading.draw(&pen, &layout)?;
-            layout.draw_width_axis(&pen, 0)?;
-            layout.draw_length_axis(&pen, 0)?;
-            for ((group, [x, row]), index) in self.groups.iter().zip(&names).zip(0..) {
-                let y = bottom + ROW_HEIGHT * (row + 0.5);
-                Mark::of(look, group, index).sample(&pen, [*x, y])?;
-                pen.write(&group.name, [x + 28.0, y], look.text(13), HPos::Left)?;
+        let layout = self.layout(look);
+        let (size, marks) = self.marks(&layout);
+        render(
+            size,
+            look,
+            format,
+            |painter| self.paint(painter, &layout),
+            marks,
+        )
+    }
+
+    pub(super) fn layout(&self, look: Look) -> Layout {
+        let widths = self
+            .groups
+            .iter()
+            .map(|group| look.name().width(&group.name));
+        let widest = SAMPLE + widths.fold(0.0, f64::max);
+        Layout::of(
+            look,
+            &self.title,
+            widest,
+            self.cells.iter().flatten().copied(),
+        )
+        .without_labels()
+    }
+
+    /// What is written around the mesh, and the size of the picture.
+    pub(super) fn marks(&self, layout: &Layout) -> (Size, Vec<Mark>) {
+        let look = layout.look;
+        let mut sheet = Sheet::new(look);
+        layout.draw(&mut sheet, &self.title, 1);
+        let right = layout.width() - EDGE;
+        let [mut x, mut y] = [layout.left, layout.bottom(1) + GAP + 0.5 * ROW_HEIGHT];
+        for (group, index) in self.groups.iter().zip(0..) {
+            let width = SAMPLE + look.name().width(&group.name);
+            if x > layout.left && x + width > right {
+                (x, y) = (layout.left, y + ROW_HEIGHT);
             }
-            Ok(())
+            GroupLook::of(look, group, index).sample(&mut sheet, [x, y]);
+            sheet.write(&group.name, [x + SAMPLE, y], Align::Left, look.name());
+            x += width + APART;
+        }
+        let rows = if self.groups.is_empty() {
+            0.0
+        } else {
+            0.5 * ROW_HEIGHT
         };
-        let height = bottom + ROW_HEIGHT * rows;
-        let size = (layout.width() as u32, height as u32);
-        render(size, look, format, paint, draw)
+        (
+            (layout.width() as u32, (y + rows + EDGE) as u32),
+            sheet.marks,
+        )
     }
 
     fn paint(&self, painter: &mut Painter, layout: &Layout) {
@@ -54,34 +81,26 @@ impl MeshFigure {
         let cells = placed(&self.cells);
         let groups = || self.groups.iter().zip(0..);
         for (group, index) in groups().filter(|(group, _)| !group.cells.is_empty()) {
-            let table = [Mark::of(layout.look, group, index).colour];
+            let table = [GroupLook::of(layout.look, group, index).colour];
             for triangle in group.cells.iter().flat_map(|cell| triangles(&cells[*cell])) {
                 painter.shade(triangle, [0.0; 3], &|_| 0.0, &table);
             }
         }
         let width = if few { 0.6 } else { 0.3 };
         let outlines = cells.iter().map(|line| &line[..]);
-        painter.lines_above(outlines, pen(layout.look.ink(), width));
+        painter.lines_above(outlines, Pen::new(layout.look.ink(), width));
         for (group, index) in groups().filter(|(group, _)| group.cells.is_empty()) {
-            let mark = Mark::of(layout.look, group, index);
+            let mark = GroupLook::of(layout.look, group, index);
             let lines = placed(&group.lines);
             let width = if mark.is_dots { 6.0 } else { 3.0 };
             let mut draw = |colour, width| {
-                painter.lines_above(lines.iter().map(|line| &line[..]), pen(colour, width));
+                painter.lines_above(lines.iter().map(|line| &line[..]), Pen::new(colour, width));
             };
             draw(mark.colour, width);
             if let Some(core) = mark.core {
                 draw(core, width / 2.5);
             }
         }
-    }
-}
-
-fn pen(colour: RGBColor, width: f32) -> Thin {
-    Thin {
-        colour,
-        width,
-        cover: 255,
     }
 }
 
@@ -98,14 +117,14 @@ fn triangles(outline: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 3]> {
 }
 
 /// How a group is drawn: a region as an area, sides as lines, nodes as dots. Beyond the last colour, areas are darker and lines hollow.
-struct Mark {
-    colour: RGBColor,
-    core: Option<RGBColor>,
+struct GroupLook {
+    colour: Colour,
+    core: Option<Colour>,
     is_area: bool,
     is_dots: bool,
 }
 
-impl Mark {
+impl GroupLook {
     fn of(look: Look, group: &NamedLines, index: usize) -> Self {
         let colour = PALETTE[index % PALETTE.len()];
         let again = index >= PALETTE.len();
@@ -124,34 +143,19 @@ impl Mark {
     }
 
     /// A sample beside a name.
-    fn sample(&self, pen: &Pen, [x, y]: [f64; 2]) -> DrawResult<()> {
-        let fill = |[left, right]: [f64; 2], half: f64, colour| {
-            let corners = [[left, -half], [right, -half], [right, half], [left, half]];
-            pen.fill(&corners.map(|[dx, dy]| [x + dx, y + dy]), colour)
-        };
-        let (ends, half) = match (self.is_area, self.is_dots) {
+    fn sample(&self, sheet: &mut Sheet, [x, y]: [f64; 2]) {
+        let ([left, right], half) = match (self.is_area, self.is_dots) {
             (true, _) => ([0.0, 20.0], 7.0),
             (_, true) => ([7.0, 13.0], 3.0),
             _ => ([0.0, 20.0], 2.5),
         };
-        fill(ends, half, self.colour)?;
-        self.core
-            .map_or(Ok(()), |core| fill(ends, half / 2.5, core))
-    }
-}
-
-/// Where each name stands, by its left end and its row, and how many rows there are.
-fn legend(groups: &[NamedLines], whole: f64) -> (Vec<[f64; 2]>, f64) {
-    let (mut x, mut row) = (LEFT, 0.0);
-    let mut places = Vec::new();
-    for group in groups {
-        let width = 52.0 + CHARACTER * group.name.chars().count() as f64;
-        if x > LEFT && x + width > whole - EDGE {
-            (x, row) = (LEFT, row + 1.0);
+        let mut fill = |half: f64, colour| {
+            let area = Rectangle::new([x + left, y - half], [x + right, y + half]);
+            sheet.put(Mark::rectangle(area, colour));
+        };
+        fill(half, self.colour);
+        if let Some(core) = self.core {
+            fill(half / 2.5, core);
         }
-        places.push([x, row]);
-        x += width;
     }
-    let rows = if groups.is_empty() { 0.0 } else { row + 1.5 };
-    (places, rows)
 }

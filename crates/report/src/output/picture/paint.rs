@@ -1,45 +1,48 @@
-//! Painting straight into the pixels what would be too much for a drawing: shaded triangles, many lines.
+//! Pictures as pixels: shaded triangles, and the marks above them.
 
-use plotters::style::RGBColor;
-use resvg::tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform,
-};
+use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, Pixmap, Stroke, StrokeDash, Transform};
 
+use super::design::DrawResult;
+use super::marks::{Colour, Mark, Pen};
 use crate::statistics::extremes;
 
 /// Paints into a picture at places in points.
-pub(super) struct Painter<'a> {
-    pub image: &'a mut Pixmap,
-    pub pixels_per_point: f32,
+pub(super) struct Painter {
+    pub image: Pixmap,
+    pixels_per_point: f32,
     /// Lines above what is shaded, where they are to stay lines; else they become pixels too.
-    pub above: Option<Vec<Lines>>,
-}
-
-/// Lines that are drawn as one.
-pub(super) struct Lines {
-    pub lines: Vec<Vec<[f64; 2]>>,
-    pub pen: Thin,
-}
-
-/// A line's colour, its width in points and how much of it covers what is below, up to 255.
-#[derive(Clone, Copy)]
-pub(super) struct Thin {
-    pub colour: RGBColor,
-    pub width: f32,
-    pub cover: u8,
+    pub above: Option<Vec<Mark>>,
 }
 
 /// The shade of a triangle whose values are not numbers.
-const UNKNOWN: RGBColor = RGBColor(200, 200, 200);
+const UNKNOWN: Colour = [200; 3];
 
-impl Painter<'_> {
+impl Painter {
+    /// An empty picture of a size in points.
+    ///
+    /// # Errors
+    /// Where it has no size, or one that no memory holds.
+    pub fn new(size: (u32, u32), paper: Colour, pixels_per_point: f32) -> DrawResult<Self> {
+        let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
+        let image = Pixmap::new(pixels(size.0), pixels(size.1));
+        let mut image =
+            image.ok_or_else(|| format!("it would have {} × {} points", size.0, size.1))?;
+        let [red, green, blue] = paper;
+        image.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
+        Ok(Self {
+            image,
+            pixels_per_point,
+            above: None,
+        })
+    }
+
     /// Shades a triangle by the values between those at its corners; `share` says where in the table a value's colour is.
     pub fn shade(
         &mut self,
         corners: [[f64; 2]; 3],
         values: [f64; 3],
         share: &dyn Fn(f64) -> f64,
-        table: &[RGBColor],
+        table: &[Colour],
     ) {
         let scale = f64::from(self.pixels_per_point);
         let [a, b, c] = corners.map(|corner| corner.map(|points| points * scale));
@@ -66,54 +69,69 @@ impl Painter<'_> {
             for column in columns {
                 let place = 4 * (first + column as usize);
                 let colour = colour(table, at(column));
-                pixels[place..place + 4].copy_from_slice(&[colour.0, colour.1, colour.2, 255]);
+                pixels[place..place + 4].copy_from_slice(&[colour[0], colour[1], colour[2], 255]);
             }
         }
     }
 
     /// Draws lines above what is shaded.
-    pub fn lines_above<'a>(&mut self, lines: impl IntoIterator<Item = &'a [[f64; 2]]>, pen: Thin) {
+    pub fn lines_above<'a>(&mut self, lines: impl IntoIterator<Item = &'a [[f64; 2]]>, pen: Pen) {
+        let Some(mark) = Mark::lines(lines, pen) else {
+            return;
+        };
         match &mut self.above {
-            Some(above) => {
-                let lines = lines.into_iter().map(<[_]>::to_vec).collect();
-                above.push(Lines { lines, pen });
-            }
-            None => self.lines(lines, pen),
+            Some(above) => above.push(mark),
+            None => self.draw(&mark),
         }
     }
 
-    /// Draws lines as one, so that they do not darken each other where they cross.
-    pub fn lines<'a>(&mut self, lines: impl IntoIterator<Item = &'a [[f64; 2]]>, pen: Thin) {
-        let mut path = PathBuilder::new();
-        for line in lines {
-            for (index, place) in line.iter().enumerate() {
-                let [x, y] = place.map(|points| points as f32 * self.pixels_per_point);
-                match index {
-                    0 => path.move_to(x, y),
-                    _ => path.line_to(x, y),
+    /// Draws a mark.
+    pub fn draw(&mut self, mark: &Mark) {
+        match mark {
+            Mark::Lines(path, pen) => {
+                let dashed = pen.dashes.and_then(|[dash, gap]| {
+                    let dashes = StrokeDash::new(vec![dash, gap], 0.0)?;
+                    path.dash(&dashes, self.pixels_per_point)
+                });
+                let path = dashed.as_ref().unwrap_or(path);
+                // As one area: they do not darken each other where they cross.
+                if let Some(outlines) = path.stroke(&stroke(*pen), self.pixels_per_point) {
+                    self.fill(&outlines, pen.colour, pen.cover);
+                }
+            }
+            Mark::Area(path, colour) => self.fill(path, *colour, 255),
+            Mark::Words(words) => {
+                if let Some(curves) = words.curves() {
+                    self.fill(&curves, words.colour, 255);
                 }
             }
         }
-        let stroke = Stroke {
-            width: pen.width * self.pixels_per_point,
-            line_cap: LineCap::Round,
-            line_join: LineJoin::Round,
-            ..Stroke::default()
-        };
-        let outlines = path.finish().and_then(|path| path.stroke(&stroke, 1.0));
-        let Some(outlines) = outlines else {
-            return;
-        };
+    }
+
+    fn fill(&mut self, path: &Path, [red, green, blue]: Colour, cover: u8) {
         let mut paint = Paint::default();
-        let RGBColor(red, green, blue) = pen.colour;
-        paint.set_color_rgba8(red, green, blue, pen.cover);
-        let whole = Transform::identity();
+        paint.set_color_rgba8(red, green, blue, cover);
+        let scale = Transform::from_scale(self.pixels_per_point, self.pixels_per_point);
         self.image
-            .fill_path(&outlines, &paint, FillRule::Winding, whole, None);
+            .fill_path(path, &paint, FillRule::Winding, scale, None);
     }
 }
 
-fn colour(table: &[RGBColor], share: f64) -> RGBColor {
+/// Round ends, but not of dashes, which would close their gaps.
+fn stroke(pen: Pen) -> Stroke {
+    Stroke {
+        width: pen.width,
+        line_cap: if pen.dashes.is_some() {
+            LineCap::Butt
+        } else {
+            LineCap::Round
+        },
+        line_join: LineJoin::Round,
+        ..Stroke::default()
+    }
+}
+
+fn colour(table: &[Colour], share: f64) -> Colour {
     if share.is_nan() {
         UNKNOWN
     } else {
@@ -153,18 +171,14 @@ fn span(corners: [[f64; 2]; 3], y: f64) -> Option<[f64; 2]> {
 mod tests {
     use super::*;
 
-    const TABLE: [RGBColor; 2] = [RGBColor(10, 20, 30), RGBColor(200, 100, 0)];
+    const TABLE: [Colour; 2] = [[10, 20, 30], [200, 100, 0]];
 
     /// A picture of 20 points on each side.
     fn painted(pixels_per_point: f32, paint: impl FnOnce(&mut Painter)) -> Pixmap {
-        let size = (20.0 * pixels_per_point) as u32;
-        let mut image = Pixmap::new(size, size).unwrap();
-        paint(&mut Painter {
-            image: &mut image,
-            pixels_per_point,
-            above: None,
-        });
-        image
+        let mut painter = Painter::new((20, 20), [0; 3], pixels_per_point).unwrap();
+        painter.image.fill(tiny_skia::Color::TRANSPARENT);
+        paint(&mut painter);
+        painter.image
     }
 
     #[test]
@@ -199,6 +213,6 @@ mod tests {
             shade([[-90.0, -9.0], [-5.0, 3.0], [90.0, -2.0]], 0.0);
         });
         let pixel = image.pixel(5, 5).unwrap();
-        assert_eq!((pixel.red(), pixel.green()), (UNKNOWN.0, UNKNOWN.1));
+        assert_eq!((pixel.red(), pixel.green()), (UNKNOWN[0], UNKNOWN[1]));
     }
 }

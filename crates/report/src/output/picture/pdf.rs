@@ -1,23 +1,29 @@
-//! Pictures as PDF files of one page. Letters are curves, so that no font is needed.
+//! Pictures as PDF files of one page, with the fonts of their words.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
+use ab_glyph::{Font, GlyphId};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use pdf_writer::types::{LineCapStyle, LineJoinStyle};
-use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref};
-use plotters::style::RGBColor;
-use resvg::tiny_skia::{Path, PathSegment, Transform};
-use resvg::usvg::{self, Group, Node, Paint};
+use pdf_writer::types::{
+    CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap,
+};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
+use tiny_skia::{Path, PathSegment};
 
-use super::design::{DrawResult, FINE};
+use super::design::DrawResult;
 use super::encode::{colours, whole};
+use super::letters::{Face, Letters};
 use super::look::MILLIMETRES;
-use super::paint::Lines;
+use super::marks::{Colour, Mark, Pen, Words};
 use super::vectors::Vectors;
 
 /// Points of a printer for each point of the design.
 const SCALE: f32 = (MILLIMETRES * 72.0 / 25.4) as f32;
+
+/// The names of the regular and the bold font within a page.
+const FONTS: [(Name<'static>, bool); 2] = [(Name(b"regular"), false), (Name(b"bold"), true)];
 
 impl Vectors {
     /// The picture as PDF.
@@ -27,8 +33,7 @@ impl Vectors {
         let [catalog, pages, page, drawing, image] = [(); 5].map(|()| id());
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
         let mut covers = Covers::default();
-        let tree = usvg::Tree::from_str(&self.drawn, &usvg::Options::default())?;
-        let content = self.content(&tree, &mut covers);
+        let content = self.content(&mut covers);
         let mut pdf = Pdf::new();
         pdf.catalog(catalog).pages(pages);
         pdf.pages(pages).kids([page]).count(1);
@@ -38,6 +43,7 @@ impl Vectors {
             .enumerate()
             .map(|(index, cover)| (Covers::name(index), id(), f32::from(*cover) / 255.0))
             .collect();
+        let fonts = FONTS.map(|(name, is_bold)| (name, self.used(is_bold), [(); 5].map(|()| id())));
         let mut sheet = pdf.page(page);
         sheet.media_box(Rect::new(0.0, 0.0, SCALE * width, SCALE * height));
         sheet.parent(pages).contents(drawing);
@@ -50,12 +56,21 @@ impl Vectors {
             named.pair(Name(name.as_bytes()), state);
         }
         named.finish();
+        let used = fonts.iter().filter(|(_, used, _)| !used.is_empty());
+        let mut named = resources.fonts();
+        for (name, _, [font, ..]) in used.clone() {
+            named.pair(*name, font);
+        }
+        named.finish();
         resources.finish();
         sheet.finish();
         for (_, state, cover) in &states {
             pdf.ext_graphics(*state)
                 .stroking_alpha(*cover)
                 .non_stroking_alpha(*cover);
+        }
+        for (name, used, parts) in used {
+            write_font(&mut pdf, *name, used, *parts)?;
         }
         pdf.stream(drawing, &compressed(&content)?)
             .filter(Filter::FlateDecode);
@@ -72,7 +87,22 @@ impl Vectors {
         Ok(pdf.finish())
     }
 
-    fn content(&self, tree: &usvg::Tree, covers: &mut Covers) -> Vec<u8> {
+    /// The letters that the picture has of a font.
+    fn used(&self, is_bold: bool) -> BTreeMap<GlyphId, char> {
+        let words = self
+            .words()
+            .filter(|words| words.letters.is_bold == is_bold);
+        let letters = words.flat_map(|words| {
+            let font = &Face::of(words.letters).font;
+            words
+                .words
+                .chars()
+                .map(|letter| (font.glyph_id(letter), letter))
+        });
+        letters.collect()
+    }
+
+    fn content(&self, covers: &mut Covers) -> Vec<u8> {
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
         let mut content = Content::new();
         // From here on in points of the design, downwards.
@@ -85,16 +115,20 @@ impl Vectors {
             content.x_object(Name(b"image"));
             content.restore_state();
         }
-        for lines in &self.lines {
-            draw_lines(&mut content, lines, covers);
+        for mark in &self.marks {
+            content.save_state();
+            match mark {
+                Mark::Lines(path, pen) => draw_lines(&mut content, path, *pen, covers),
+                Mark::Area(path, colour) => {
+                    covers.set(&mut content, 255);
+                    fill_with(&mut content, *colour);
+                    follow(&mut content, path);
+                    content.fill_nonzero();
+                }
+                Mark::Words(words) => write_words(&mut content, words, covers),
+            }
+            content.restore_state();
         }
-        let unit = 1.0 / FINE as f32;
-        draw_group(
-            &mut content,
-            tree.root(),
-            Transform::from_scale(unit, unit),
-            covers,
-        );
         content.finish().to_vec()
     }
 }
@@ -108,8 +142,7 @@ impl Covers {
         format!("cover{index}")
     }
 
-    fn set(&mut self, content: &mut Content, cover: f32) {
-        let cover = (255.0 * cover).round() as u8;
+    fn set(&mut self, content: &mut Content, cover: u8) {
         let known = self.0.iter().position(|known| *known == cover);
         let index = known.unwrap_or_else(|| {
             self.0.push(cover);
@@ -125,81 +158,27 @@ fn compressed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-fn shares(RGBColor(red, green, blue): RGBColor) -> [f32; 3] {
-    [red, green, blue].map(|part| f32::from(part) / 255.0)
+fn shares(colour: Colour) -> [f32; 3] {
+    colour.map(|part| f32::from(part) / 255.0)
 }
 
-fn fill_with(content: &mut Content, colour: RGBColor) {
+fn fill_with(content: &mut Content, colour: Colour) {
     let [red, green, blue] = shares(colour);
     content.set_fill_rgb(red, green, blue);
 }
 
-fn draw_lines(content: &mut Content, lines: &Lines, covers: &mut Covers) {
-    content.save_state();
-    covers.set(content, f32::from(lines.pen.cover) / 255.0);
-    let [red, green, blue] = shares(lines.pen.colour);
+fn draw_lines(content: &mut Content, path: &Path, pen: Pen, covers: &mut Covers) {
+    covers.set(content, pen.cover);
+    let [red, green, blue] = shares(pen.colour);
     content.set_stroke_rgb(red, green, blue);
-    content.set_line_width(lines.pen.width);
-    content
-        .set_line_cap(LineCapStyle::RoundCap)
-        .set_line_join(LineJoinStyle::RoundJoin);
-    for line in &lines.lines {
-        for (index, [x, y]) in line.iter().enumerate() {
-            match index {
-                0 => content.move_to(*x as f32, *y as f32),
-                _ => content.line_to(*x as f32, *y as f32),
-            };
-        }
-    }
+    content.set_line_width(pen.width);
+    content.set_line_join(LineJoinStyle::RoundJoin);
+    match pen.dashes {
+        Some(dashes) => content.set_dash_pattern(dashes, 0.0),
+        None => content.set_line_cap(LineCapStyle::RoundCap),
+    };
+    follow(content, path);
     content.stroke();
-    content.restore_state();
-}
-
-fn draw_group(content: &mut Content, group: &Group, unit: Transform, covers: &mut Covers) {
-    for node in group.children() {
-        match node {
-            Node::Group(inner) => draw_group(content, inner, unit, covers),
-            Node::Path(path) if path.is_visible() => {
-                draw_path(content, path, unit.pre_concat(path.abs_transform()), covers);
-            }
-            Node::Path(_) | Node::Image(_) | Node::Text(_) => {}
-        }
-    }
-}
-
-fn colour_of(paint: &Paint) -> Option<RGBColor> {
-    match paint {
-        Paint::Color(colour) => Some(RGBColor(colour.red, colour.green, colour.blue)),
-        // Drawings have neither gradients nor patterns.
-        _ => None,
-    }
-}
-
-fn draw_path(content: &mut Content, path: &usvg::Path, place: Transform, covers: &mut Covers) {
-    content.save_state();
-    content.transform([place.sx, place.ky, place.kx, place.sy, place.tx, place.ty]);
-    if let Some((fill, colour)) = path
-        .fill()
-        .and_then(|fill| Some((fill, colour_of(fill.paint())?)))
-    {
-        covers.set(content, fill.opacity().get());
-        fill_with(content, colour);
-        follow(content, path.data());
-        match fill.rule() {
-            usvg::FillRule::NonZero => content.fill_nonzero(),
-            usvg::FillRule::EvenOdd => content.fill_even_odd(),
-        };
-    }
-    let stroke = path.stroke();
-    if let Some((stroke, colour)) = stroke.and_then(|own| Some((own, colour_of(own.paint())?))) {
-        covers.set(content, stroke.opacity().get());
-        let [red, green, blue] = shares(colour);
-        content.set_stroke_rgb(red, green, blue);
-        content.set_line_width(stroke.width().get());
-        follow(content, path.data());
-        content.stroke();
-    }
-    content.restore_state();
 }
 
 fn follow(content: &mut Content, path: &Path) {
@@ -231,4 +210,88 @@ fn follow(content: &mut Content, path: &Path) {
             }
         }
     }
+}
+
+fn write_words(content: &mut Content, words: &Words, covers: &mut Covers) {
+    let [(regular, _), (bold, _)] = FONTS;
+    let font = &Face::of(words.letters).font;
+    let glyphs = words
+        .words
+        .chars()
+        .flat_map(|letter| font.glyph_id(letter).0.to_be_bytes());
+    let glyphs: Vec<u8> = glyphs.collect();
+    let [x, y] = words.start().map(|end| end as f32);
+    covers.set(content, 255);
+    fill_with(content, words.colour);
+    content.begin_text();
+    content.set_font(
+        if words.letters.is_bold { bold } else { regular },
+        words.letters.size as f32,
+    );
+    // The page runs downwards: letters are turned over.
+    content.set_text_matrix(if words.is_turned {
+        [0.0, -1.0, -1.0, 0.0, x, y]
+    } else {
+        [1.0, 0.0, 0.0, -1.0, x, y]
+    });
+    content.show(Str(&glyphs));
+    content.end_text();
+}
+
+/// A font whose letters are told by their numbers in its file, with what they mean for those who copy or search.
+fn write_font(
+    pdf: &mut Pdf,
+    name: Name,
+    used: &BTreeMap<GlyphId, char>,
+    [font, descendant, descriptor, file, meaning]: [Ref; 5],
+) -> std::io::Result<()> {
+    const SYSTEM: SystemInfo = SystemInfo {
+        registry: Str(b"Adobe"),
+        ordering: Str(b"Identity"),
+        supplement: 0,
+    };
+    let face = Face::of(if name == FONTS[1].0 {
+        Letters::bold(1)
+    } else {
+        Letters::regular(1)
+    });
+    let base = Name(face.name.as_bytes());
+    pdf.type0_font(font)
+        .base_font(base)
+        .encoding_predefined(Name(b"Identity-H"))
+        .descendant_font(descendant)
+        .to_unicode(meaning);
+    let mut cid = pdf.cid_font(descendant);
+    cid.subtype(CidFontType::Type2)
+        .base_font(base)
+        .system_info(SYSTEM)
+        .font_descriptor(descriptor)
+        .cid_to_gid_map_predefined(Name(b"Identity"));
+    let mut widths = cid.widths();
+    for glyph in used.keys() {
+        widths.consecutive(glyph.0, [face.advance(*glyph)]);
+    }
+    widths.finish();
+    cid.finish();
+    let per_mille = 1000.0 / face.units_per_em();
+    let [up, down] = [face.font.ascent_unscaled(), face.font.descent_unscaled()];
+    pdf.font_descriptor(descriptor)
+        .name(base)
+        .flags(FontFlags::NON_SYMBOLIC)
+        .bbox(Rect::new(-1021.0, -463.0, 1793.0, 1232.0))
+        .italic_angle(0.0)
+        .ascent(up * per_mille)
+        .descent(down * per_mille)
+        .cap_height(729.0)
+        .stem_v(80.0)
+        .font_file2(file);
+    let mut map = UnicodeCmap::new(Name(b"letters"), SYSTEM);
+    for (glyph, letter) in used {
+        map.pair(glyph.0, *letter);
+    }
+    pdf.cmap(meaning, &map.finish());
+    pdf.stream(file, &compressed(face.file)?)
+        .filter(Filter::FlateDecode)
+        .pair(Name(b"Length1"), face.file.len() as i32);
+    Ok(())
 }

@@ -92,7 +92,7 @@ fn materials(specimen: &Specimen, figure: &dyn Fn(&str, String, Drawing) -> Figu
 /// The fields of all models at one load factor: displacement, stresses and strains, distance to the finite elements.
 fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
     let file = |field: &str| file(specimen, field, step);
-    let at = specimen.along.describe(specimen.factors[step]);
+    let at = specimen.describe_step(step);
     let series = models.all_series();
     let mut figures = vec![displacement(
         specimen,
@@ -229,7 +229,7 @@ fn estimated_error(specimen: &Specimen, models: &Models, step: usize) -> Option<
     let reference = &models.reference;
     let energy = &reference.estimates.get(step)?.as_ref()?.energy;
     let displacement = &reference.finest.states.get(step)?.displacement;
-    let at = specimen.along.describe(specimen.factors[step]);
+    let at = specimen.describe_step(step);
     let mesh = &reference.finest.mesh;
     let drawing = FieldFigure::estimated_error(&at, mesh, displacement, energy);
     let caption = format!(

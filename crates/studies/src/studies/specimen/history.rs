@@ -55,7 +55,7 @@ pub fn deviations_chart(
 /// equilibrium of forces, and the corrections of the corrected field, which is another quantity.
 pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, Drawing)> {
     let last = models.reached().checked_sub(1)?;
-    let at = specimen.along.describe(specimen.factors[last]);
+    let at = specimen.describe_step(last);
     let line = |kind: &ModelKind| {
         let state = models.of(*kind).states.get(last)?;
         let residuals = state.convergence.residuals.iter().enumerate();

@@ -8,7 +8,7 @@ use crate::mass_spring::MassSpring;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{BoundaryProblem, ClampedPlate, Model};
+use crate::problem::{BoundaryProblem, ClampedPlate, Drive, Model, Support};
 use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings, Remembering};
 use crate::studies::pictures::Pictures;
@@ -113,6 +113,39 @@ impl Specimen {
         self.problem.law = Arc::clone(&card.law);
         self.card = card;
         self
+    }
+
+    /// How far a step of the path is: by the only motion or force that grows along it, or where there are several by the load
+    /// factor.
+    pub fn describe_step(&self, step: usize) -> String {
+        let factor = self.factors[step];
+        let moved: Vec<&Support> = self
+            .problem
+            .supports
+            .iter()
+            .map(|(_, support)| support)
+            .filter(|support| !support.rests())
+            .collect();
+        let sizes: Vec<(f64, &str)> = match moved[..] {
+            _ if self.along == Along::Stretch || !self.problem.loads.is_empty() => Vec::new(),
+            [Support::Displacement(given)] => {
+                given.iter().flatten().map(|size| (*size, "mm")).collect()
+            }
+            [Support::Grip(drives)] => drives
+                .iter()
+                .map(|drive| match drive {
+                    Drive::Displacement(size) => (*size, "mm"),
+                    Drive::Force(size) => (*size, "N"),
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        let mut sizes = sizes.into_iter().filter(|(size, _)| *size != 0.0);
+        match (sizes.next(), sizes.next()) {
+            // Without the rounding of the product.
+            (Some((size, unit)), None) => format!("{} {unit}", (1e9 * size * factor).round() / 1e9),
+            _ => self.along.describe(factor),
+        }
     }
 
     /// A specimen with all loads at once and the usual settings.

@@ -1,7 +1,5 @@
 //! How colours look to people who lack a kind of cones, and on paper without colours: what palettes are tested with.
 
-use plotters::style::RGBColor;
-
 /// A way to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vision {
@@ -23,8 +21,8 @@ impl Vision {
 
     /// What is seen of a colour (Machado, Oliveira and Fernandes, IEEE Trans. Vis. Comput. Graph. 15, 1291 (2009), at full
     /// severity), as light.
-    pub fn seen(self, colour: RGBColor) -> Light {
-        let light = [colour.0, colour.1, colour.2].map(|part| linear(f64::from(part) / 255.0));
+    pub fn seen(self, colour: [u8; 3]) -> Light {
+        let light = colour.map(|part| linear(f64::from(part) / 255.0));
         let matrix = match self {
             Self::Full => return light,
             Self::Protanopia => [

@@ -6,7 +6,7 @@ use crate::command::choice::one_of;
 use gelbench_report::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
 use gelbench_studies::studies::pictures::{Pictures, Shown};
 
-/// What the command line says of pictures.
+/// What the command line says of the pictures of fields.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Pictures")]
 pub struct PictureOptions {
@@ -14,6 +14,14 @@ pub struct PictureOptions {
     #[arg(long, value_name = "FIELD", value_delimiter = ',', value_parser = one_of(&SheetField::NAMES),
         default_values = ["von-mises", "largest-principal-stress"])]
     picture_fields: Vec<SheetField>,
+    #[command(flatten)]
+    style: StyleOptions,
+}
+
+/// What the command line says of how pictures are drawn.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Pictures")]
+pub struct StyleOptions {
     /// Formats of the pictures
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = one_of(&PictureFormat::NAMES),
         default_value = "png")]
@@ -26,17 +34,24 @@ pub struct PictureOptions {
     palette: Palette,
 }
 
+impl StyleOptions {
+    /// The style that is chosen.
+    pub fn style(&self) -> PictureStyle {
+        PictureStyle {
+            formats: self.picture_formats.clone(),
+            width: self.picture_width,
+            palette: self.palette,
+        }
+    }
+}
+
 impl PictureOptions {
     /// The pictures that are chosen.
     pub fn chosen(&self) -> Pictures {
         Pictures {
             fields: self.picture_fields.clone(),
             shown: Shown::Last,
-            style: PictureStyle {
-                formats: self.picture_formats.clone(),
-                width: self.picture_width,
-                palette: self.palette,
-            },
+            style: self.style.style(),
         }
     }
 }
