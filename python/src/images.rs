@@ -93,7 +93,10 @@ impl ImageOptions {
 /// Follows the pattern of the first image through all others.
 #[pyfunction]
 #[pyo3(signature = (files, unit, outline, in_memory, options, progress=None, allow_large=false))]
-#[expect(clippy::too_many_arguments, reason = "images, and what is known of them")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "images, and what is known of them"
+)]
 pub fn track(
     py: Python<'_>,
     files: Vec<PathBuf>,

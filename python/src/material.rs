@@ -12,8 +12,8 @@ use gelbench::material::{Card, HyperelasticLaw};
 use gelbench::units::{self, Dimension};
 use gelbench_base::document::{EditedDocument, NewValue, name_of};
 use gelbench_base::error::suggestion;
-use gelbench_mechanics::material::curve::simple_shear;
 use gelbench_mechanics::material::Known;
+use gelbench_mechanics::material::curve::simple_shear;
 use gelbench_mechanics::material::parameters::{StrainMeasure, StressMeasure};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -112,7 +112,11 @@ fn known(law: &str, values: &BTreeMap<String, String>) -> Result<Known, Error> {
     for (key, value) in values {
         let parameter = entries.parameters.iter().find(|one| one.key == key);
         let stress = || {
-            let unit = if value.parse::<f64>().is_ok() { " MPa" } else { "" };
+            let unit = if value.parse::<f64>().is_ok() {
+                " MPa"
+            } else {
+                ""
+            };
             units::parse(&format!("{value}{unit}"), Dimension::Stress)
                 .map_err(|fault| refused(format!("{key}: {fault}")))
         };

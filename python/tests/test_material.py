@@ -178,3 +178,15 @@ def test_a_law_is_checked_over_its_whole_range_and_at_rest(law, told):
 def test_a_range_that_is_none_is_refused(wrong):
     with pytest.raises(gb.InputError, match="stretch_range"):
         gb.Material.from_law(neo_hooke, stretch_range=wrong, quiet=True)
+
+
+def test_a_material_is_made_of_a_law_and_its_parameters():
+    gent = gb.Material("gent", mu=0.05, jm=30)
+    assert gent == gb.Material("gent", mu="50 kPa", jm="30") or gent.parameters == gb.Material("gent", mu="50 kPa", jm="30").parameters
+    assert gent.shear_modulus == pytest.approx(0.05)
+    assert gb.Material("gent", shear_modulus="50 kPa", jm=30).parameters["mu"].value == pytest.approx(0.05)
+    for wrong, words in (({"mu": 0.05}, "jm"), ({"mu": -1, "jm": 3}, "greater than zero"), ({"mu": 1, "jm": 3, "x": 1}, "no parameter x")):
+        with pytest.raises(gb.InputError, match=words):
+            gb.Material("gent", **wrong)
+    with pytest.raises(gb.InputError, match="did you mean `gent`"):
+        gb.Material("gnt", mu=1)

@@ -242,3 +242,60 @@ def strip_of_two_parts():
     names = ["2", '2 1 "lower"', '2 2 "upper"']
     parts = {"MeshFormat": ["2.2 0 8"], "PhysicalNames": names, "Nodes": ["45", *nodes], "Elements": ["32", *cells]}
     return "".join("\n".join([f"${name}", *lines, f"$End{name}", ""]) for name, lines in parts.items())
+
+
+def _pattern(shift=(0.0, 0.0), stretch=1.0, size=(90, 120)):
+    """Random waves that move about the middle of an image."""
+    random = np.random.default_rng(3)
+    y, x = np.mgrid[: size[0], : size[1]].astype(float)
+    x = (x - shift[0] - size[1] / 2) / stretch
+    y = y - shift[1] - size[0] / 2
+    image = np.zeros(size)
+    for _ in range(60):
+        k = random.normal(scale=0.45, size=2)
+        image += np.sin(k[0] * x + k[1] * y + random.uniform(0, 2 * np.pi))
+    return np.clip(128 + 9 * image, 0, 255).round().astype(np.uint8)
+
+
+def test_images_in_memory_are_followed():
+    first, other = _pattern(), _pattern((1.3, -0.7), 1.02)
+    tracked = gb.track([first, other], 0.1)
+    found = tracked.markers.dropna()
+    x = found["x [mm]"].to_numpy()
+    assert found["ux [mm]"].to_numpy() == pytest.approx(0.13 + 0.02 * (x - 6.0), abs=0.004)
+    assert found["uy [mm]"].to_numpy() == pytest.approx(0.07, abs=0.004)
+    # Fractions of white, a stack, and a mask say the same.
+    again = gb.track(np.stack([first, other]) / 255.0, "0.1 mm", mask=np.ones(first.shape) - (np.indices(first.shape)[1] > 60))
+    assert 10 < len(again.markers) < len(tracked.markers)
+    assert "points" in repr(tracked)
+
+
+def test_images_become_stress():
+    pytest.importorskip("pandas")
+    first, other = _pattern(), _pattern((0.0, 0.0), 1.03)
+    edge = [[1.0, 1.0], [10.9, 1.0], [10.9, 7.9], [1.0, 7.9]]
+    known = dict(unit=0.1, outline=edge, material="neo-hooke", thickness=1)
+    # Without free edges any homogeneous stretch is in equilibrium.
+    found = gb.correct(images=[first, other], **known)
+    assert found.explained
+    stretch = 1 + np.polyfit(found.field.points[:, 0], found.field.displacement[:, 0], 1)[0]
+    assert stretch == pytest.approx(1.03, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda a: gb.track([a], 0.1), "too few images"),
+        (lambda a: gb.track(a, 0.1), r"images\[0\]"),
+        (lambda a: gb.track([a, a[:40]], 0.1), "pixels"),
+        (lambda a: gb.track([a, a], 0.1, subset_shape="cubic"), "subset_shape"),
+        (lambda a: gb.correct(images=[a, a], unit=0.1, material="pva-10"), "thickness"),
+        (lambda a: gb.correct(np.zeros((2, 9, 9)), "pva-10", 2), "images="),
+        (lambda a: gb.correct(np.zeros((5, 4)), "pva-10", 2, images=[a, a]), "beside images"),
+        (lambda a: gb.correct(np.zeros((5, 4)), "pva-10", 2, mesh=object()), "not a mesh"),
+        (lambda a: gb.correct(np.zeros((5, 4)), "pva-10", 2, outline=[[1, 2, 3]]), "outline"),
+    ],
+)
+def test_images_and_lines_that_are_none_are_refused(call, words):
+    with pytest.raises(gb.InputError, match=words):
+        call(_pattern())

@@ -9,7 +9,7 @@ pub const EXIT_CODE: u8 = 70;
 
 /// Sources whose panics are caught where they are called: the reader of VTK's legacy files panics on damaged ones, which is
 /// told as a fault of the file, and a picture that cannot be drawn is told as a warning.
-const CAUGHT: [&str; 3] = ["vtkio", "tiny-skia", "output/picture"];
+const CAUGHT: [&str; 4] = ["vtkio", "plotters", "tiny-skia", "output/picture"];
 
 /// Performs work and returns its exit code, or [`EXIT_CODE`] where it panics. What it was writing is taken away by then: files
 /// are written aside first.

@@ -134,3 +134,33 @@ impl Warp {
         Self { terms }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quadratic_field_is_found_from_its_samples() {
+        let truth = Warp {
+            terms: [
+                [3.0, -1.0],
+                [0.1, 0.02],
+                [-0.3, 0.2],
+                [1e-3, -2e-3],
+                [4e-3, 0.0],
+                [0.0, 5e-3],
+            ],
+        };
+        let half = 8.0;
+        let sampled = Warp::sampled(half, |x, y| truth.at(half * x, half * y, 6));
+        for (found, term) in sampled
+            .terms
+            .iter()
+            .flatten()
+            .zip(truth.terms.iter().flatten())
+        {
+            assert!((found - term).abs() < 1e-14);
+        }
+        assert_eq!((sampled.functions(), Warp::default().functions()), (6, 3));
+    }
+}

@@ -1,4 +1,4 @@
-//! Pictures. The only folder that knows tiny-skia and pdf-writer.
+//! Pictures. The only folder that knows plotters, tiny-skia and pdf-writer.
 //!
 //! A figure is laid out as marks: lines, areas, discs and words of an embedded font, which look the same on every machine. Marks
 //! are then pixels, SVG or PDF.
@@ -10,6 +10,7 @@ use crate::results::{Drawing, PictureFormat, PictureStyle};
 use look::Look;
 
 mod animation;
+mod backend;
 mod bar;
 mod canvas;
 mod charts;

@@ -1,5 +1,11 @@
 //! Line charts one below the other. Everything is placed by the measured size of its words.
 
+use plotters::coord::CoordTranslate;
+use plotters::element::{Circle, PathElement, Polygon, Rectangle as RectangleElement};
+use plotters::prelude::Cartesian2d;
+use plotters::style::{Color, ShapeStyle};
+
+use super::backend::{Coordinates, chart, opaque, place, units};
 use super::canvas::{EDGE, GAP, Sheet, Title, render};
 use super::design::{DrawResult, Size};
 use super::legend::{JOINS, Legend};
@@ -26,7 +32,7 @@ pub(super) fn stacked(
     format: PictureFormat,
 ) -> DrawResult<Vec<u8>> {
     let plan = Plan::of(charts, look);
-    render(plan.size, look, format, |_| (), plan.marks(look))
+    render(plan.size, look, format, |_| (), plan.marks(look)?)
 }
 
 /// Where everything is in a picture of charts.
@@ -74,6 +80,10 @@ impl Scaled {
     fn share(&self, position: f64) -> f64 {
         (position - self.limits[0]) / (self.limits[1] - self.limits[0])
     }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.limits[0]..self.limits[1]
+    }
 }
 
 impl<'a> Plan<'a> {
@@ -117,12 +127,12 @@ impl<'a> Plan<'a> {
         }
     }
 
-    pub fn marks(&self, look: Look) -> Vec<Mark> {
+    pub fn marks(&self, look: Look) -> DrawResult<Vec<Mark>> {
         let mut sheet = Sheet::new(look);
         for frame in &self.frames {
-            frame.draw(&mut sheet);
+            frame.draw(&mut sheet)?;
         }
-        sheet.marks
+        Ok(sheet.marks)
     }
 }
 
@@ -247,17 +257,24 @@ impl<'a> Frame<'a> {
         bottom + below + GAP
     }
 
-    /// Where a point is whose positions on the axes are given.
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [width, height] = self.area.size();
-        [
-            self.area.low[0] + self.x.share(x) * width,
-            self.area.high[1] - self.y.share(y) * height,
-        ]
+    fn coordinates(&self) -> Coordinates {
+        let ([left, top], [right, bottom]) = (self.area.low.map(units), self.area.high.map(units));
+        Cartesian2d::new(self.x.range(), self.y.range(), (left..right, bottom..top))
     }
 
-    /// Where the points of a line are, of many only those that can be told apart.
+    /// Where a point is whose positions on the axes are given.
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        place(self.coordinates().translate(&(x, y)))
+    }
+
+    /// Where the points of a line are.
     fn places(&self, line: &Line) -> Vec<[f64; 2]> {
+        let points = self.positions(line);
+        points.iter().map(|(x, y)| self.place([*x, *y])).collect()
+    }
+
+    /// The positions of a line's points, of many only those that can be told apart.
+    fn positions(&self, line: &Line) -> Vec<(f64, f64)> {
         let position = |[x, y]: &[f64; 2]| {
             let [x, y] = [
                 self.chart.x.scale.position(*x)?,
@@ -266,48 +283,45 @@ impl<'a> Frame<'a> {
             Some((x, y))
         };
         let points: Vec<_> = line.points.iter().filter_map(position).collect();
-        let points = if line.is_marked() || line.stroke == Stroke::Points {
+        if line.is_marked() || line.stroke == Stroke::Points {
             thin::scattered(points)
         } else {
             thin::connected(points)
-        };
-        points.iter().map(|(x, y)| self.place([*x, *y])).collect()
+        }
     }
 
-    fn draw(&self, sheet: &mut Sheet) {
-        let look = sheet.look;
+    fn draw(&self, sheet: &mut Sheet) -> DrawResult<()> {
         self.title.draw(sheet);
+        self.draw_grid(sheet)?;
         let ([left, top], [right, bottom]) = (self.area.low, self.area.high);
-        if let Some((range, _)) = &self.chart.band {
-            let ends = range.map(|end| self.chart.x.scale.position(end).unwrap_or(end));
-            let [from, to] = ends.map(|end| self.place([end, 0.0])[0].clamp(left, right));
-            let band = Rectangle::new([from, top], [to, bottom]);
-            sheet.put(Mark::rectangle(band, look.band()));
-        }
-        let columns = self
-            .x
-            .ticks
-            .at
-            .iter()
-            .map(|(at, _)| self.place([*at, 0.0])[0]);
-        let rows = self
-            .y
-            .ticks
-            .at
-            .iter()
-            .map(|(at, _)| self.place([0.0, *at])[1]);
-        let grid = columns.map(|x| [[x, top], [x, bottom]]);
-        let grid: Vec<_> = grid.chain(rows.map(|y| [[left, y], [right, y]])).collect();
-        let pale = Pen::new(look.pale(), 1.0);
-        sheet.put(Mark::lines(grid.iter().map(|line| &line[..]), pale));
         sheet.axis(&[[left, top], [left, bottom], [right, bottom]]);
         self.draw_axes(sheet);
         for line in &self.chart.lines {
-            self.draw_line(sheet, line);
+            self.draw_line(sheet, line)?;
         }
         if let Some(legend) = &self.legend {
             legend.draw(sheet);
         }
+        Ok(())
+    }
+
+    fn draw_grid(&self, sheet: &mut Sheet) -> DrawResult<()> {
+        let (band, pale) = (sheet.look.band(), Pen::new(sheet.look.pale(), 1.0).style());
+        let ([left, right], [bottom, top]) = (self.x.limits, self.y.limits);
+        let chart = chart(sheet, None, self.coordinates());
+        if let Some((range, _)) = &self.chart.band {
+            let ends = range.map(|end| self.chart.x.scale.position(end).unwrap_or(end));
+            let [from, to] = ends.map(|end| end.clamp(left, right));
+            let filled = opaque(band).filled();
+            chart.draw(&RectangleElement::new([(from, bottom), (to, top)], filled))?;
+        }
+        for (at, _) in &self.x.ticks.at {
+            chart.draw(&PathElement::new([(*at, bottom), (*at, top)], pale))?;
+        }
+        for (at, _) in &self.y.ticks.at {
+            chart.draw(&PathElement::new([(left, *at), (right, *at)], pale))?;
+        }
+        Ok(())
     }
 
     fn draw_axes(&self, sheet: &mut Sheet) {
@@ -337,22 +351,37 @@ impl<'a> Frame<'a> {
         sheet.write_upwards(&self.y.label, at, look.name());
     }
 
-    fn draw_line(&self, sheet: &mut Sheet, line: &Line) {
+    fn draw_line(&self, sheet: &mut Sheet, line: &Line) -> DrawResult<()> {
         let look = sheet.look;
-        let places = self.places(line);
-        if line.stroke == Stroke::Filled {
-            sheet.put(Mark::area(&places, look.area(line.colour)));
-            return;
-        }
-        sheet.put(line.pen(look).and_then(|pen| Mark::line(&places, pen)));
-        let radius = match (places.len(), look.is_narrow()) {
+        let points = self.positions(line);
+        let radius = match (points.len(), look.is_narrow()) {
             // A curve below can be seen between them.
             (201.., _) => 1.5,
             (61.., _) => 2.0,
             (_, true) => 3.0,
             (_, false) => 4.0,
         };
-        sheet.put(line.markers(&places, radius, look));
+        let pen = line.pen(look);
+        let dashes = pen.and_then(|pen| pen.dashes);
+        let chart = chart(sheet, dashes, self.coordinates());
+        if line.stroke == Stroke::Filled {
+            let area = opaque(look.area(line.colour)).filled();
+            chart.draw(&Polygon::new(points, area))?;
+            return Ok(());
+        }
+        if let Some(pen) = pen {
+            chart.draw(&PathElement::new(points.clone(), pen.style()))?;
+        }
+        if let Some((radius, pen, filled)) = line.marker(radius, look) {
+            let style = ShapeStyle {
+                filled,
+                ..pen.style()
+            };
+            for point in points {
+                chart.draw(&Circle::new(point, units(radius), style))?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -382,12 +411,12 @@ impl Line {
         }
     }
 
-    /// Its markers at places; `None` where it has none.
-    pub(super) fn markers(&self, places: &[[f64; 2]], radius: f64, look: Look) -> Option<Mark> {
-        let colour = look.line(self.colour);
+    /// Radius of its markers, their pen, and whether they are filled; `None` where it has none.
+    pub(super) fn marker(&self, radius: f64, look: Look) -> Option<(f64, Pen, bool)> {
+        let pen = |width| Pen::new(look.line(self.colour), width);
         match self.stroke {
-            Stroke::Marked | Stroke::Points => Mark::discs(places, radius, colour),
-            Stroke::Ringed => Mark::rings(places, radius + 2.0, Pen::new(colour, 2.0)),
+            Stroke::Marked | Stroke::Points => Some((radius, pen(0.0), true)),
+            Stroke::Ringed => Some((radius + 2.0, pen(2.0), false)),
             Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => None,
         }
     }

@@ -121,7 +121,9 @@ impl<'a> Legend<'a> {
                     } else if let Some(pen) = line.pen(look).filter(|_| !line.is_marked()) {
                         sheet.put(Mark::line(&sample, pen));
                     }
-                    sheet.put(line.markers(&[[x + 12.0, *y]], 4.0, look));
+                    if let Some((radius, pen, is_filled)) = line.marker(4.0, look) {
+                        sheet.put(Mark::circles(&[[x + 12.0, *y]], radius, pen, is_filled));
+                    }
                 }
                 Sample::Joins => {
                     let pen = Pen::new(look.ink(), 1.0).dashed(JOINS);

@@ -79,14 +79,18 @@ impl Mark {
         Self::area(&inside.corners(), colour)
     }
 
-    /// Discs around places, filled with a colour.
-    pub fn discs(centres: &[[f64; 2]], radius: f64, colour: Colour) -> Option<Self> {
-        circles(centres, radius).map(|path| Self::Area(path, colour))
-    }
-
-    /// Rings around places.
-    pub fn rings(centres: &[[f64; 2]], radius: f64, pen: Pen) -> Option<Self> {
-        circles(centres, radius).map(|path| Self::Lines(path, pen))
+    /// Circles around places: discs, or rings of a pen.
+    pub fn circles(centres: &[[f64; 2]], radius: f64, pen: Pen, are_filled: bool) -> Option<Self> {
+        let mut path = PathBuilder::new();
+        for [x, y] in centres {
+            path.push_circle(*x as f32, *y as f32, radius as f32);
+        }
+        let path = path.finish()?;
+        Some(if are_filled {
+            Self::Area(path, pen.colour)
+        } else {
+            Self::Lines(path, pen)
+        })
     }
 }
 
@@ -97,14 +101,6 @@ fn follow(path: &mut PathBuilder, line: &[[f64; 2]]) {
             _ => path.line_to(*x as f32, *y as f32),
         }
     }
-}
-
-fn circles(centres: &[[f64; 2]], radius: f64) -> Option<Path> {
-    let mut path = PathBuilder::new();
-    for [x, y] in centres {
-        path.push_circle(*x as f32, *y as f32, radius as f32);
-    }
-    path.finish()
 }
 
 /// Which part of words is at their place.

@@ -92,7 +92,7 @@ fn charts_have_all_words_apart_and_three_ticks_on_each_axis() {
                     .collect();
                 let plan = Plan::of(&charts, look);
                 let what = format!("{look:?} {words} {count} {kind} {height}");
-                check(plan.size, &plan.marks(look), &what);
+                check(plan.size, &plan.marks(look).unwrap(), &what);
                 for frame in &plan.frames {
                     for axis in [&frame.x, &frame.y] {
                         assert!(axis.ticks.at.len() >= 3, "{what}");
