@@ -15,6 +15,7 @@ from ._core import __version__
 from ._errors import Fault, InputError, PerformanceWarning, SolveError, WriteError
 from ._images import Tracked, track
 from ._law import Derivatives
+from ._load import load
 from ._markers import Correction, correct
 from ._material import Material, Parameter, laws, materials
 from ._plate import Plate
@@ -59,6 +60,7 @@ __all__ = [
     "fit",
     "identify",
     "laws",
+    "load",
     "materials",
     "run",
     "salib_problem",

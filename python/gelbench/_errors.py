@@ -64,7 +64,7 @@ class SolveError(RuntimeError):
     advice : str
         What to try.
     solution : gelbench.Solution or None
-        The part reached before; None if the error comes from another process, because solutions cannot be pickled.
+        The part reached before.
     """
 
     def __init__(
@@ -87,8 +87,7 @@ class SolveError(RuntimeError):
         self.solution: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Solutions stay in the process that has found them.
-        return type(self), self.args, {**self.__dict__, "solution": None}
+        return type(self), self.args, self.__dict__
 
 
 class WriteError(OSError):
@@ -97,18 +96,6 @@ class WriteError(OSError):
 
 class PerformanceWarning(UserWarning):
     """The computation works, but much more slowly than possible."""
-
-
-class InMemory:
-    """An object in the library's memory, which cannot be pickled and says so."""
-
-    __slots__ = ()
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError(
-            f"a gelbench.{type(self).__name__} cannot be pickled or copied because the library holds it in memory: "
-            "pass the arrays and figures that you need"
-        )
 
 
 def fault(argument: str, message: str, hint: str) -> InputError:

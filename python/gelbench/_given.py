@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -62,6 +61,8 @@ class GivenFiles:
         """The path of a mesh, or the name of one in memory: of meshio, PyVista or gmsh."""
         if mesh is None or isinstance(mesh, (str, os.PathLike)):
             return None if mesh is None else os.fspath(mesh)
+        import tempfile
+
         with tempfile.TemporaryDirectory() as folder:
             if hasattr(mesh, "cells") and hasattr(mesh, "point_sets"):
                 file = Path(folder) / "mesh.msh"

@@ -34,6 +34,9 @@ class Correction(Results):
         super().__init__(core)
         self._verdict = verdict
 
+    def _more(self) -> dict[str, Any]:
+        return {"verdict": self._verdict}
+
     @property
     def verdict(self) -> str:
         """``explained``, ``explained with correlated noise``, ``the data cannot judge``, or ``not explained by this law, thickness and conditions``."""

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._errors import InMemory
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
+from ._kept import save_values, values_of
 from ._quantities import Floats, PathLike
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Field", "Results"]
 
 
-class Field(InMemory):
+class Field:
     """A mesh with arrays, as in a VTK file: the unit is part of each array's name."""
 
     def __init__(self, core: _core.Results, series: int, number: int, time: float | None) -> None:
@@ -76,10 +76,10 @@ class Field(InMemory):
         return f"<gelbench.Field{at}: {len(self.points)} nodes>"
 
 
-class Results(InMemory):
+class Results:
     """Results of a study: figures, requirements, warnings, fields, tables, pictures.
 
-    Results cannot be pickled because the library holds them in memory; `json` can.
+    Results can be pickled, copied and saved.
     """
 
     def __init__(self, core: _core.Results) -> None:
@@ -156,6 +156,19 @@ class Results(InMemory):
     def pictures(self) -> Mapping[str, bytes]:
         """Pictures as PNG by name; each is drawn on access."""
         return _Pictures(self._core)
+
+    def save(self, path: PathLike) -> None:
+        """Writes everything into one compressed file of NumPy, such as ``plate.npz``, which `gelbench.load` reads.
+
+        Raises
+        ------
+        gelbench.WriteError
+            If the file cannot be written.
+        """
+        save_values(path, {"type": type(self).__name__, **self._more(), "values": values_of(self._core)})
+
+    def _more(self) -> dict[str, Any]:
+        return {}
 
     def write(self, folder: PathLike | None = None) -> list[Path]:
         """Writes what the command writes: report, pictures, VTK files. As the command does, it replaces what gelbench has written into

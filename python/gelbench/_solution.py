@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
@@ -10,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._errors import InMemory
+from ._kept import save_values, values_of
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
-from ._quantities import Floats, array_of, finite, floats
+from ._quantities import Floats, PathLike, array_of, finite, floats
 
 if TYPE_CHECKING:
     import meshio
@@ -44,7 +45,7 @@ class AtPoints(NamedTuple):
     """Principal stretches: larger in-plane, smaller in-plane, thickness, n × 3."""
 
 
-class State(InMemory):
+class State:
     """An equilibrium at one load factor.
 
     Arrays at nodes have the order of `Solution.points`.
@@ -204,11 +205,11 @@ class State(InMemory):
         return f"{head}<br>{inline(lambda ax: self.plot(ax=ax))}"
 
 
-class Solution(InMemory, Sequence[State]):
+class Solution(Sequence[State]):
     """The equilibria of one model, one `State` for each load factor.
 
     A solution has the attributes of a state, which refer to its last state. Without a state they raise an `IndexError`. Solutions
-    cannot be pickled because the library holds them in memory.
+    can be pickled, copied and saved; `at` is possible only of those that the process has computed itself.
     """
 
     def __init__(self, core: _core.Solution, model: str, errors: dict[float, dict[str, float]]) -> None:
@@ -216,6 +217,21 @@ class Solution(InMemory, Sequence[State]):
         self._model = model
         states = enumerate(core.factors())
         self._states = [State(self, step, factor, errors.get(factor, {})) for step, factor in states]
+
+    def save(self, path: PathLike) -> None:
+        """Writes everything into one compressed file of NumPy, such as ``plate.npz``, which `gelbench.load` reads; the last state alone into a
+        file for ParaView if it is named ``.vtu``.
+
+        Raises
+        ------
+        gelbench.WriteError
+            If the file cannot be written.
+        """
+        if os.fspath(path).endswith(".vtu"):
+            self.to_meshio().write(path)
+            return
+        errors = [[state.factor, state._errors] for state in self]
+        save_values(path, {"type": "Solution", "model": self._model, "errors": errors, "values": values_of(self._core)})
 
     @property
     def model(self) -> str:

@@ -212,7 +212,7 @@ class Specimen(StudyInMemory):
         places = array_of(points, "points", unit)
         if places.ndim == 2 and places.shape[1] == 2:
             places = np.column_stack([places, np.zeros(len(places))])
-        mesh = _core.GivenMesh(
+        mesh = (
             floats(places, "points", (None, 3)),
             [(NUMBERS[name], _integers(block, "cells", 2)) for name, block in kinds.items()],
             {name: _integers(group, "groups", 1) for name, group in nodes.items()},
@@ -230,7 +230,7 @@ class Specimen(StudyInMemory):
     def _set(
         self,
         specimen: dict[str, Any],
-        mesh: _core.GivenMesh | None,
+        mesh: tuple[Any, ...] | None,
         thickness: Quantity,
         material: Material | PathLike,
         supports: Mapping[str, Any],
@@ -239,12 +239,20 @@ class Specimen(StudyInMemory):
         settings: Settings | None,
     ) -> None:
         self.material = _material(material)
-        self._mesh = mesh
+        self._mesh_parts = mesh
+        self._mesh = None if mesh is None else _core.GivenMesh(*mesh)
         own = {**specimen, "thickness": text(thickness, "mm", "thickness")}
         self._sections = merged({"specimen": own}, settings, ARGUMENTS)
         self._conditions = {"support": _entries(supports, "supports"), "load": _entries(loads or {}, "loads")}
         self._measured = measured
         self._check()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_mesh": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._mesh = None if self._mesh_parts is None else _core.GivenMesh(*self._mesh_parts)
 
     def _text(self, factors: Factors | None, card: str) -> str:
         path = {"factors": factor_texts(factors, self.FACTORS), "measured_group": self._measured}

@@ -89,6 +89,15 @@ impl Results {
 
 #[pymethods]
 impl Results {
+    /// A copy is the same: nothing in it changes.
+    fn __copy__(own: Py<Self>) -> Py<Self> {
+        own
+    }
+
+    fn __deepcopy__(own: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
+        own
+    }
+
     #[getter]
     fn passed(&self) -> bool {
         self.results.passed()

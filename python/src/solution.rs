@@ -104,6 +104,15 @@ impl Solution {
 
 #[pymethods]
 impl Solution {
+    /// A copy is the same: nothing in it changes.
+    fn __copy__(own: Py<Self>) -> Py<Self> {
+        own
+    }
+
+    fn __deepcopy__(own: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
+        own
+    }
+
     #[getter]
     fn points(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
         self.points.clone_ref(py)

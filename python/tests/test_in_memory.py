@@ -198,12 +198,43 @@ def test_one_stretch_has_one_stress():
     assert type(card.stress(1.5)) is float and card.stress([1.5]).shape == (1,)
 
 
-def test_what_cannot_be_pickled_says_so_and_errors_travel():
+def test_solutions_and_results_are_pickled_copied_and_saved(tmp_path):
     plate = gb.Plate(material="neo-hooke", **SMALL)
-    solution, results = plate.solve("mass-spring", 0.2), plate.run([0.2])
-    for own in (solution, solution.last, results, results.fields["corrected"][0]):
-        with pytest.raises(TypeError, match="cannot be pickled"):
-            pickle.dumps(own)
+    solution, results = plate.solve("corrected", [0.1, 0.2], reference=True), plate.run([0.2])
+    solution.save(tmp_path / "solution.npz"), results.save(tmp_path / "results.npz")
+    copies = [pickle.loads(pickle.dumps(solution)), copy.deepcopy(solution), gb.load(tmp_path / "solution.npz")]
+    for one in [*copies, pickle.loads(pickle.dumps(copies[2]))]:
+        assert (one.model, len(one), one.force, one.error) == (solution.model, 2, solution.force, solution.error)
+        assert (one[0].displacement == solution[0].displacement).all()
+        assert (one.point_data["displacement_mm"] == solution.point_data["displacement_mm"]).all()
+        assert (one.groups["right"].force == solution.groups["right"].force).all()
+        assert repr(one) == repr(solution) and one._repr_html_()
+    with pytest.raises(gb.InputError, match="solve it again"):
+        copies[2].at([[1.0, 1.0]])
+    assert copies[1].at([[1.0, 1.0]]).displacement.shape == (1, 2)
+    for one in (pickle.loads(pickle.dumps(results)), gb.load(tmp_path / "results.npz")):
+        assert one.json == results.json and repr(one) == repr(results)
+        assert dict(one.pictures) == dict(results.pictures)
+        field, own = one.fields["corrected"][0], results.fields["corrected"][0]
+        assert (field.displacement == own.displacement).all() and field.cells.keys() == own.cells.keys()
+        assert {path.name for path in one.write(tmp_path / f"out{id(one)}")} == {path.name for path in results.write(tmp_path / "own")}
+    field = pickle.loads(pickle.dumps(results.fields["corrected"][0]))
+    assert (field.points == results.fields["corrected"][0].points).all()
+    with pytest.raises(gb.InputError, match="cannot be read"):
+        gb.load(tmp_path / "own" / "report.json")
+
+
+def test_solutions_come_from_other_processes():
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    plate = gb.Plate(material="neo-hooke", **SMALL)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        found = pool.submit(plate.solve, "mass-spring", 0.2).result()
+    assert found.force == plate.solve("mass-spring", 0.2).force
+
+
+def test_errors_travel():
     strip = gb.Specimen(
         "strip", length=90, width=30, thickness=2, material="mooney-rivlin", cells=6, measured="right",
         supports={"left": "clamp", "right": {"kind": "grip", "x_force": 1e4, "y": 0}},
@@ -214,11 +245,11 @@ def test_what_cannot_be_pickled_says_so_and_errors_travel():
     travelled = pickle.loads(pickle.dumps(error))
     for name in ("model", "step", "cause", "cell", "advice", "load_factor"):
         assert getattr(travelled, name) == getattr(error, name), name
-    assert str(travelled) == str(error) and travelled.solution is None and error.solution is not None
+    assert str(travelled) == str(error) and len(travelled.solution) == len(error.solution) == 0
     for what in ("displacement", "force", "last"):
         with pytest.raises(IndexError, match="no load factor was reached"):
             getattr(error.solution, what)
-    faults = pytest.raises(gb.InputError, gb.Plate(width="5 kg").solve).value
+    faults = pytest.raises(gb.InputError, gb.Plate, width="5 kg").value
     assert pickle.loads(pickle.dumps(faults)).faults == faults.faults
 
 

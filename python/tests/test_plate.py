@@ -127,9 +127,8 @@ def test_fields_are_the_librarys_memory_and_read_only(plate):
 
 
 def test_all_faults_are_told_at_once_with_their_keys():
-    wrong = gb.Plate(-150, "5 kg", 2)
     with pytest.raises(gb.InputError) as caught:
-        wrong.solve()
+        gb.Plate(-150, "5 kg", 2)
     keys = {fault.key for fault in caught.value.faults}
     assert keys == {"plate.length", "plate.width"}
     assert all(fault.hint and fault.line for fault in caught.value.faults)

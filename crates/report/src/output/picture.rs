@@ -27,6 +27,7 @@ mod numbers;
 mod outlines;
 mod paint;
 mod pdf;
+mod strokes;
 mod thin;
 mod vectors;
 

@@ -31,6 +31,7 @@ mod force_signs;
 mod forces;
 mod gross_errors;
 mod headline;
+mod image_misfit;
 mod images;
 pub mod joint;
 mod json;
@@ -190,7 +191,7 @@ impl MarkerStudy {
             unknown_gap,
         };
         if let Some(images) = images {
-            images.measure_about_equilibrium(&mut study);
+            study.measure_about_equilibrium(&images);
         }
         Ok(study)
     }

@@ -8,7 +8,7 @@ use plotters::style::{Color, ShapeStyle};
 use super::backend::{Coordinates, chart, opaque, place, units};
 use super::canvas::{EDGE, GAP, Sheet, Title, render};
 use super::design::{DrawResult, Size};
-use super::legend::{JOINS, Legend};
+use super::legend::Legend;
 use super::look::Look;
 use super::marks::{Align, Mark, Pen, Rectangle};
 use super::numbers::Ticks;
@@ -390,34 +390,5 @@ impl LineChart {
         let scale = [self.x.scale, self.y.scale][axis];
         let points = self.lines.iter().flat_map(|line| &line.points);
         points.filter_map(move |point| scale.position(point[axis]))
-    }
-}
-
-impl Line {
-    /// Whether computed points are marked.
-    pub(super) fn is_marked(&self) -> bool {
-        self.is_dashed_between_points()
-    }
-
-    /// What its points are joined with; `None` where they are not.
-    pub(super) fn pen(&self, look: Look) -> Option<Pen> {
-        let pen = |width| Pen::new(look.line(self.colour), width);
-        match self.stroke {
-            Stroke::Marked | Stroke::Ringed => Some(pen(1.0).dashed(JOINS)),
-            Stroke::Dashed => Some(pen(2.0).dashed([7.0, 5.0])),
-            Stroke::Solid => Some(pen(2.0)),
-            Stroke::Thin => Some(pen(1.0)),
-            Stroke::Points | Stroke::Filled => None,
-        }
-    }
-
-    /// Radius of its markers, their pen, and whether they are filled; `None` where it has none.
-    pub(super) fn marker(&self, radius: f64, look: Look) -> Option<(f64, Pen, bool)> {
-        let pen = |width| Pen::new(look.line(self.colour), width);
-        match self.stroke {
-            Stroke::Marked | Stroke::Points => Some((radius, pen(0.0), true)),
-            Stroke::Ringed => Some((radius + 2.0, pen(2.0), false)),
-            Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => None,
-        }
     }
 }
