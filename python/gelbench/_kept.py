@@ -144,4 +144,4 @@ def _reduce(core: Any) -> tuple[Any, ...]:
 
 
 for _kind in (_core.Results, _core.Solution):
-    copyreg.pickle(_kind, _reduce)  # type: ignore[arg-type]
+    copyreg.pickle(_kind, _reduce)

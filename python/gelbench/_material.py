@@ -84,8 +84,8 @@ class Material:
     __slots__ = ("_card", "_reference")
 
     def __init__(self, law: str, *, name: str | None = None, **values: Quantity) -> None:
-        told = {key: text(value, "", key) for key, value in values.items()}
-        self._card = _core.MaterialCard.of_law(law, name or law, told)
+        given = {key: text(value, "", key) for key, value in values.items()}
+        self._card = _core.MaterialCard.of_law(law, name or law, given)
         self._reference: str | None = None
 
     @classmethod

@@ -261,6 +261,8 @@ def test_images_in_memory_are_followed():
     first, other = _pattern(), _pattern((1.3, -0.7), 1.02)
     tracked = gb.track([first, other], 0.1)
     found = tracked.markers.dropna()
+    # Subsets that the images' rim cuts are biased by some hundredths of a pixel.
+    found = found[found["x [mm]"].between(2, 10) & found["y [mm]"].between(2, 7)]
     x, deviation = found["x [mm]"].to_numpy(), found["standard_deviation [mm]"].to_numpy()
     for off in (found["ux [mm]"] - (0.13 + 0.02 * (x - 6.0)), found["uy [mm]"] - 0.07):
         assert np.abs(off / deviation).max() < 5.0 and np.sqrt(np.mean(off**2)) < 0.003
