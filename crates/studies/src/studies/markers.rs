@@ -173,7 +173,7 @@ impl MarkerStudy {
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))
             .flatten();
-        let mut study = Self {
+        let study = Self {
             card,
             regions,
             thickness: request.thickness,
@@ -190,10 +190,7 @@ impl MarkerStudy {
             mistake: None,
             unknown_gap,
         };
-        if let Some(images) = images {
-            study.measure_about_equilibrium(&images);
-        }
-        Ok(study)
+        Ok(study.about_equilibrium(images))
     }
 
     /// The frames with their estimates.

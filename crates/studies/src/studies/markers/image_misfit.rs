@@ -33,24 +33,28 @@ struct Measured {
 }
 
 impl MarkerStudy {
-    /// Measures the patches of all frames about the fields in equilibrium that are nearest to them.
+    /// With the patches of all frames measured about the fields in equilibrium that are nearest to them, where there are images.
     ///
     /// Where noise is so large that a patch alone does not lead to its displacement, neither may tracking: then each frame also starts from the
     /// field of the frame before, the first one from rest, and the field counts about which the patches are the more similar.
-    pub(super) fn measure_about_equilibrium(&mut self, images: &TrackedImages) {
+    pub(super) fn about_equilibrium(mut self, images: Option<TrackedImages>) -> Self {
+        let Some(images) = images else {
+            return self;
+        };
         let frames = self.series.frames.par_iter();
         let measured: Vec<Option<Measured>> = if images.tracker.patches().are_precise() {
             frames
-                .map(|frame| images.about_tracked(self, frame))
+                .map(|frame| images.about_tracked(&self, frame))
                 .collect()
         } else {
-            images.in_turn(self)
+            images.in_turn(&self)
         };
         for (frame, measured) in self.series.frames.iter_mut().zip(measured) {
             if let Some(measured) = measured {
                 frame.markers = measured.markers;
             }
         }
+        self
     }
 }
 
