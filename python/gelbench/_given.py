@@ -13,7 +13,7 @@ from ._errors import fault
 from ._quantities import PathLike, finite, floats
 from ._tests import _table as table
 
-__all__ = ["GivenFiles", "paths_of"]
+__all__ = ["GivenFiles", "path_of", "paths_of"]
 
 
 def paths_of(given: Any) -> list[str] | None:
@@ -25,6 +25,15 @@ def paths_of(given: Any) -> list[str] | None:
         paths: Sequence[PathLike] = given
         return [os.fspath(path) for path in paths]
     return None
+
+
+def path_of(path: PathLike | None) -> str | None:
+    """A path as a text, if there is one."""
+    return None if path is None else os.fspath(path)
+
+
+def _is_path(given: Any) -> bool:
+    return given is None or isinstance(given, (str, os.PathLike))
 
 
 class GivenFiles:
@@ -39,16 +48,16 @@ class GivenFiles:
 
     def optional_table(self, data: Any, name: str) -> str | None:
         """The path of a table on a disk, or the name of one in memory, whose columns have heads."""
-        if data is None or isinstance(data, (str, os.PathLike)):
-            return None if data is None else os.fspath(data)
+        if _is_path(data):
+            return path_of(data)
         if not hasattr(data, "keys"):
             raise fault(name, "has no columns with heads", "give a file, a DataFrame, or a mapping of columns")
         return self.table(data, name, ())
 
     def outline(self, outline: Any) -> str | None:
         """The path of an outline, or the name of one in memory."""
-        if outline is None or isinstance(outline, (str, os.PathLike)):
-            return None if outline is None else os.fspath(outline)
+        if _is_path(outline):
+            return path_of(outline)
         several = isinstance(outline, (list, tuple)) and all(np.ndim(line) == 2 for line in outline)
         lines: Any = outline if several else [outline]
         text = ["x [mm],y [mm],line"]
@@ -59,8 +68,8 @@ class GivenFiles:
 
     def mesh(self, mesh: Any) -> str | None:
         """The path of a mesh, or the name of one in memory: of meshio, PyVista or gmsh."""
-        if mesh is None or isinstance(mesh, (str, os.PathLike)):
-            return None if mesh is None else os.fspath(mesh)
+        if _is_path(mesh):
+            return path_of(mesh)
         import tempfile
 
         with tempfile.TemporaryDirectory() as folder:

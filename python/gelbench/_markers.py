@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._errors import fault
-from ._given import GivenFiles, paths_of
+from ._given import GivenFiles, path_of, paths_of
 from ._images import Images, image_options, images_of
 from ._material import Material, card
 from ._material import material as _material
@@ -243,7 +242,7 @@ def correct(
         "encoding": encoding,
         "y_axis": y_axis,
         "places": places,
-        "rest": _path(rest),
+        "rest": path_of(rest),
         "mesh": in_memory.mesh(mesh),
         "mesh_unit": mesh_unit,
         "merge_nodes": None if merge_nodes is None else number(merge_nodes, "mm", "merge_nodes"),
@@ -267,10 +266,6 @@ def correct(
     options["in_memory"] = in_memory.files
     name = Path(conditions or (files[0] if files else "images")).stem
     return Correction(*_core.correct(name, files, card(own), size, what, options, callback(progress)))
-
-
-def _path(path: PathLike | None) -> str | None:
-    return None if path is None else os.fspath(path)
 
 
 def _table_of(markers: Any, in_memory: GivenFiles) -> str:

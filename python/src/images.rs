@@ -37,8 +37,8 @@ impl<'py> FromPyObject<'_, 'py> for Image {
 }
 
 impl Image {
-    fn file(&self, name: &str) -> Result<ImageFile, Error> {
-        ImageFile::of_values(name, self.size, self.values.clone())
+    fn file(self, name: &str) -> Result<ImageFile, Error> {
+        ImageFile::of_values(name, self.size, self.values)
     }
 }
 
@@ -65,14 +65,14 @@ impl ImageOptions {
     ///
     /// # Errors
     /// [`Error::Input`] where an image cannot be one.
-    pub fn settings(&self) -> Result<ImageSettings, Error> {
+    pub fn settings(self) -> Result<ImageSettings, Error> {
         let mut orders = Order::NAMES.iter();
         let order = orders.find(|(name, _)| *name == self.subset_shape);
         let (_, order) = order.ok_or_else(|| {
             let message = format!("subset_shape `{}` is not known", self.subset_shape);
             input(message, "use affine or quadratic")
         })?;
-        let frames = self.frames.iter().enumerate();
+        let frames = self.frames.into_iter().enumerate();
         let frames = frames.map(|(number, image)| image.file(&format!("images[{number}]")));
         Ok(ImageSettings {
             subsets: Settings {
@@ -80,9 +80,9 @@ impl ImageOptions {
                 subset: self.subset,
                 order: *order,
             },
-            mask: match &self.mask {
+            mask: match self.mask {
                 None => None,
-                Some(Source::File(path)) => Some(ImageFile::new(path, 0)),
+                Some(Source::File(path)) => Some(ImageFile::new(&path, 0)),
                 Some(Source::Array(image)) => Some(image.file("mask")?),
             },
             in_memory: frames.collect::<Result<_, _>>()?,

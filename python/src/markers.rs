@@ -161,14 +161,15 @@ pub fn correct(
         let regions = regions.into_iter();
         let regions = regions.map(|(name, card)| (name, watched(card, watch)));
         conditions.regions.extend(regions);
+        let (reading, mesh, shape) = (options.reading()?, options.mesh()?, options.shape()?);
         let request = Request {
-            reading: options.reading()?,
+            reading,
             images: options.images.settings()?,
             material: card.name.clone(),
             thickness,
-            mesh: options.mesh()?,
+            mesh,
             cell_size: options.cell_size,
-            shape: options.shape()?,
+            shape,
             holes: options.holes,
             conditions,
             forces: options.forces.clone(),

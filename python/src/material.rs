@@ -99,6 +99,14 @@ impl MaterialCard {
     }
 }
 
+/// A plain number with the internal unit of a dimension; a text with a unit as it is.
+fn with_unit(value: &str, dimension: Dimension) -> String {
+    if dimension == Dimension::Ratio || value.parse::<f64>().is_err() {
+        return value.to_owned();
+    }
+    format!("{value} {}", dimension.internal_unit())
+}
+
 /// What is known of a material, by the keys of a card; plain numbers are in MPa where a unit is needed.
 fn known(law: &str, values: &BTreeMap<String, String>) -> Result<Known, Error> {
     let law = Law::named(law).ok_or_else(|| {
@@ -111,36 +119,21 @@ fn known(law: &str, values: &BTreeMap<String, String>) -> Result<Known, Error> {
     let mut known = Known::of(law);
     for (key, value) in values {
         let parameter = entries.parameters.iter().find(|one| one.key == key);
-        let stress = || {
-            let unit = if value.parse::<f64>().is_ok() {
-                " MPa"
-            } else {
-                ""
-            };
-            units::parse(&format!("{value}{unit}"), Dimension::Stress)
+        if let Some(one) = parameter {
+            let value = with_unit(value, one.dimension);
+            known.parameters.push((key.clone(), value));
+            continue;
+        }
+        let measure = |dimension| {
+            units::parse(&with_unit(value, dimension), dimension)
                 .map_err(|fault| refused(format!("{key}: {fault}")))
         };
-        match (&**key, parameter) {
-            (_, Some(one)) => {
-                let unit = match one.dimension {
-                    Dimension::Ratio => "",
-                    other => other.internal_unit(),
-                };
-                let value = match value.parse::<f64>() {
-                    Ok(_) => format!("{value} {unit}").trim_end().to_owned(),
-                    Err(_) => value.clone(),
-                };
-                known.parameters.push((key.clone(), value));
-            }
-            ("youngs_modulus", _) => known.moduli.young = Some(stress()?),
-            ("shear_modulus", _) => known.moduli.shear = Some(stress()?),
-            ("bulk_modulus", _) => known.moduli.bulk = Some(stress()?),
-            ("poisson_ratio", _) => {
-                let ratio = units::parse(value, Dimension::Ratio);
-                let ratio = ratio.map_err(|fault| refused(format!("{key}: {fault}")))?;
-                known.moduli.poisson_ratio = Some(ratio);
-            }
-            ("density", _) => known.density = Some(value.clone()),
+        match &**key {
+            "youngs_modulus" => known.moduli.young = Some(measure(Dimension::Stress)?),
+            "shear_modulus" => known.moduli.shear = Some(measure(Dimension::Stress)?),
+            "bulk_modulus" => known.moduli.bulk = Some(measure(Dimension::Stress)?),
+            "poisson_ratio" => known.moduli.poisson_ratio = Some(measure(Dimension::Ratio)?),
+            "density" => known.density = Some(value.clone()),
             _ => known.parameters.push((key.clone(), value.clone())),
         }
     }

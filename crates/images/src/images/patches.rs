@@ -83,17 +83,21 @@ impl Patches<'_> {
         patch.expected_deviation() < PRECISE * self.speckle
     }
 
+    /// A later image as it is measured in.
+    pub fn spline(&self, image: &GreyImage) -> Spline {
+        Spline::new(&self.tracker.repaired(image))
+    }
+
     /// The displacement of each patch in an image, from fields about its point: `about` gives the field about a point of the grid. The measurements
     /// stand at the numbers of the grid's points; a point without one is `None`.
     pub fn measure(
         &self,
-        image: &GreyImage,
+        spline: &Spline,
         about: &(dyn Fn(usize) -> Option<Warp> + Sync),
     ) -> Vec<Option<Tracked>> {
-        let spline = Spline::new(&self.tracker.repaired(image));
         let measured = self.points.par_iter().map(|&number| {
             let guess = about(number)?;
-            self.measure_one(&spline, self.tracker.grid.points[number], guess)
+            self.measure_one(spline, self.tracker.grid.points[number], guess)
         });
         let measured: Vec<Option<Tracked>> = measured.collect();
         let mut all = vec![None; self.tracker.grid.points.len()];

@@ -160,7 +160,8 @@ fn patches_share_no_pixel_and_their_intervals_hold() {
             let mut tracker = Tracker::new(&first, &other, &region, Settings::default()).unwrap();
             let tracked = tracker.follow(&other).unwrap();
             let patches = tracker.patches();
-            let measured = patches.measure(&other, &|point| Some(tracked[point]?.warp()));
+            let about = |point: usize| Some(tracked[point]?.warp());
+            let measured = patches.measure(&patches.spline(&other), &about);
             let truth = |x| motion.displacement(x);
             let places: Vec<[f64; 2]> = measured
                 .iter()

@@ -200,8 +200,9 @@ fn followed(tracker: &mut Tracker, file: &ImageFile) -> Result<[Vec<Option<Track
     let followed = file.read().and_then(|image| {
         let points = tracker.follow(&image)?;
         let about = |point: usize| Some(points[point]?.warp());
-        let patches = tracker.patches().measure(&image, &about);
-        Ok([points, patches])
+        let patches = tracker.patches();
+        let measured = patches.measure(&patches.spline(&image), &about);
+        Ok([points, measured])
     });
     of_file(file, followed)
 }

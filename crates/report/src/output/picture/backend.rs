@@ -27,8 +27,8 @@ pub(super) fn units(points: f64) -> i32 {
     (FINE * points).round() as i32
 }
 
-/// A place in points of the design.
-pub(super) fn place((x, y): BackendCoord) -> [f64; 2] {
+/// A point of plotters in points of the design.
+pub(super) fn point((x, y): BackendCoord) -> [f64; 2] {
     [f64::from(x) / FINE, f64::from(y) / FINE]
 }
 
@@ -132,7 +132,7 @@ impl DrawingBackend for Backend<'_> {
         style: &S,
     ) -> Done {
         self.end_circles();
-        let places: Vec<[f64; 2]> = path.into_iter().map(place).collect();
+        let places: Vec<[f64; 2]> = path.into_iter().map(point).collect();
         let pen = self.pen(style);
         self.sheet.put(Mark::line(&places, pen));
         Ok(())
@@ -167,7 +167,7 @@ impl DrawingBackend for Backend<'_> {
         style: &S,
     ) -> Done {
         self.end_circles();
-        let corners: Vec<[f64; 2]> = corners.into_iter().map(place).collect();
+        let corners: Vec<[f64; 2]> = corners.into_iter().map(point).collect();
         let colour = self.pen(style).colour;
         self.sheet.put(Mark::area(&corners, colour));
         Ok(())
@@ -189,7 +189,7 @@ impl DrawingBackend for Backend<'_> {
             self.end_circles();
             self.of_circles = of_circles;
         }
-        self.circles.push(place(centre));
+        self.circles.push(point(centre));
         Ok(())
     }
 }

@@ -5,7 +5,7 @@ use plotters::element::{Circle, PathElement, Polygon, Rectangle as RectangleElem
 use plotters::prelude::Cartesian2d;
 use plotters::style::{Color, ShapeStyle};
 
-use super::backend::{Coordinates, chart, opaque, place, units};
+use super::backend::{Coordinates, chart, opaque, point, units};
 use super::canvas::{EDGE, GAP, Sheet, Title, render};
 use super::design::{DrawResult, Size};
 use super::legend::Legend;
@@ -264,7 +264,7 @@ impl<'a> Frame<'a> {
 
     /// Where a point is whose positions on the axes are given.
     fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        place(self.coordinates().translate(&(x, y)))
+        point(self.coordinates().translate(&(x, y)))
     }
 
     /// Where the points of a line are.

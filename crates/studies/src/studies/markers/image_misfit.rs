@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::MarkerStudy;
-use crate::images::{Warp, series};
+use crate::images::{Patches, Warp, series};
 use crate::markers::{Frame, Marker};
 use crate::statistics::median;
 use crate::studies::images::TrackedImages;
@@ -41,13 +41,16 @@ impl MarkerStudy {
         let Some(images) = images else {
             return self;
         };
-        let frames = self.series.frames.par_iter();
-        let measured: Vec<Option<Measured>> = if images.tracker.patches().are_precise() {
-            frames
-                .map(|frame| images.about_tracked(&self, frame))
-                .collect()
+        let misfit = ImageMisfit {
+            images: &images,
+            patches: images.tracker.patches(),
+            study: &self,
+        };
+        let measured: Vec<Option<Measured>> = if misfit.patches.are_precise() {
+            let frames = self.series.frames.par_iter();
+            frames.map(|frame| misfit.about_tracked(frame)).collect()
         } else {
-            images.in_turn(&self)
+            misfit.in_turn()
         };
         for (frame, measured) in self.series.frames.iter_mut().zip(measured) {
             if let Some(measured) = measured {
@@ -58,13 +61,20 @@ impl MarkerStudy {
     }
 }
 
-impl TrackedImages {
-    fn in_turn(&self, study: &MarkerStudy) -> Vec<Option<Measured>> {
-        let mut before = vec![0.0; 2 * study.mesh.nodes.len()];
-        let frames = study.series.frames.iter().map(|frame| {
+/// The images of a study, and the patches of the first one.
+struct ImageMisfit<'a> {
+    images: &'a TrackedImages,
+    patches: Patches<'a>,
+    study: &'a MarkerStudy,
+}
+
+impl ImageMisfit<'_> {
+    fn in_turn(&self) -> Vec<Option<Measured>> {
+        let mut before = vec![0.0; 2 * self.study.mesh.nodes.len()];
+        let frames = self.study.series.frames.iter().map(|frame| {
             let starts = [
-                self.settled(study, frame, before.clone()),
-                self.about_tracked(study, frame),
+                self.settled(frame, before.clone()),
+                self.about_tracked(frame),
             ];
             let starts = starts.into_iter().flatten();
             let best = starts.max_by(|a, b| a.similarity.total_cmp(&b.similarity))?;
@@ -74,35 +84,30 @@ impl TrackedImages {
         frames.collect()
     }
 
-    fn about_tracked(&self, study: &MarkerStudy, frame: &Frame) -> Option<Measured> {
-        let start = study.estimate_frame(frame).ok()?;
-        self.settled(study, frame, start.displacement)
+    fn about_tracked(&self, frame: &Frame) -> Option<Measured> {
+        let start = self.study.estimate_frame(frame).ok()?;
+        self.settled(frame, start.displacement)
     }
 
     /// The patches about a field, about the field that is nearest to these, and so on until they stay.
-    fn settled(
-        &self,
-        study: &MarkerStudy,
-        frame: &Frame,
-        mut displacement: Vec<f64>,
-    ) -> Option<Measured> {
-        let mut files = self.files.1.iter();
+    fn settled(&self, frame: &Frame, mut displacement: Vec<f64>) -> Option<Measured> {
+        let mut files = self.images.files.1.iter();
         let (_, file) = files.find(|(number, _)| *number == frame.number)?;
         let image = file.read().ok()?;
-        let patches = self.tracker.patches();
+        let (spline, pixel) = (self.patches.spline(&image), self.images.pixel);
         let (mut frame, mut similarity) = (frame.clone(), 0.0);
         for _ in 0..MOST {
-            let warp = |point: usize| self.warp(study, &displacement, point, patches.width());
-            let measured = patches.measure(&image, &warp);
+            let warp = |point: usize| self.warp(&displacement, point);
+            let measured = self.patches.measure(&spline, &warp);
             similarity = median(measured.iter().flatten().map(|patch| patch.similarity));
-            let all = series(&[(frame.number, measured)], image.size()[1], self.pixel);
+            let all = series(&[(frame.number, measured)], image.size()[1], pixel);
             let markers = all.frames.into_iter().next()?.markers;
-            let is_last = is_unchanged(&frame.markers, &markers, self.pixel);
+            let is_last = is_unchanged(&frame.markers, &markers, pixel);
             frame.markers = markers;
             if is_last {
                 break;
             }
-            displacement = study.estimate_frame(&frame).ok()?.displacement;
+            displacement = self.study.estimate_frame(&frame).ok()?.displacement;
         }
         Some(Measured {
             markers: frame.markers,
@@ -112,26 +117,18 @@ impl TrackedImages {
     }
 
     /// A field of nodal displacements about a point of the grid, in pixels and y down.
-    fn warp(
-        &self,
-        study: &MarkerStudy,
-        displacement: &[f64],
-        point: usize,
-        width: usize,
-    ) -> Option<Warp> {
-        let up = self.tracker.reference().image.size()[1] as f64 - 1.0;
-        let [x, y] = self.tracker.places()[point].map(|pixel| pixel as f64);
-        let half = 0.5 * width as f64;
-        let place = |along: f64, down: f64| {
-            [
-                (x + half * along) * self.pixel,
-                (up - y - half * down) * self.pixel,
-            ]
-        };
-        (study.mesh.outside(place(0.0, 0.0)) <= OUTSIDE).then(|| {
+    fn warp(&self, displacement: &[f64], point: usize) -> Option<Warp> {
+        let TrackedImages { tracker, pixel, .. } = self.images;
+        let up = tracker.reference().image.size()[1] as f64 - 1.0;
+        let [x, y] = tracker.places()[point].map(|pixel| pixel as f64);
+        let half = 0.5 * self.patches.width() as f64;
+        let at =
+            |along: f64, down: f64| [(x + half * along) * pixel, (up - y - half * down) * pixel];
+        let mesh = &self.study.mesh;
+        (mesh.outside(at(0.0, 0.0)) <= OUTSIDE).then(|| {
             Warp::sampled(half, |along, down| {
-                let [u, v] = study.mesh.displacement_at(displacement, place(along, down));
-                [u / self.pixel, -v / self.pixel]
+                let [u, v] = mesh.displacement_at(displacement, at(along, down));
+                [u / pixel, -v / pixel]
             })
         })
     }
