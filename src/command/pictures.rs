@@ -3,8 +3,10 @@
 use clap::Args;
 
 use crate::command::choice::one_of;
-use gelbench_report::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
-use gelbench_studies::studies::pictures::{Pictures, Shown};
+use gelbench_report::results::{
+    Palette, PictureFormat, PictureStyle, PictureWidth, SheetField, ShownFields,
+};
+use gelbench_studies::studies::pictures::Pictures;
 
 /// What the command line says of the pictures of fields.
 #[derive(Args, Debug)]
@@ -32,6 +34,16 @@ pub struct StyleOptions {
     /// Colours of the pictures: dark for slides, print if lightness alone must distinguish them
     #[arg(long, value_name = "NAME", value_parser = one_of(&Palette::NAMES), default_value = "default")]
     palette: Palette,
+    /// Size of the numbers in points, in print
+    #[arg(long, value_name = "POINTS", value_parser = font_size, default_value_t = PictureStyle::FONT_SIZE)]
+    font_size: f64,
+}
+
+/// The size of letters, as studies bound it.
+fn font_size(text: &str) -> Result<f64, String> {
+    let size = text.trim_end_matches("pt").trim().parse();
+    let size = size.ok().filter(|size| (5.0..=12.0).contains(size));
+    size.ok_or_else(|| "must be a number of points from 5 to 12, such as 9".to_owned())
 }
 
 impl StyleOptions {
@@ -41,6 +53,7 @@ impl StyleOptions {
             formats: self.picture_formats.clone(),
             width: self.picture_width,
             palette: self.palette,
+            font_size: self.font_size,
         }
     }
 }
@@ -49,9 +62,12 @@ impl PictureOptions {
     /// The pictures that are chosen.
     pub fn chosen(&self) -> Pictures {
         Pictures {
-            fields: self.picture_fields.clone(),
-            shown: Shown::Last,
+            fields: ShownFields {
+                fields: self.picture_fields.clone(),
+                ..Pictures::default().fields
+            },
             style: self.style.style(),
+            ..Pictures::default()
         }
     }
 }

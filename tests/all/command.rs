@@ -136,18 +136,18 @@ fn nothing_of_an_earlier_run_is_left_among_the_files() {
     let output = folder.path().join("output/small");
     gelbench(folder.path(), &["run", "small.toml"]).code(0);
     assert!(
-        output.join("plate_displacement_002.png").exists()
+        output.join("small_displacement_002.png").exists()
             && output.join("vtk/corrected_002.vtu").exists()
     );
     fs::write(output.join("notes_002.png"), "mine").unwrap();
     fs::write(folder.path().join("small.toml"), format!("{SMALL}{all}")).unwrap();
     gelbench(folder.path(), &["run", "small.toml"]).code(0);
     assert!(
-        !output.join("plate_displacement_002.png").exists()
+        !output.join("small_displacement_002.png").exists()
             && !output.join("vtk/corrected_002.vtu").exists()
     );
     assert!(
-        output.join("plate_displacement_001.png").exists() && output.join("notes_002.png").exists()
+        output.join("small_displacement_001.png").exists() && output.join("notes_002.png").exists()
     );
 }
 
@@ -260,8 +260,8 @@ fn where_the_springs_end_the_other_models_are_complete() {
             ("vtk/mass_spring.pvd", false),
             ("vtk/corrected_001.vtu", true),
             ("vtk/finite_element_001.vtu", true),
-            ("plate_displacement.png", true),
-            ("plate_error.png", true),
+            ("small_displacement.png", true),
+            ("small_error.png", true),
         ] {
             assert_eq!(output.join(file).exists(), there, "{file}");
         }
@@ -285,7 +285,7 @@ fn where_the_finite_elements_end_springs_and_corrected_field_are_complete() {
     assert!(number(step, &["mass_spring", "force_N"]) > 1.0);
     let output = folder.path().join("output/small");
     assert!(
-        output.join("plate_displacement.png").exists() && !output.join("plate_error.png").exists()
+        output.join("small_displacement.png").exists() && !output.join("small_error.png").exists()
     );
 }
 

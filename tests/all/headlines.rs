@@ -71,11 +71,11 @@ fn forces(results: &Results, model: &str) -> Vec<[f64; 2]> {
 fn curves_of_force_begin_at_rest_and_have_no_point_that_was_not_computed() {
     let plate = plate("[\"10 %\", \"100 %\"]", [12, 4]);
     let strip = strip(6, CLAMPED);
-    let drawn = lines(&plate, "plate_forces.png")
+    let drawn = lines(&plate, "_forces.png")
         .iter()
         .map(|line| (&plate, line));
     let drawn = drawn.chain(
-        lines(&strip, "strip_forces.png")
+        lines(&strip, "_forces.png")
             .iter()
             .map(|line| (&strip, line)),
     );

@@ -48,7 +48,7 @@ fn a_released_plate_is_written_with_tables_and_series() {
     );
     let series = fs::read_to_string(folder.path().join("out/vtk/finite_element.pvd")).unwrap();
     assert!(series.contains("timestep=\"0.02\""), "{series}");
-    assert!(folder.path().join("out/motion_energy.png").exists());
+    assert!(folder.path().join("out/small_energy.png").exists());
 }
 
 /// Of a slender plate many vibrations of bending are slower than the first longitudinal one, √(E₀/ρ)/(2 L) = 144 Hz here.

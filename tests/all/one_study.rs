@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::common::{folder_with, gelbench};
 use gelbench::budget::Budget;
 use gelbench::kinds::read_given;
-use gelbench::results::Results;
+use gelbench::results::{Content, Drawing, Results};
 use gelbench::studies::Progress;
 
 fn computed(text: &str) -> Results {
@@ -47,9 +47,8 @@ fn a_plate_and_the_same_strip_have_the_same_forces_findings_and_files() {
         }
     }
     let names = |results: &Results| {
-        let prefix = format!("{}_", results.kind.replace("specimen", "strip"));
         let figures = results.outcome.figures.iter();
-        let figures = figures.map(|figure| figure.name.replacen(&prefix, "", 1));
+        let figures = figures.map(|figure| figure.name.clone());
         let grids = results
             .outcome
             .grids
@@ -130,7 +129,7 @@ fn every_study_says_what_it_writes_and_where() {
         let names: Vec<String> = names
             .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
             .collect();
-        let is_drawn = |name: &String| name.ends_with(".png") && name != "motion.png";
+        let is_drawn = |name: &String| name.ends_with(".png") && name != "small.png";
         assert!(
             !names.iter().any(|name| is_drawn(name) || name == "vtk"),
             "{names:?}"
@@ -185,4 +184,130 @@ fn a_support_that_leaves_the_line_of_another_one_is_a_fault() {
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
     let told = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
     assert!(told.contains("slides along a line"), "{told}");
+}
+
+/// The rows of a table of a study as numbers behind the names of model and place.
+fn rows(results: &Results, table: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut files = results.outcome.files.iter();
+    let text = files.find_map(|(name, content)| match content {
+        Content::Text(text) if name == table => Some(text),
+        _ => None,
+    });
+    let mut lines = text.unwrap_or_else(|| panic!("no {table}")).lines();
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect();
+    let head = cells(lines.next().unwrap());
+    (head, lines.map(cells).collect())
+}
+
+#[test]
+fn what_is_measured_within_a_sheet_in_uniaxial_tension_is_exact_in_every_model_that_is() {
+    const MEASURED: &str = "[[probe]]\nname = \"off\"\nat = [\"7 mm\", \"2.5 mm\"]\n\
+        [[line]]\nname = \"across\"\nfrom = [\"11 mm\", \"-9 mm\"]\nto = [\"11 mm\", \"9 mm\"]\npoints = 19\n\
+        [[extensometer]]\nname = \"clip\"\nfrom = [\"5 mm\", \"1 mm\"]\nto = [\"20 mm\", \"1 mm\"]\n";
+    let strip = STRIP.replace(
+        "[[support]]\ngroup = \"left\"\nkind = \"clamp\"\n",
+        SYMMETRIC,
+    );
+    let strip = strip.replace("x = \"30 mm\"\ny = \"0 mm\"", "x = \"30 mm\"");
+    let results = computed(&(strip + MEASURED));
+    let of = |head: &[String], row: &[String], name: &str| -> f64 {
+        let column = head.iter().position(|own| own == name).unwrap();
+        row[column].parse().unwrap()
+    };
+    let (head, probes) = rows(&results, "probes.csv");
+    let (lengths, extensometers) = rows(&results, "extensometers.csv");
+    let (_, lines) = rows(&results, "lines.csv");
+    assert_eq!(
+        (probes.len(), extensometers.len()),
+        (6, 6),
+        "three models, two steps"
+    );
+    // From −9 to 9 mm, of which the sheet takes −5 to 5 mm.
+    let on_sheet = lines.iter().filter(|row| !row[6].is_empty()).count();
+    assert_eq!((lines.len(), on_sheet), (6 * 19, 6 * 11));
+    let exact = |row: &&Vec<String>| row[0] != "mass-spring";
+    for (row, clip) in probes
+        .iter()
+        .zip(&extensometers)
+        .filter(|(row, _)| exact(row))
+    {
+        let stretch = 1.0 + of(&head, row, "load_factor");
+        let close = |name: &str, expected: f64| {
+            let value = of(&head, row, name);
+            assert!((value - expected).abs() < 1e-9, "{name} {value} {expected}");
+        };
+        close("stretch_1", stretch);
+        close("stretch_2", stretch.powf(-0.5));
+        close("displacement_x_mm", 7.0 * (stretch - 1.0));
+        close("cauchy_xy_MPa", 0.0);
+        assert!((of(&lengths, clip, "stretch") - stretch).abs() < 1e-9);
+        // σ A, with A = A₀ / λ of 10 × 2 mm².
+        let force = 20.0 / stretch * of(&head, row, "cauchy_xx_MPa");
+        assert!((of(&lengths, clip, "force_x_N") / force - 1.0).abs() < 1e-8);
+    }
+    let names: Vec<&str> = results
+        .outcome
+        .figures
+        .iter()
+        .map(|own| &*own.name)
+        .collect();
+    for name in [
+        "sheet_probes.png",
+        "sheet_line_across_002.png",
+        "sheet_extensometers.png",
+    ] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+}
+
+/// A left end that slides along itself, on an axis of symmetry along x.
+const SYMMETRIC: &str = "[[support]]\ngroup = \"left\"\nkind = \"displacement\"\nx = \"0 mm\"\n\
+    [[support]]\ngroup = \"bottom\"\nkind = \"displacement\"\ny = \"0 mm\"\n";
+
+#[test]
+fn pictures_show_the_fields_models_range_and_title_that_a_study_wants() {
+    let of = |pictures: &str| {
+        let results = computed(&format!("{STRIP}[pictures]\n{pictures}"));
+        let figures = results.outcome.figures.into_iter();
+        let fields = figures.filter_map(|figure| match figure.drawing {
+            Drawing::Field(field) if figure.name.contains("cauchy_xx") => Some(field),
+            _ => None,
+        });
+        fields.collect::<Vec<_>>()
+    };
+    let [figure] = &of("fields = [\"cauchy-xx\"]\nmodels = [\"finite-element\"]\n\
+        range = [\"0 kPa\", \"20 kPa\"]\ntitle = \"Stress\"\n")[..]
+    else {
+        panic!("one figure");
+    };
+    assert_eq!(
+        (figure.range, &*figure.title),
+        (Some([0.0, 0.02]), "Stress")
+    );
+    assert_eq!(figure.panels.len(), 1);
+    let [figure] = &of("fields = [\"cauchy-xx\"]\n")[..] else {
+        panic!("one figure");
+    };
+    assert_eq!((figure.range, figure.panels.len()), (None, 3));
+    assert!(figure.title.starts_with("Cauchy stress along x at"));
+    for (pictures, message) in [
+        (
+            "range = [\"0 MPa\", \"1 MPa\"]\n",
+            "is the range of one field",
+        ),
+        (
+            "fields = [\"cauchy-xx\"]\nrange = [\"1 MPa\", \"0 MPa\"]\n",
+            "two ascending values",
+        ),
+        ("font_size = 40\n", "must be"),
+        ("fields = [\"cauchy-zx\"]\n", "cauchy-zx"),
+    ] {
+        let text = format!("{STRIP}[pictures]\n{pictures}");
+        let read = read_given(Path::new("sheet.toml"), text, Budget::USUAL);
+        let fault = read
+            .err()
+            .map(|fault| fault.to_string())
+            .unwrap_or_default();
+        assert!(fault.contains(message), "{pictures}: {fault}");
+    }
 }

@@ -20,6 +20,7 @@ pub mod motion;
 pub mod other_files;
 pub mod pictures;
 pub mod plate;
+pub mod points;
 mod regions;
 pub mod sections;
 mod series;
@@ -309,6 +310,16 @@ impl Kind {
 pub fn name(file: &Path) -> String {
     let stem = file.file_stem();
     stem.map_or_else(String::new, |stem| stem.to_string_lossy().into())
+}
+
+/// A name as the begin of the names of files.
+fn file_stem(name: &str) -> String {
+    let letter = |letter: char| match letter {
+        '-' | '_' | '.' => letter,
+        _ if letter.is_alphanumeric() => letter,
+        _ => '_',
+    };
+    name.chars().map(letter).collect()
 }
 
 /// A study that was read.

@@ -91,6 +91,8 @@ pub struct FieldFigure {
     pub quantity: String,
     /// The scale of the colour bar.
     pub scale: Scale,
+    /// Lower and upper end of the colour bar; else all values but for single places.
+    pub range: Option<[f64; 2]>,
     /// The plates.
     pub panels: Vec<Panel>,
 }
@@ -106,6 +108,7 @@ impl FieldFigure {
             title: title.into(),
             quantity: quantity.into(),
             scale: Scale::Linear,
+            range: None,
             panels: panels.into_iter().collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! The style of all pictures.
 
 /// Formats, width and colours of pictures.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PictureStyle {
     /// The formats that are written.
     pub formats: Vec<PictureFormat>,
@@ -9,6 +9,13 @@ pub struct PictureStyle {
     pub width: PictureWidth,
     /// Their colours.
     pub palette: Palette,
+    /// The size of the letters of numbers in a printer's points; lines and gaps grow with it.
+    pub font_size: f64,
+}
+
+impl PictureStyle {
+    /// The usual size of letters.
+    pub const FONT_SIZE: f64 = 7.2;
 }
 
 impl Default for PictureStyle {
@@ -17,6 +24,7 @@ impl Default for PictureStyle {
             formats: vec![PictureFormat::Png],
             width: PictureWidth::Screen,
             palette: Palette::Default,
+            font_size: Self::FONT_SIZE,
         }
     }
 }

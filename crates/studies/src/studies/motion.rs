@@ -11,7 +11,9 @@ use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::results::Outcome;
 use crate::results::models::{FINITE_ELEMENTS, MASS_SPRING};
-use crate::studies::{Computation, Kind, Loaded, ModelKind, PreparedStudy, Progress, SOUND};
+use crate::studies::{
+    Computation, Kind, Loaded, ModelKind, PreparedStudy, Progress, SOUND, file_stem,
+};
 use crate::units::number;
 
 mod between;
@@ -50,8 +52,11 @@ pub fn load(
 /// A motion that was read, ready to be computed.
 pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<MovingSheet>) -> PreparedStudy {
     let about = loaded.made.describe();
-    let read =
-        loaded.map(|sheet| -> Computation { Box::new(move |progress| compute(&sheet, progress)) });
+    let stem = file_stem(&name);
+    let read = loaded.map(|mut sheet| -> Computation {
+        sheet.specimen.name = stem;
+        Box::new(move |progress| compute(&sheet, progress))
+    });
     PreparedStudy {
         about,
         ..PreparedStudy::new(kind, name, text, read)

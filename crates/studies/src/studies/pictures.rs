@@ -1,14 +1,17 @@
 //! What a study says of its pictures.
 
+use super::ModelKind;
 use crate::document::{Bound, Section};
-use crate::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
+use crate::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField, ShownFields};
 use crate::units::Dimension;
 
 /// The pictures that a study wants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pictures {
-    /// The quantities that are shown of every model.
-    pub fields: Vec<SheetField>,
+    /// The quantities that are shown.
+    pub fields: ShownFields,
+    /// The models that are shown.
+    pub models: Vec<ModelKind>,
     /// Where on the path.
     pub shown: Shown,
     /// How they are drawn.
@@ -29,7 +32,12 @@ pub enum Shown {
 impl Default for Pictures {
     fn default() -> Self {
         Self {
-            fields: vec![SheetField::VonMises, SheetField::LargestPrincipalStress],
+            fields: ShownFields {
+                fields: vec![SheetField::VonMises, SheetField::LargestPrincipalStress],
+                range: None,
+                title: None,
+            },
+            models: ModelKind::ALL.into(),
             shown: Shown::Last,
             style: PictureStyle::default(),
         }
@@ -43,9 +51,8 @@ impl Pictures {
     /// Reads `[pictures]`. The places along the path, of one dimension, are under `key`; `path` are those that there are, or
     /// none where any will do.
     pub fn read(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Self {
-        let fields = section
-            .choices("fields", &SheetField::NAMES)
-            .unwrap_or_default();
+        let fields = read_fields(section);
+        let models = section.choices("models", &ModelKind::NAMES);
         let shown = read_shown(section, key, dimension, path);
         let formats = section.choices("formats", &PictureFormat::NAMES);
         if formats.as_ref().is_some_and(Vec::is_empty) {
@@ -59,13 +66,44 @@ impl Pictures {
             palette: section
                 .choice("palette", &Palette::NAMES)
                 .unwrap_or(Palette::Default),
+            font_size: section.number("font_size", Bound::Within(5.0, 12.0)),
         };
         section.unknown_keys();
         Self {
             fields,
+            models: models.unwrap_or_default(),
             shown,
             style,
         }
+    }
+}
+
+/// The fields, the range of their colours and their heading, where these are stated.
+fn read_fields(section: &Section) -> ShownFields {
+    let fields = section.choices("fields", &SheetField::NAMES);
+    let fields = fields.unwrap_or_default();
+    let dimension = fields
+        .first()
+        .map_or(Dimension::Stress, |field| field.dimension());
+    let (word, range) = section.quantities_or(&["automatic"], "range", dimension, Bound::Any);
+    let range = match range[..] {
+        _ if word.is_some() => None,
+        [low, high] if low < high => Some([low, high]),
+        _ => {
+            let hint = "write the lower and the upper end, such as [\"0 MPa\", \"1 MPa\"]";
+            section.fault("range", "must be two ascending values", hint);
+            None
+        }
+    };
+    if range.is_some() && fields.len() > 1 {
+        let hint = "choose one field, such as fields = [\"cauchy-xx\"]";
+        section.fault("range", "is the range of one field", hint);
+    }
+    let title = section.heading("title");
+    ShownFields {
+        fields,
+        range,
+        title: (title != "automatic").then_some(title),
     }
 }
 

@@ -63,7 +63,7 @@ impl<'a> ModelSeries<'a> {
     }
 
     /// What its stresses at a step follow from.
-    fn deformed(&self, step: usize) -> Option<Deformed<'a>> {
+    pub fn deformed(&self, step: usize) -> Option<Deformed<'a>> {
         let state = self.states.get(step)?;
         let before = state.past.iter().copied();
         let fields = before.chain([state.displacement]).collect();
@@ -148,10 +148,18 @@ pub fn stress_figures(
     at: &str,
     file: &dyn Fn(&str) -> String,
 ) -> Vec<Figure> {
-    let deformed = series.iter().filter_map(|model| model.deformed(step));
-    let deformed: Vec<_> = deformed.collect();
-    let fields = &specimen.pictures.fields;
-    sheet_figures(fields, specimen.problem.laws(), &deformed, at, file)
+    let pictures = &specimen.pictures;
+    let shown = series
+        .iter()
+        .filter(|model| pictures.models.contains(&model.kind));
+    let deformed: Vec<_> = shown.filter_map(|model| model.deformed(step)).collect();
+    sheet_figures(
+        &pictures.fields,
+        specimen.problem.laws(),
+        &deformed,
+        at,
+        file,
+    )
 }
 
 /// The gauge section of a strip or a dog-bone.

@@ -10,13 +10,17 @@ use crate::error::Error;
 use crate::material::softened_law::check_memory;
 use crate::mesh::MeshData;
 use crate::results::Outcome;
-use crate::studies::{Computation, Kind, Loaded, ModelKind, PreparedStudy, Progress, SOUND};
+use crate::studies::{
+    Computation, Kind, Loaded, ModelKind, PreparedStudy, Progress, SOUND, file_stem,
+};
 
 pub mod along;
 mod files;
 pub(super) mod forces;
 mod headline;
 mod history;
+mod measured_fields;
+pub(super) mod measurements;
 mod outcome;
 pub(super) mod problem;
 mod read;
@@ -70,8 +74,11 @@ pub fn load_on(
 /// A specimen or a plate that was read, ready to be computed.
 pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<Specimen>) -> PreparedStudy {
     let (about, progress_steps) = (loaded.made.describe(), loaded.made.progress_steps());
-    let read = loaded
-        .map(|specimen| -> Computation { Box::new(move |progress| compute(&specimen, progress)) });
+    let stem = file_stem(&name);
+    let read = loaded.map(|mut specimen| -> Computation {
+        specimen.name = stem;
+        Box::new(move |progress| compute(&specimen, progress))
+    });
     PreparedStudy {
         about,
         progress_steps,

@@ -32,6 +32,7 @@ impl Animation {
             title: format!("{}, t = {time:.3} s", self.title),
             quantity: self.quantity.clone(),
             scale: Scale::Linear,
+            range: None,
             panels,
         }
     }

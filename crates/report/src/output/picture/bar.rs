@@ -37,10 +37,10 @@ impl Bar {
         look: Look,
         panels: &[Panel],
         quantity: &str,
-        scale: Scale,
+        (scale, range): (Scale, Option<[f64; 2]>),
         [left, top, panels_right, most]: [f64; 4],
     ) -> Self {
-        let range = Range::of(panels.iter(), scale);
+        let range = Range::of(panels.iter(), scale, range);
         let right = panels_right.max(most.min(left + LEAST)).min(most - 14.0);
         let arrow = |beyond: Option<f64>| beyond.map_or(0.0, |_| ARROW);
         let area = Rectangle::new(

@@ -31,6 +31,7 @@ pub(super) fn render(
     let vectors = Vectors {
         size,
         paper: look.paper(),
+        millimetres: look.millimetres(),
         image: (painter.image != before).then_some(painter.image),
         marks: all,
     };

@@ -29,12 +29,19 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// The range of all panels.
-    pub fn of<'a>(panels: impl Iterator<Item = &'a Panel> + Clone, scale: Scale) -> Self {
+    /// The range of all panels on a linear scale between two given values, or else all of their values.
+    pub fn of<'a>(
+        panels: impl Iterator<Item = &'a Panel> + Clone,
+        scale: Scale,
+        given: Option<[f64; 2]>,
+    ) -> Self {
         let values = panels.clone().flat_map(|panel| match &panel.values {
             Values::AtPoints(values) | Values::InCells(values) => values.iter().copied(),
         });
         let [least, most] = extremes(values.filter(|value| value.is_finite()));
+        if let Some([low, high]) = given {
+            return Self::between([low, high], [least, most], low == -high);
+        }
         let shares = panels.flat_map(|panel| {
             let means = panel
                 .corners()
@@ -80,6 +87,10 @@ impl Range {
             let margin = if high == 0.0 { 0.5 } else { 0.1 * high.abs() };
             (low, high) = (low - margin, high + margin);
         }
+        Self::between([low, high], [least, most], is_signed)
+    }
+
+    fn between([low, high]: [f64; 2], [least, most]: [f64; 2], is_signed: bool) -> Self {
         let margin = 1e-9 * (high - low);
         Self {
             low,
@@ -160,7 +171,7 @@ mod tests {
                 ([[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]], value)
             })
             .collect();
-        Range::of([Panel::quadrilaterals("", &cells)].iter(), scale)
+        Range::of([Panel::quadrilaterals("", &cells)].iter(), scale, None)
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, PixelDimensions, Unit};
 use tiny_skia::Pixmap;
 
-use super::look::{Look, MILLIMETRES};
+use super::look::Look;
 
 /// A part of a picture: left, top, width, height in pixels.
 pub(super) type Part = [u32; 4];
@@ -43,7 +43,7 @@ pub(super) fn encode(picture: &Pixmap, look: Option<Look>) -> Result<Vec<u8>, En
     let mut bytes = Vec::new();
     let mut encoder = encoder(&mut bytes, picture);
     if let Some(look) = look.filter(|look| look.is_printed()) {
-        let on_a_metre = (f64::from(look.pixels()) * 1000.0 / MILLIMETRES).round() as u32;
+        let on_a_metre = (f64::from(look.pixels()) * 1000.0 / look.millimetres()).round() as u32;
         encoder.set_pixel_dims(Some(PixelDimensions {
             xppu: on_a_metre,
             yppu: on_a_metre,

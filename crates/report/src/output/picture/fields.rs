@@ -73,7 +73,13 @@ impl FieldFigure {
             (below, Align::Left)
         };
         let room = [layout.left, bottom + GAP, layout.right(), right];
-        let bar = Bar::of(look, &self.panels, &self.quantity, self.scale, room);
+        let bar = Bar::of(
+            look,
+            &self.panels,
+            &self.quantity,
+            (self.scale, self.range),
+            room,
+        );
         Ok(Plan {
             layout,
             bar,

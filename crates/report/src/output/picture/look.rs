@@ -4,8 +4,8 @@ use super::letters::Letters;
 use super::marks::{Colour, Pen};
 use crate::results::{PALETTE, Palette, PictureStyle, PictureWidth};
 
-/// Millimetres of a printed picture for each point of the design: letters of 12 points become 7.2 of a printer's.
-pub(super) const MILLIMETRES: f64 = 0.2125;
+/// Millimetres of a printed picture for each point of the usual design: letters of 12 points become 7.2 of a printer's.
+const MILLIMETRES: f64 = 0.2125;
 
 /// Colours of a table.
 const COLOURS: usize = 256;
@@ -85,10 +85,12 @@ const PRINTED: [[u8; 3]; 6] = [
 ];
 
 /// How a picture looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     width: PictureWidth,
     palette: Palette,
+    /// The size of a point of the design, of that of the usual letters.
+    enlarged: f64,
 }
 
 impl Look {
@@ -96,6 +98,7 @@ impl Look {
         Self {
             width: style.width,
             palette: style.palette,
+            enlarged: style.font_size / PictureStyle::FONT_SIZE,
         }
     }
 
@@ -119,19 +122,26 @@ impl Look {
 
     /// The width in points of the design; pictures for a screen have their own.
     pub fn points(self, on_screen: u32) -> u32 {
-        match self.width {
+        let usual = match self.width {
             PictureWidth::Screen => on_screen,
             PictureWidth::OneColumn => 400,
             PictureWidth::TwoColumns => 848,
-        }
+        };
+        (f64::from(usual) / self.enlarged).round() as u32
     }
 
     /// Pixels for each point of the design: about 600 an inch where it is to be printed.
     pub fn pixels(self) -> f32 {
-        match self.width {
+        let usual = match self.width {
             PictureWidth::Screen => 2.0,
             PictureWidth::OneColumn | PictureWidth::TwoColumns => 5.0,
-        }
+        };
+        usual * self.enlarged as f32
+    }
+
+    /// Millimetres of a printed picture for each point of the design.
+    pub fn millimetres(self) -> f64 {
+        MILLIMETRES * self.enlarged
     }
 
     fn is_dark(self) -> bool {
@@ -259,6 +269,7 @@ mod tests {
             palette,
             width: PictureWidth::Screen,
             formats: vec![PictureFormat::Png],
+            ..PictureStyle::default()
         })
     }
 

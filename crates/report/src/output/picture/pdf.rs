@@ -15,17 +15,18 @@ use tiny_skia::{Path, PathSegment};
 use super::design::DrawResult;
 use super::encode::{colours, whole};
 use super::letters::{Face, Letters};
-use super::look::MILLIMETRES;
 use super::marks::{Colour, Mark, Pen, Words};
 use super::vectors::Vectors;
-
-/// Points of a printer for each point of the design.
-const SCALE: f32 = (MILLIMETRES * 72.0 / 25.4) as f32;
 
 /// The names of the regular and the bold font within a page.
 const FONTS: [(Name<'static>, bool); 2] = [(Name(b"regular"), false), (Name(b"bold"), true)];
 
 impl Vectors {
+    /// Points of a printer for each point of the design.
+    fn printed_points(&self) -> f32 {
+        (self.millimetres * 72.0 / 25.4) as f32
+    }
+
     /// The picture as PDF.
     pub fn pdf(&self) -> DrawResult<Vec<u8>> {
         let mut ids = (1..).map(Ref::new);
@@ -45,7 +46,8 @@ impl Vectors {
             .collect();
         let fonts = FONTS.map(|(name, is_bold)| (name, self.used(is_bold), [(); 5].map(|()| id())));
         let mut sheet = pdf.page(page);
-        sheet.media_box(Rect::new(0.0, 0.0, SCALE * width, SCALE * height));
+        let scale = self.printed_points();
+        sheet.media_box(Rect::new(0.0, 0.0, scale * width, scale * height));
         sheet.parent(pages).contents(drawing);
         let mut resources = sheet.resources();
         if self.image.is_some() {
@@ -106,7 +108,8 @@ impl Vectors {
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
         let mut content = Content::new();
         // From here on in points of the design, downwards.
-        content.transform([SCALE, 0.0, 0.0, -SCALE, 0.0, SCALE * height]);
+        let scale = self.printed_points();
+        content.transform([scale, 0.0, 0.0, -scale, 0.0, scale * height]);
         fill_with(&mut content, self.paper);
         content.rect(0.0, 0.0, width, height).fill_nonzero();
         if self.image.is_some() {

@@ -3,7 +3,7 @@ pub mod vision;
 
 use super::*;
 use crate::mesh::{CellShape, Mesh};
-use crate::results::{Animation, FieldFigure, Palette, Panel, PictureWidth};
+use crate::results::{Animation, FieldFigure, Panel, PictureWidth};
 
 fn squares(count: usize) -> Vec<([[f64; 2]; 4], f64)> {
     let square = |i: usize| {
@@ -49,7 +49,7 @@ fn styled(format: PictureFormat, width: PictureWidth) -> Vec<u8> {
     let style = PictureStyle {
         formats: vec![format],
         width,
-        palette: Palette::Default,
+        ..PictureStyle::default()
     };
     picture(&figure.into(), format, &style).unwrap()
 }

@@ -10,7 +10,6 @@ use tiny_skia::{Path, PathSegment, Pixmap};
 use super::design::{DrawResult, Size};
 use super::encode::encode;
 use super::letters::{Face, Letters};
-use super::look::MILLIMETRES;
 use super::marks::{Align, Colour, Mark, Words};
 
 /// The parts of a picture, from below.
@@ -18,6 +17,8 @@ pub(super) struct Vectors {
     /// Its size in points of the design.
     pub size: Size,
     pub paper: Colour,
+    /// Millimetres of a point.
+    pub millimetres: f64,
     /// What is shaded; `None` where nothing is.
     pub image: Option<Pixmap>,
     pub marks: Vec<Mark>,
@@ -35,7 +36,7 @@ impl Vectors {
     /// The picture as SVG, with its fonts.
     pub fn svg(&self) -> DrawResult<Vec<u8>> {
         let (width, height) = self.size;
-        let [wide, high] = [width, height].map(|points| f64::from(points) * MILLIMETRES);
+        let [wide, high] = [width, height].map(|points| f64::from(points) * self.millimetres);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{wide:.2}mm\" \
              height=\"{high:.2}mm\" viewBox=\"0 0 {width} {height}\">\n{}\

@@ -5,7 +5,7 @@ use crate::markers::Frame;
 use crate::mesh::Mesh;
 use crate::mesh::geometry::bounding_box;
 use crate::results::{
-    Deformed, Drawing, FieldFigure, Figure, Panel, SheetField, mesh_outlines, sheet_figures,
+    Deformed, Drawing, FieldFigure, Figure, Panel, ShownFields, mesh_outlines, sheet_figures,
 };
 use crate::studies::markers::MarkerStudy;
 
@@ -16,7 +16,7 @@ pub fn figures(
     study: &MarkerStudy,
     frame: &Frame,
     estimate: &FieldEstimate,
-    sheet: &[SheetField],
+    sheet: &ShownFields,
 ) -> Vec<Figure> {
     let pictures = Pictures {
         mesh: &study.mesh,
@@ -28,14 +28,8 @@ pub fn figures(
     let deformed = [Deformed::elastic(&*pictures.label, &study.mesh, fields)];
     let file = |name: &str| format!("{name}.png");
     let laws = study.laws(estimate);
-    let mut all = vec![pictures.along(0), pictures.along(1)];
-    all.extend(sheet_figures(
-        sheet,
-        (&laws).into(),
-        &deformed,
-        &pictures.label,
-        &file,
-    ));
+    let (laws, at) = ((&laws).into(), &*pictures.label);
+    let mut all = sheet_figures(&sheet.with_displacements(), laws, &deformed, at, &file);
     all.extend([
         Figure::new(
             "stress.png",
@@ -80,18 +74,6 @@ impl Pictures<'_> {
         let displacement = &self.estimate.displacement;
         let panel = Panel::at_nodes(&self.label, self.mesh, displacement, value);
         FieldFigure::new(title, quantity, [panel])
-    }
-
-    fn along(&self, axis: usize) -> Figure {
-        let u = &self.estimate.displacement;
-        let name = ["x", "y"][axis];
-        let quantity = format!("u{name} [mm]");
-        let component = |node: usize| u[2 * node + axis];
-        Figure::new(
-            format!("displacement_{name}.png"),
-            format!("The corrected displacement along {name}."),
-            self.at_nodes("Corrected displacement", &quantity, &component),
-        )
     }
 
     /// A value of each cell, at the nodes the mean of the cells around.

@@ -1,7 +1,7 @@
 //! Pictures, grids and tables of a motion.
 
 use super::between::{PARTS, with_cubics};
-use super::problem::{MovingSheet, Probe};
+use super::problem::MovingSheet;
 use super::solution::{ModelMotion, Motions};
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::results::models::CORRECTED;
@@ -9,6 +9,7 @@ use crate::results::{
     Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
     LineChart, PALETTE, Panel, Series, Stroke, csv, springs_csv,
 };
+use crate::studies::points::Probe;
 use crate::studies::series::{ModelSeries, stress_figures};
 use crate::studies::{ModelKind, SPRINGS_TABLE};
 use crate::units::brief;
@@ -67,22 +68,23 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -
     let sheets = displaced(series, count.saturating_sub(1));
     let until = brief(instants.last().copied().unwrap_or_default());
     let sheets = FieldFigure::new(format!("Sheets at t = {until} s"), ALONG, sheets);
+    let file = |what: &str| format!("{}_{what}.png", sheet.specimen.name);
     let mut figures = Vec::new();
     if !sheet.probes.is_empty() {
         figures.push(Figure::new(
-            "motion_probes.png",
+            file("probes"),
             "Displacement of the probes along x.",
             probes(sheet, motions),
         ));
     }
     figures.extend([
         Figure::new(
-            "motion_energy.png",
+            file("energy"),
             "Energies over time: springs above, finite elements below.",
             pair(energy(springs), energy(elements)),
         ),
         Figure::new(
-            "motion_sheets.png",
+            file("sheets"),
             "The sheets at the last instant of all models, with their displacement along x.",
             sheets,
         ),
@@ -95,22 +97,22 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -
             .into_iter()
             .flat_map(|instant| {
                 let at = format!("t = {} s", brief(instants[instant]));
-                let file = |field: &str| format!("motion_{field}_{:05}.png", instant + 1);
+                let file = |field: &str| file(&format!("{field}_{:05}", instant + 1));
                 stress_figures(&sheet.specimen, series, instant, &at, &file)
             }),
     );
-    figures.extend(force_figure(sheet, motions));
+    figures.extend(force_figure(sheet, motions, file("force")));
     figures.extend(sheet.probes.first().map(|probe| {
         let caption = "Velocity over displacement of the first probe along x, springs above, finite elements below; \
                        later parts of the motion are darker.";
         let charts = pair(phase(springs, probe), phase(elements, probe));
-        Figure::new("motion_phase.png", caption, charts)
+        Figure::new(file("phase"), caption, charts)
     }));
     figures
 }
 
 /// The force of the measured group over time and over its displacement.
-fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
+fn force_figure(sheet: &MovingSheet, motions: &Motions, file: String) -> Option<Figure> {
     let axis = sheet.measured_axis(&motions.elements)?;
     if !sheet.has_force() {
         return None;
@@ -143,7 +145,7 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions) -> Option<Figure> {
         chart_of(&label, over_displacement),
     );
     let caption = format!("Force of the {name} along {along} over its displacement and over time.");
-    Some(Figure::new("motion_force.png", &caption, charts))
+    Some(Figure::new(file, &caption, charts))
 }
 
 /// Velocity over displacement of a probe, part of the motion after part.

@@ -46,7 +46,10 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
     let (series, times) = (motions.series(), motions.times());
     let reference = &series[series.len() - 1];
     let animation = Drawing::Animation(animation(&times, &series));
-    files.push(("motion.png".into(), Content::Picture(animation)));
+    files.push((
+        format!("{}.png", sheet.specimen.name),
+        Content::Picture(animation),
+    ));
     let mut outcome = Outcome {
         headline: headline(sheet, motions, reference),
         checks: checks(sheet, motions, &deviations, own_error),

@@ -11,6 +11,7 @@ use crate::material::Card;
 use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::Mesh;
 use crate::problem::{BoundaryProblem, Model};
+use crate::studies::points::Probe;
 use crate::studies::specimen::{NEWTON, Outline, PlateGrids, Specimen};
 
 /// Memory of an unknown at an instant, with what is written of it, estimated: numbers of the state, of the history and of the text.
@@ -18,14 +19,6 @@ const BYTES_OF_AN_INSTANT: f64 = 200.0;
 
 /// How often the cells of a shape's finite elements are halved: once beyond those of the corrected field.
 const HALVINGS: usize = 1;
-
-/// A point of the sheet that is watched.
-pub struct Probe {
-    /// Its name.
-    pub name: String,
-    /// Where it is at rest, in mm.
-    pub at: [f64; 2],
-}
 
 /// A dead force on a point.
 pub struct PointForce {

@@ -16,6 +16,7 @@ use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::ViscousMaterial;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
+use crate::studies::points::read_probes;
 use crate::studies::sections;
 use crate::studies::specimen::{self, Along, Specimen};
 use crate::units::Dimension;
@@ -25,7 +26,7 @@ mod plate;
 mod points;
 
 use plate::read_plate;
-use points::{read_forces, read_probes};
+use points::read_forces;
 
 /// The sheet's material in motion.
 struct Material {
@@ -87,6 +88,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
     let sheet = MovingSheet {
         specimen: Specimen {
+            name: "motion".into(),
             along,
             factors: (start != 0.0).then_some(start).into_iter().collect(),
             pictures,

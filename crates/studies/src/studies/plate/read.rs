@@ -18,6 +18,7 @@ use crate::studies::sections::{
     MOST_CELLS, Tolerances, check_range, multiples_of_cells, need_of_cells, read_climb,
     read_models, read_newton, read_plate, refuse_memory,
 };
+use crate::studies::specimen::measurements;
 use crate::studies::specimen::{
     Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen,
 };
@@ -66,16 +67,21 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
     let section = root.section("pictures");
     let pictures = Pictures::read(&section, "factors", Dimension::Ratio, &problem.stretches);
     let models = read_models(root);
-    let (card, correction, elements) = (card?, correction?, elements?);
-    let grids = PlateGrids {
-        size: problem.size,
-        cells,
-        lattice,
-        correction,
-        elements,
-    };
-    warn_of_own_reference(root, &grids);
+    let grids = correction
+        .zip(elements)
+        .map(|(correction, elements)| PlateGrids {
+            size: problem.size,
+            cells,
+            lattice,
+            correction,
+            elements,
+        });
+    let outline = grids.map(Outline::Grid);
+    let measurements = measurements::read(root, outline.as_ref());
+    let (card, outline) = (card?, outline?);
+    warn_of_own_reference(root, &outline);
     Some(Specimen {
+        measurements,
         name: "plate".into(),
         problem: problem.boundary_problem(),
         card,
@@ -90,13 +96,16 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
         refinement: None,
         correction: Method::Automatic,
         linear_solver: linear_solver?,
-        outline: Outline::Grid(grids),
+        outline,
         pictures,
     })
 }
 
 /// Warns of finite elements that are the corrected field once more.
-fn warn_of_own_reference(root: &Section, grids: &PlateGrids) {
+fn warn_of_own_reference(root: &Section, outline: &Outline) {
+    let Outline::Grid(grids) = outline else {
+        return;
+    };
     if grids.is_own_reference() {
         root.section("finite_element").warning(
             "cells",

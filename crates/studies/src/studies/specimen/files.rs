@@ -2,6 +2,7 @@
 
 use super::forces;
 use super::history;
+use super::measured_fields::MeasuredFields;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
 use super::results::models::Models;
@@ -9,7 +10,7 @@ use super::results::verdict::Deviation;
 use crate::problem::GroupState;
 use crate::results::{
     Array, Axis, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
-    Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
+    SheetField, Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
 };
 use crate::studies::pictures::Shown;
 use crate::studies::series::{ModelSeries, stress_figures};
@@ -28,6 +29,7 @@ pub fn figures(
     specimen: &Specimen,
     models: &Models,
     deviations: &[Option<Deviation>],
+    measured: &MeasuredFields,
 ) -> Vec<Figure> {
     let figure = |what: &str, caption: String, drawing| {
         Figure::new(format!("{}_{what}.png", specimen.name), caption, drawing)
@@ -63,6 +65,7 @@ pub fn figures(
     for (what, chart) in charts {
         figures.extend(chart.map(|(caption, drawing)| figure(what, caption, drawing)));
     }
+    figures.extend(measured.figures(&steps));
     let lattice = &models.on_lattice.springs.mesh;
     let cells = mesh_outlines("Lattice", lattice);
     figures.push(figure("mesh", "The cells of the lattice.".into(), cells));
@@ -93,14 +96,18 @@ fn materials(specimen: &Specimen, figure: &dyn Fn(&str, String, Drawing) -> Figu
 fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
     let file = |field: &str| file(specimen, field, step);
     let at = specimen.describe_step(step);
-    let series = models.all_series();
-    let mut figures = vec![displacement(
-        specimen,
-        &series,
-        step,
-        &at,
-        file("displacement"),
-    )];
+    let mut series: Vec<ModelSeries> = models.all_series().into();
+    series.retain(|model| specimen.pictures.models.contains(&model.kind));
+    let mut figures = Vec::new();
+    if !specimen
+        .pictures
+        .fields
+        .fields
+        .contains(&SheetField::Displacement)
+    {
+        let name = file("displacement");
+        figures.push(displacement(specimen, &series, step, &at, name));
+    }
     figures.extend(stress_figures(specimen, &series, step, &at, &file));
     let distance = |model: &ModelSeries| {
         let state = model.states.get(step)?;

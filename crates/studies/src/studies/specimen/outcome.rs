@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::files::{figures, grids, tables};
 use super::forces::Balance;
 use super::headline::headline;
+use super::measured_fields::MeasuredFields;
 use super::problem::Specimen;
 use super::results::corrected_fields::Start;
 use super::results::models::Models;
@@ -25,6 +26,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         at: specimen.factors[step],
         models: quantities(specimen, models, step, deviation.as_ref()),
     };
+    let measured = MeasuredFields::of(specimen, models);
     let mut outcome = Outcome {
         headline: headline(specimen, models),
         summary: agreement(specimen, models, &deviations),
@@ -34,9 +36,9 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         material: Some(statement::material(specimen)),
         along: specimen.along.name(),
         steps: deviations.iter().enumerate().map(quantities).collect(),
-        figures: figures(specimen, models, &deviations),
+        figures: figures(specimen, models, &deviations, &measured),
         grids: grids(specimen, models),
-        files: tables(specimen, models),
+        files: [tables(specimen, models), measured.tables()].concat(),
         findings: findings(Examined {
             specimen,
             series: &models.all_series(),

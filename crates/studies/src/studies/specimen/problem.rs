@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::along::Along;
+use super::measurements::Measurements;
 use crate::error::Error;
 use crate::mass_spring::MassSpring;
 use crate::material::Card;
@@ -104,6 +105,8 @@ pub struct Specimen {
     pub outline: Outline,
     /// The pictures of its fields.
     pub pictures: Pictures,
+    /// What is measured within the sheet.
+    pub measurements: Measurements,
 }
 
 impl Specimen {
@@ -177,6 +180,7 @@ impl Specimen {
             correction: Method::Automatic,
             linear_solver: LinearSolver::Automatic,
             pictures: Pictures::default(),
+            measurements: Measurements::default(),
             outline,
         }
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::measurements;
 use super::problem::{Method, Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
@@ -66,9 +67,13 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         &factors,
     );
     let states = (factors.len(), refinement);
-    let specimen = sheet.specimen(root, materials, (&path, &group), states)?;
+    let specimen = sheet.specimen(root, materials, (&path, &group), states);
+    let outline = specimen.as_ref().map(|own| &own.outline);
+    let measurements = measurements::read(root, outline);
+    let specimen = specimen?;
     let specimen = Specimen {
         factors,
+        measurements,
         models,
         tolerances,
         refinement,

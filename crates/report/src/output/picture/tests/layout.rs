@@ -6,8 +6,8 @@ use super::super::look::Look;
 use super::super::marks::{Mark, Words};
 use crate::mesh::{CellShape, Mesh};
 use crate::results::{
-    Axis, FieldFigure, Line, LineChart, MeshFigure, NamedLines, PALETTE, Palette, Panel,
-    PictureFormat, PictureStyle, PictureWidth, Stroke,
+    Axis, FieldFigure, Line, LineChart, MeshFigure, NamedLines, PALETTE, Panel, PictureFormat,
+    PictureStyle, PictureWidth, Stroke,
 };
 
 const WORDS: [&str; 3] = [
@@ -21,7 +21,7 @@ fn looks() -> impl Iterator<Item = Look> {
         Look::of(&PictureStyle {
             formats: vec![PictureFormat::Png],
             width,
-            palette: Palette::Default,
+            ..PictureStyle::default()
         })
     })
 }

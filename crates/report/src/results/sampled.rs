@@ -1,0 +1,95 @@
+//! Fields of a sheet at single points, as ParaView interpolates the arrays at the nodes.
+
+use super::nodal_sheet::NodalSheet;
+use super::{Deformed, SheetField};
+use crate::mesh::NodalField;
+use crate::problem::SheetLaws;
+
+/// How far a point may lie outside of its nearest cell, in sizes of the cell: curved sides of a lattice lie inside of the outline.
+const BEYOND: f64 = 0.1;
+
+impl Deformed<'_> {
+    /// All fields, in the order of [`SheetField::NAMES`], at points at rest in mm; `None` for a point that is not on the sheet.
+    ///
+    /// Values at the nodes are means over the adjacent cells, and are interpolated by the shape functions.
+    pub fn sampled(
+        &self,
+        laws: SheetLaws,
+        points: &[[f64; 2]],
+    ) -> Vec<Option<[f64; SheetField::NAMES.len()]>> {
+        let sheet = NodalSheet::new(laws, self.mesh, &self.fields, self.viscous);
+        let displacement: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
+        let sample = |point: &[f64; 2]| {
+            let mesh = &sheet.mesh;
+            if mesh.outside(*point) > BEYOND {
+                return None;
+            }
+            let (cell, local) = mesh.locate(*point);
+            let weights = mesh.shape(cell).values(local);
+            let nodes = || mesh.cell(cell).iter().zip(&weights);
+            Some(SheetField::NAMES.map(|(_, field)| {
+                let value = |node: usize| field.value(&sheet.states[node], displacement[node]);
+                nodes().map(|(node, weight)| weight * value(*node)).sum()
+            }))
+        };
+        points.iter().map(sample).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::material::{HyperelasticLaw, NeoHooke};
+    use crate::mesh::{CellShape, Shape};
+
+    #[test]
+    fn fields_of_uniaxial_tension_are_exact_at_every_point_and_there_are_none_in_a_hole() {
+        let shape = Shape::StripWithHole {
+            size: [30.0, 20.0],
+            radius: 4.0,
+        };
+        let law: Arc<dyn HyperelasticLaw> = Arc::new(NeoHooke { c10: 0.5 });
+        let (along, across) = (1.44_f64, 1.0 / 1.2);
+        for (name, kind) in CellShape::NAMES {
+            let mesh = shape.mesh(8, kind);
+            let moved = mesh.nodes.iter();
+            let u: Vec<f64> = moved
+                .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
+                .collect();
+            let sheet = Deformed::elastic("", &mesh, vec![&u]);
+            let [low, high] = mesh.bounding_box();
+            let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
+            let points = [[low[0] + 2.3, low[1] + 1.7], high, middle];
+            let sampled = sheet.sampled((&law).into(), &points);
+            assert!(sampled[2].is_none(), "{name}: a value in the hole");
+            let stress = along * along - 1.0 / along;
+            for (point, values) in points.iter().zip(&sampled[..2]) {
+                let of = |field: SheetField| {
+                    let place = SheetField::NAMES.iter().position(|(_, own)| *own == field);
+                    values.unwrap()[place.unwrap()]
+                };
+                let expected = [
+                    (SheetField::CauchyXx, stress),
+                    (SheetField::VonMises, stress),
+                    (SheetField::CauchyYy, 0.0),
+                    (SheetField::CauchyXy, 0.0),
+                    (SheetField::GreenLagrangeXx, 0.5 * (along * along - 1.0)),
+                    (SheetField::LargerStretch, along),
+                    (SheetField::SmallerStretch, across),
+                    (SheetField::DisplacementX, (along - 1.0) * point[0]),
+                    (SheetField::DisplacementY, (across - 1.0) * point[1]),
+                    (
+                        SheetField::Energy,
+                        0.5 * (along * along + 2.0 / along - 3.0),
+                    ),
+                ];
+                for (field, expected) in expected {
+                    let error = (of(field) - expected).abs();
+                    assert!(error < 1e-10, "{name} {field:?} at {point:?}: {error}");
+                }
+            }
+        }
+    }
+}

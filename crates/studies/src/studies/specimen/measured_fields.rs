@@ -1,0 +1,354 @@
+//! Tables and pictures of what a study measures within its sheet.
+
+use super::measurements::{Extensometer, LineCut};
+use super::problem::Specimen;
+use super::results::models::Models;
+use crate::document::write_records;
+use crate::results::{
+    Axis, Content, Deformed, Drawing, Figure, Line, LineChart, PALETTE, SheetField, Stroke,
+    from_rest,
+};
+use crate::studies::file_stem;
+use crate::studies::series::ModelSeries;
+use crate::units::Dimension;
+
+/// The values of all fields at a point, in the order of [`SheetField::NAMES`].
+type Sample = Option<[f64; SheetField::NAMES.len()]>;
+
+/// What is measured in one state of a model.
+struct State {
+    /// Which of the models it is.
+    model: usize,
+    step: usize,
+    probes: Vec<Sample>,
+    lines: Vec<Vec<Sample>>,
+    /// The lengths of the extensometers at rest and now, in mm.
+    lengths: Vec<[f64; 2]>,
+}
+
+/// All measurements, with the models whose sheet they are taken from.
+pub struct MeasuredFields<'a> {
+    specimen: &'a Specimen,
+    models: Vec<ModelSeries<'a>>,
+    states: Vec<State>,
+}
+
+impl<'a> MeasuredFields<'a> {
+    /// What the study measures in every state of every model.
+    pub fn of(specimen: &'a Specimen, models: &'a Models) -> Self {
+        let series = Vec::from(models.all_series());
+        let wanted = &specimen.measurements;
+        let is_empty = *wanted == super::measurements::Measurements::default();
+        let count = |model: &ModelSeries| if is_empty { 0 } else { model.states.len() };
+        let steps = series.iter().enumerate();
+        let steps = steps.flat_map(|(index, model)| (0..count(model)).map(move |at| (index, at)));
+        let states = steps.map(|(index, step)| measure(specimen, &series[index], index, step));
+        Self {
+            specimen,
+            states: states.flatten().collect(),
+            models: series,
+        }
+    }
+
+    /// `probes.csv`, `lines.csv` and `extensometers.csv`, those that have rows.
+    pub fn tables(&self) -> Vec<(String, Content)> {
+        let fields = SheetField::NAMES.map(|(name, field)| head(name, field));
+        let force = format!("force_{}_N", ["x", "y"][self.force_axis()]);
+        let lengths = ["length_at_rest_mm", "length_mm", "stretch"].map(str::to_owned);
+        let place = |all: &[&str]| {
+            all.iter()
+                .map(|name| (*name).to_owned())
+                .collect::<Vec<_>>()
+        };
+        let tables = [
+            (
+                "probe",
+                [place(&["x_mm", "y_mm"]), fields.to_vec()].concat(),
+            ),
+            (
+                "line",
+                [place(&["distance_mm", "x_mm", "y_mm"]), fields.to_vec()].concat(),
+            ),
+            ("extensometer", [&lengths[..], &[force]].concat()),
+        ];
+        let tables = tables.into_iter().filter_map(|(name, columns)| {
+            let states = self.states.iter();
+            let rows = states.flat_map(|state| match name {
+                "probe" => self.probe_rows(state),
+                "line" => self.line_rows(state),
+                _ => self.extensometer_rows(state),
+            });
+            let rows: Vec<Vec<String>> = rows.collect();
+            let begin = ["model", self.specimen.along.column(), name].map(str::to_owned);
+            let head = [&begin[..], &columns].concat();
+            let text = (!rows.is_empty()).then(|| write_records([head].into_iter().chain(rows)));
+            Some((format!("{name}s.csv"), Content::Text(text?)))
+        });
+        tables.collect()
+    }
+
+    /// A row of a table: the model, the position on the path, a name, and values.
+    fn row(&self, state: &State, name: &str, values: &[f64], sample: Vec<String>) -> Vec<String> {
+        let factor = self.specimen.factors[state.step].to_string();
+        let begin = [self.models[state.model].style.name, &factor, name].map(str::to_owned);
+        let values = values.iter().map(ToString::to_string);
+        begin.into_iter().chain(values).chain(sample).collect()
+    }
+
+    fn probe_rows(&self, state: &State) -> Vec<Vec<String>> {
+        let probes = self.specimen.measurements.probes.iter();
+        let probes = probes.zip(&state.probes);
+        probes
+            .map(|(probe, sample)| self.row(state, &probe.name, &probe.at, written(sample)))
+            .collect()
+    }
+
+    fn line_rows(&self, state: &State) -> Vec<Vec<String>> {
+        let lines = self.specimen.measurements.lines.iter().zip(&state.lines);
+        let rows = lines.flat_map(|(line, samples)| {
+            let points = line.points().into_iter().zip(samples);
+            points.map(move |(point, sample)| {
+                let place = [line.distance(point), point[0], point[1]];
+                self.row(state, &line.name, &place, written(sample))
+            })
+        });
+        rows.collect()
+    }
+
+    fn extensometer_rows(&self, state: &State) -> Vec<Vec<String>> {
+        let all = self.specimen.measurements.extensometers.iter();
+        let all = all.zip(&state.lengths);
+        all.map(|(own, [rest, now])| {
+            let values = [*rest, *now, now / rest, self.force(state)];
+            self.row(state, &own.name, &values, Vec::new())
+        })
+        .collect()
+    }
+
+    /// The axis of the larger force of the measured group.
+    fn force_axis(&self) -> usize {
+        let group = self.group();
+        let last = self.models.iter().filter_map(|model| model.states.last());
+        let [x, y] = last.fold([0.0_f64; 2], |most, state| {
+            let force = state.groups.get(group).map_or([0.0; 2], |own| own.force);
+            [0, 1].map(|axis| most[axis].max(force[axis].abs()))
+        });
+        usize::from(y > x)
+    }
+
+    fn group(&self) -> usize {
+        let groups = self.specimen.groups();
+        let measured = groups.iter().position(|name| *name == self.specimen.group);
+        measured.unwrap_or(0)
+    }
+
+    /// The force of the measured group in N.
+    fn force(&self, state: &State) -> f64 {
+        let groups = self.models[state.model].states[state.step].groups;
+        let group = groups.get(self.group());
+        group.map_or(f64::NAN, |own| own.force[self.force_axis()])
+    }
+
+    /// Curves of the fields that are drawn: at the probes over the path, along the lines at the steps that are shown; of the
+    /// extensometers the force over their stretch.
+    pub fn figures(&self, steps: &[usize]) -> Vec<Figure> {
+        let specimen = self.specimen;
+        let fields = specimen.pictures.fields.fields.iter();
+        let columns: Vec<usize> = fields
+            .filter_map(|field| SheetField::NAMES.iter().position(|(_, own)| own == field))
+            .collect();
+        let named = |what: &str, caption: String, charts: Vec<LineChart>| {
+            let charts: Vec<_> = charts.into_iter().map(|chart| (chart, 340)).collect();
+            let name = format!("{}_{what}.png", specimen.name);
+            (!charts.is_empty()).then(|| Figure::new(name, caption, Drawing::Charts(charts)))
+        };
+        let along = specimen.along.name();
+        let mut figures = Vec::new();
+        if !specimen.measurements.probes.is_empty() {
+            let charts = columns.iter().map(|column| self.probe_chart(*column));
+            let caption = format!("At the probes over the {along}; computed at the markers only.");
+            figures.extend(named("probes", caption, charts.collect()));
+        }
+        for (index, line) in specimen.measurements.lines.iter().enumerate() {
+            for step in steps {
+                let charts = columns.iter();
+                let charts = charts.map(|column| self.line_chart(index, *column, *step));
+                let at = specimen.describe_step(*step);
+                let caption = format!(
+                    "Along the line {} at {at}, over the distance at rest.",
+                    line.name
+                );
+                let what = format!("line_{}_{:03}", file_stem(&line.name), step + 1);
+                figures.extend(named(&what, caption, charts.collect()));
+            }
+        }
+        let extensometers = specimen.measurements.extensometers.iter().enumerate();
+        let charts = extensometers.map(|(index, own)| self.extensometer_chart(index, own));
+        let caption = format!(
+            "Force of {} over the stretch between the ends of each extensometer; computed at the markers only.",
+            specimen.group
+        );
+        figures.extend(named("extensometers", caption, charts.collect()));
+        figures
+    }
+
+    fn probe_chart(&self, column: usize) -> LineChart {
+        let field = SheetField::NAMES[column].1;
+        let along = self.specimen.along;
+        let probes = self.specimen.measurements.probes.iter().enumerate();
+        let lines = probes.flat_map(|(index, probe)| {
+            let colour = PALETTE[index % PALETTE.len()];
+            self.shown().map(move |(model, stroke)| {
+                let states = self.states.iter().filter(|state| state.model == model);
+                let points = states.filter_map(|state| {
+                    let value = state.probes[index]?[column];
+                    Some([along.coordinate(self.specimen.factors[state.step]), value])
+                });
+                let label = format!("{}, {}", probe.name, self.models[model].style.name);
+                Line::new(label, points, colour, stroke)
+            })
+        });
+        let lines = lines.filter(|line| !line.points.is_empty()).collect();
+        let x = Axis::linear(along.head());
+        LineChart::new(field.title(), x, Axis::linear(field.quantity()), lines)
+    }
+
+    /// The models that are drawn, by their numbers, the corrected field last.
+    fn shown(&self) -> impl Iterator<Item = (usize, Stroke)> {
+        let shown = &self.specimen.pictures.models;
+        let order = [
+            (2, Stroke::Marked),
+            (0, Stroke::Marked),
+            (1, Stroke::Ringed),
+        ];
+        let order = order.into_iter();
+        order.filter(|(model, _)| shown.contains(&self.models[*model].kind))
+    }
+
+    fn line_chart(&self, index: usize, column: usize, step: usize) -> LineChart {
+        let field = SheetField::NAMES[column].1;
+        let line = &self.specimen.measurements.lines[index];
+        let mut lines = Vec::new();
+        for (model, _) in self.shown() {
+            let mut states = self.states.iter();
+            let Some(state) = states.find(|own| own.model == model && own.step == step) else {
+                continue;
+            };
+            let style = self.models[model].style;
+            for (number, part) in parts(line, &state.lines[index], column)
+                .into_iter()
+                .enumerate()
+            {
+                let label = if number == 0 { style.name } else { "" };
+                lines.push(Line::new(label, part, style.colour, Stroke::Solid));
+            }
+        }
+        let title = format!("{} at {}", field.title(), self.specimen.describe_step(step));
+        let x = Axis::linear(&format!("distance along {} at rest [mm]", line.name));
+        LineChart::new(title, x, Axis::linear(field.quantity()), lines)
+    }
+
+    fn extensometer_chart(&self, index: usize, own: &Extensometer) -> LineChart {
+        let line = |(model, stroke): (usize, Stroke)| {
+            let states = self.states.iter().filter(|state| state.model == model);
+            let points = states.map(|state| {
+                let [rest, now] = state.lengths[index];
+                [100.0 * (now / rest - 1.0), self.force(state)]
+            });
+            let style = self.models[model].style;
+            Line::new(style.name, from_rest(points), style.colour, stroke)
+        };
+        let lines = self.shown().map(line).filter(|line| line.points.len() > 1);
+        let title = format!("Force of {} over {}", self.specimen.group, own.name);
+        let y = format!("force along {} [N]", ["x", "y"][self.force_axis()]);
+        let x = Axis::linear("stretch of the extensometer [%]");
+        LineChart::new(title, x, Axis::linear(&y), lines.collect())
+    }
+}
+
+/// What is measured in a state; `None` where the model has not reached it.
+fn measure(specimen: &Specimen, model: &ModelSeries, index: usize, step: usize) -> Option<State> {
+    let wanted = &specimen.measurements;
+    let deformed: Deformed = model.deformed(step)?;
+    let lines: Vec<Vec<[f64; 2]>> = wanted.lines.iter().map(LineCut::points).collect();
+    let probes = wanted.probes.iter().map(|probe| probe.at);
+    let points: Vec<[f64; 2]> = probes.chain(lines.concat()).collect();
+    let mut samples = deformed.sampled(specimen.problem.laws(), &points);
+    without_rounding(&mut samples);
+    // A line ends where the sheet does.
+    for (sample, point) in samples.iter_mut().zip(&points).skip(wanted.probes.len()) {
+        *sample = sample.filter(|_| model.mesh.outside(*point) < ON_THE_EDGE);
+    }
+    let mut samples = samples.into_iter();
+    let u = model.states[step].displacement;
+    let lengths = wanted
+        .extensometers
+        .iter()
+        .map(|own| own.lengths(model.mesh, u));
+    Some(State {
+        model: index,
+        step,
+        probes: samples.by_ref().take(wanted.probes.len()).collect(),
+        lines: lines
+            .iter()
+            .map(|line| samples.by_ref().take(line.len()).collect())
+            .collect(),
+        lengths: lengths.collect(),
+    })
+}
+
+/// How far outside of its nearest cell a point counts as on the edge, in sizes of the cell.
+const ON_THE_EDGE: f64 = 1e-9;
+
+/// Values that are rounding beside others of their dimension are none.
+fn without_rounding(samples: &mut [Sample]) {
+    const ROUNDING: f64 = 1e-12;
+    let dimensions = SheetField::NAMES.map(|(_, field)| field.dimension());
+    for dimension in [Dimension::Length, Dimension::Ratio, Dimension::Stress] {
+        let is_of_it = |column: &usize| dimensions[*column] == dimension;
+        let columns = (0..dimensions.len()).filter(is_of_it);
+        let columns: Vec<usize> = columns.collect();
+        let values = samples.iter().flatten();
+        let values = values.flat_map(|sample| columns.iter().map(|column| sample[*column].abs()));
+        let negligible = ROUNDING * values.fold(0.0, f64::max);
+        for sample in samples.iter_mut().flatten() {
+            for column in &columns {
+                if sample[*column].abs() < negligible {
+                    sample[*column] = 0.0;
+                }
+            }
+        }
+    }
+}
+
+/// The values along a line over the distance in mm, in parts between which it leaves the sheet.
+fn parts(line: &LineCut, samples: &[Sample], column: usize) -> Vec<Vec<[f64; 2]>> {
+    let points = line.points();
+    let points: Vec<_> = points.iter().zip(samples).collect();
+    let runs = points.chunk_by(|a, b| a.1.is_some() == b.1.is_some());
+    let runs = runs.filter(|run| run[0].1.is_some());
+    let value = |(point, sample): &(&[f64; 2], &Sample)| {
+        let value = sample.map_or(f64::NAN, |sample| sample[column]);
+        [line.distance(**point), value]
+    };
+    runs.map(|run| run.iter().map(value).collect()).collect()
+}
+
+/// The head of a column, with its unit.
+fn head(name: &str, field: SheetField) -> String {
+    let name = name.replace('-', "_");
+    match field.dimension() {
+        Dimension::Length => format!("{name}_mm"),
+        Dimension::Ratio => name,
+        _ if field == SheetField::Energy => format!("{name}_mJ_per_mm3"),
+        _ => format!("{name}_MPa"),
+    }
+}
+
+/// Values as a table has them, empty where a point is not on the sheet.
+fn written(sample: &Sample) -> Vec<String> {
+    match sample {
+        Some(values) => values.iter().map(ToString::to_string).collect(),
+        None => vec![String::new(); SheetField::NAMES.len()],
+    }
+}
