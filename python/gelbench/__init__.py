@@ -12,9 +12,8 @@ Plain numbers are mm, N, MPa; texts with a unit and pint quantities are accepted
 
 from . import corrector
 from ._core import __version__
-from ._errors import Fault, InputError, PerformanceWarning, SolveError, WriteError
+from ._errors import Fault, InputError, SolveError, WriteError
 from ._images import Tracked, track
-from ._law import Derivatives
 from ._load import load
 from ._markers import Correction, correct
 from ._material import Material, Parameter, laws, materials
@@ -31,7 +30,6 @@ __all__ = [
     "AtPoints",
     "Band",
     "Correction",
-    "Derivatives",
     "Estimate",
     "Fault",
     "Field",
@@ -41,7 +39,6 @@ __all__ = [
     "InputError",
     "Material",
     "Parameter",
-    "PerformanceWarning",
     "Plate",
     "Results",
     "Solution",

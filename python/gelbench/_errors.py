@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-__all__ = ["Fault", "InputError", "PerformanceWarning", "SolveError", "WriteError"]
+__all__ = ["Fault", "InputError", "SolveError", "WriteError"]
 
 
 class Fault(NamedTuple):
@@ -92,10 +92,6 @@ class SolveError(RuntimeError):
 
 class WriteError(OSError):
     """A file could not be written."""
-
-
-class PerformanceWarning(UserWarning):
-    """The computation works, but much more slowly than possible."""
 
 
 def fault(argument: str, message: str, hint: str) -> InputError:

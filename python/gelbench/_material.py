@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import os
 import re
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
@@ -13,14 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import InputError, PerformanceWarning, WriteError, fault
-from ._law import Derivatives, Law, card_in_place, checked_range, rows_of
+from ._errors import InputError, WriteError, fault
+from ._energy import Energy, card_of
 from ._quantities import Floats, PathLike, Quantity, array_of, text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Derivatives", "Material", "Parameter", "laws", "materials"]
+__all__ = ["Material", "Parameter", "laws", "materials"]
 
 
 class Parameter(NamedTuple):
@@ -57,7 +56,7 @@ def laws() -> dict[str, str]:
 class Material:
     """A hyperelastic material of a thin sheet: a law with its parameters, and where they come from.
 
-    `from_card`, `from_text` and `from_law` create one too, and `gelbench.fit` from test data. Materials are equal if the texts of their
+    `from_card`, `from_text` and `from_energy` create one too, and `gelbench.fit` from test data. Materials are equal if the texts of their
     cards are.
 
     Parameters
@@ -127,52 +126,41 @@ class Material:
         return cls._of(_core.MaterialCard.parse(name, text))
 
     @classmethod
-    def from_law(
-        cls,
-        evaluate: Law,
-        *,
-        name: str = "a law in Python",
-        stretch_range: tuple[float, float] = (0.5, 3.0),
-        quiet: bool = False,
-    ) -> Material:
-        """Creates a material from a law Ψ(I₁, I₂) written in Python.
+    def from_energy(cls, energy: Energy, *, name: str = "energy", stretch_range: tuple[float, float] = (0.5, 3.0)) -> Material:
+        """Creates a material from its energy Ψ in MPa = mJ/mm³, which the library differentiates.
 
-        The sheet is incompressible and in plane stress. Before the law is accepted, the derivatives are compared with
-        finite differences of the energy wherever both in-plane stretches are within `stretch_range`.
+        The function is called once, with variables in place of numbers, and becomes the formula of a card: it is computed as a law of
+        gelbench, in studies and sweeps too. The sheet is incompressible.
 
         Parameters
         ----------
-        evaluate : callable
-            Takes two arrays of one shape, I₁ and I₂, and returns `Derivatives`. It is called from several threads, one at a
-            time.
+        energy : callable
+            ``lambda i1, i2: …`` of the invariants, ``lambda C: …`` of the right Cauchy-Green tensor or ``lambda F: …`` of the
+            deformation gradient, both 3 × 3 in the axes of the sheet, with NumPy's functions.
         name : str
-            For messages.
+            Name of the material.
         stretch_range : tuple of float
             The smallest and the largest stretch for which the law is valid.
-        quiet : bool
-            Whether to suppress the warning that such a law is slow.
-
-        Warns
-        -----
-        gelbench.PerformanceWarning
-            Laws in Python are many times slower than those of gelbench.
 
         Raises
         ------
         gelbench.InputError
-            If the derivatives are not those of the energy or have a wrong shape, the energy at rest is not zero, the shear
-            modulus is not positive, or `stretch_range` is invalid.
-        """
+            If the energy is no formula, is not zero at rest, leaves a stress there, changes with a rotation, has no positive shear modulus, or
+            is not defined within `stretch_range`.
 
-        within = checked_range(stretch_range)
-        rows = rows_of(evaluate, within)
-        if not quiet:
-            warnings.warn(
-                f"{name} is evaluated in Python: models are many times slower with it than with a law of gelbench",
-                PerformanceWarning,
-                stacklevel=2,
-            )
-        return cls._of(_core.MaterialCard.of_python(name, rows, list(within)))
+        Examples
+        --------
+        >>> gb.Material.from_energy(lambda i1, i2: 0.03 * (i1 - 3) + 0.004 * (i1 - 3) ** 2)
+        <gelbench.Material energy: energy>
+        """
+        made = cls.from_text(card_of(energy, name, stretch_range), name)
+        ends = np.array(stretch_range, dtype=float)
+        for test in ("uniaxial", "equibiaxial"):
+            undefined = ends[~np.isfinite(made.stress(ends, test))]
+            if undefined.size:
+                message = f"has no {test} stress at a stretch of {undefined[0]:g}"
+                raise fault("energy", message, "give another stretch_range, within which it is defined")
+        return made
 
     def with_parameters(self, **values: Quantity) -> Material:
         """The same law with other values of some parameters.
@@ -257,7 +245,7 @@ class Material:
 
     @property
     def text(self) -> str:
-        """Text of the card; empty for a law in Python."""
+        """Text of the card."""
         return self._card.text
 
     def stable_range(self, test: str = "uniaxial") -> tuple[float, float]:
@@ -331,13 +319,9 @@ class Material:
 
         Raises
         ------
-        gelbench.InputError
-            If there is no card because the material is a law in Python.
         gelbench.WriteError
             If the file cannot be written.
         """
-        if not self.text:
-            raise fault("material", "a law in Python has no card", "save its code")
         try:
             Path(path).write_text(self.text, encoding="utf-8")
         except OSError as cause:
@@ -360,14 +344,12 @@ class Material:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Material):
             return NotImplemented
-        return self._card is other._card or (bool(self.text) and self.text == other.text)
+        return self.text == other.text
 
     def __hash__(self) -> int:
-        return hash(self.text or self._card)
+        return hash(self.text)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        if not self.text:
-            raise TypeError("a law in Python cannot be pickled: create it again from its code")
         return (_of_text, (self.text, self.name, self._reference))
 
 
@@ -391,8 +373,7 @@ def in_memory(value: Material) -> tuple[str, dict[str, bytes]]:
     if name is not None:
         return name, {}
     name = value._reference or re.sub(r"[^\w.-]+", "-", value.name).strip(".") + ".toml"
-    own = value.text or card_in_place(value.name, value.shear_modulus, value.stretch_range)
-    return name, {name: own.encode()}
+    return name, {name: value.text.encode()}
 
 
 def on_disk(value: Material) -> str:
@@ -400,15 +381,10 @@ def on_disk(value: Material) -> str:
     name = shipped(value) or value._reference
     if name is None:
         hint = 'use write_study("plate.toml"), which writes the card beside the study, or save the material and give its file as card='
-        raise fault("material", f"the card `{value.name}` is not in a file that a study can name", needs_card(value) or hint)
+        raise fault("material", f"the card `{value.name}` is not in a file that a study can name", hint)
     if shipped(value) is None and not _is_as_read(value):
         raise fault("material", f"{name} has changed since it was read", "read it again, or use write_study, which writes the card as it was read")
     return name
-
-
-def needs_card(value: Material) -> str | None:
-    """The remedy if the material cannot be written to a file."""
-    return None if value.text else "a study cannot name a law in Python: use a law of gelbench, or solve it here"
 
 
 def _is_as_read(value: Material) -> bool:

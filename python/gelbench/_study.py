@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._errors import InputError, SolveError, WriteError, fault
-from ._material import Material, in_memory, needs_card, on_disk, shipped
+from ._material import Material, in_memory, on_disk, shipped
 from ._material import card as core_card
 from ._material import material as _material
 from ._progress import Progress, callback
@@ -96,15 +96,13 @@ class StudyInMemory:
         Raises
         ------
         gelbench.InputError
-            If the material is not in a file, or its file has changed since: `write_study` writes both. A study cannot name
-            a law in Python. A mesh in memory must be saved and named by `specimen.file` in the text.
+            If the material is not in a file, or its file has changed since: `write_study` writes both. A mesh in memory must be saved and named by `specimen.file` in the text.
         """
         if card is None:
             return self._text(factors, on_disk(self.material))
         name = os.fspath(card)
         if not name.endswith(".toml"):
             raise fault("card", f"is {name!r}", "give the path of a .toml file")
-        self._refuse_laws_in_python()
         return self._text(factors, name)
 
     def write_study(self, path: PathLike, factors: Factors | None = None) -> list[Path]:
@@ -126,12 +124,11 @@ class StudyInMemory:
         Raises
         ------
         gelbench.InputError
-            If the material is a law in Python, or the mesh is in memory.
+            If the mesh is in memory.
         gelbench.WriteError
             If a file cannot be written.
         """
         self._refuse_meshes_in_memory()
-        self._refuse_laws_in_python()
         target = Path(path)
         name = shipped(self.material)
         beside = target.with_name(f"{target.stem}-card.toml")
@@ -155,17 +152,11 @@ class StudyInMemory:
     def _in_memory(self, factors: Factors | None) -> tuple[str, str, Files]:
         """Name and text of the study, and the files that the text names and no disk has."""
         self._refuse_meshes_in_memory()
-        self._refuse_laws_in_python()
         return type(self).__name__.lower(), *self._here(factors)
 
     def _refuse_meshes_in_memory(self) -> None:
         if self._mesh is not None:
             raise fault("study", "its mesh is on no disk", "save the mesh, and give a study that names the file")
-
-    def _refuse_laws_in_python(self) -> None:
-        hint = needs_card(self.material)
-        if hint is not None:
-            raise fault("material", f"{self.material.name} has no card", hint)
 
     def _one(self, study: str, files: Files, model: str, progress: Any, allow_large: bool) -> _core.Solution:
         return _core.solve_sheet(study, core_card(self.material), files, model, self._mesh, progress, allow_large)

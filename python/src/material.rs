@@ -19,7 +19,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::errors::{exception, input, refused};
-use crate::law::{PythonLaw, Watched};
+use crate::law::Watched;
 use crate::running::{Watch, caught};
 
 /// A material card.
@@ -41,13 +41,6 @@ impl MaterialCard {
     /// The card with other values of some parameters, each a number or a text with a unit.
     fn changed(&self, values: &BTreeMap<String, String>) -> Result<Card, Error> {
         let card = &self.card;
-        if card.text.is_empty() {
-            let message = format!("{} is a law in Python, without parameters", card.name);
-            return Err(input(
-                message,
-                "create it again from a function with other values",
-            ));
-        }
         let mut document = EditedDocument::parse(&card.text).map_err(refused)?;
         for (key, value) in values {
             if !card.parameters.iter().any(|own| own.key == key) {
@@ -86,15 +79,11 @@ impl MaterialCard {
         Card::parse(&card.name, &format!("{}.toml", card.name), &text)
     }
 
-    /// The card that a study computes with: the one that it has read, whose sheet is in the state that it asks for, or a law in
-    /// Python in place of the card that stands for it.
+    /// The card that a study has read, whose sheet is in the state that it asks for, by the name of this one.
     pub fn in_study(&self, read: &Card) -> Card {
-        match self.card.text.is_empty() {
-            true => (*self.card).clone(),
-            false => Card {
-                name: self.card.name.clone(),
-                ..read.clone()
-            },
+        Card {
+            name: self.card.name.clone(),
+            ..read.clone()
         }
     }
 }
@@ -187,12 +176,6 @@ impl MaterialCard {
         let text = known(law, &values).and_then(|known| known.card_text(name));
         let card = text.and_then(|text| Card::parse(name, name, &text));
         card.map(Self::of).map_err(|error| exception(py, &error))
-    }
-
-    #[staticmethod]
-    fn of_python(name: &str, evaluate: Py<PyAny>, stretch_range: [f64; 2]) -> Self {
-        let law = Arc::new(PythonLaw::new(evaluate));
-        Self::of(Card::of_law(name, law, stretch_range))
     }
 
     /// The same law with other values of some parameters, each a number or a text with a unit.

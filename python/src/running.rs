@@ -115,7 +115,7 @@ fn in_thread<T: Send>(
     })
 }
 
-/// What comes of a short piece of work that may ask a law written in Python.
+/// What comes of a short piece of work.
 pub fn caught<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let found = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
     found.map_err(|payload| of_panic(&*payload))
@@ -125,8 +125,5 @@ fn of_panic(payload: &(dyn Any + Send)) -> PyErr {
     if payload.is::<Stopped>() {
         return interrupted();
     }
-    match payload.downcast_ref::<crate::law::Raised>() {
-        Some(raised) => raised.error(),
-        None => internal(payload),
-    }
+    internal(payload)
 }

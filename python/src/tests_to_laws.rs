@@ -11,7 +11,7 @@ use gelbench::identification::{
     Argument, Form, IdentificationSettings, Recording, Shape, identify as identified, law_text,
 };
 use gelbench::material::Card;
-use gelbench::material::registry::{LAWS, Law};
+use gelbench::material::registry::Law;
 use gelbench::output;
 use gelbench::results::Drawing;
 use gelbench_base::error::suggestion;
@@ -109,7 +109,7 @@ fn memory(history: Option<&str>) -> Result<Memory, Error> {
 
 fn named(name: &str) -> Result<&'static Law, Error> {
     Law::named(name).ok_or_else(|| {
-        let known: Vec<_> = LAWS.iter().map(|law| law.name).collect();
+        let known: Vec<_> = Law::fitted().map(|law| law.name).collect();
         input(
             format!("there is no law `{name}`"),
             suggestion(name, &known, "laws:"),

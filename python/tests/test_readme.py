@@ -13,9 +13,8 @@ def test_the_programs_of_the_readme_run(root):
     pytest.importorskip("tqdm")
     text = (root / "python/README.md").read_text(encoding="utf-8")
     names = {}
-    with pytest.warns(gb.PerformanceWarning):
-        for program in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
-            exec(program, names)
+    for program in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(program, names)
     assert names["solution"].forces[2] == pytest.approx(12.8746, rel=1e-3)
 
 

@@ -181,12 +181,6 @@ def test_what_is_amiss_is_told(study, arguments, expected):
         gb.sweep(study, **arguments)
 
 
-def test_materials_that_no_study_can_name_are_refused():
-    law = gb.Material.from_law(lambda i1, i2: gb.Derivatives(0.05 * (i1 - 3), 0.05 + 0 * i1), quiet=True)
-    with pytest.raises(gb.InputError, match="no card"):
-        gb.sweep(small_plate(law), {"plate.width": "45 mm,50 mm"})
-
-
 def test_quantities_of_pint_are_values(study):
     units = pytest.importorskip("pint").UnitRegistry()
     plan = gb.SweepPlan(study, {"plate.width": [45 * units.mm, 50 * units.mm], "material.c10": [0.05 * units.MPa]})

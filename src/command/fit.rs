@@ -21,7 +21,7 @@ use gelbench_calibration::calibration::{
 };
 use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::card::FitRecord;
-use gelbench_mechanics::material::registry::{CARDS, DATA, LAWS, Law};
+use gelbench_mechanics::material::registry::{CARDS, DATA, Law};
 use gelbench_report::output::{self, ResultFolder};
 use gelbench_report::results::{Drawing, PictureStyle, fit_json, fit_picture};
 
@@ -304,7 +304,7 @@ fn guard(card: &Path, data: &[String], others: &[PathBuf]) -> Result<(), Error> 
 
 /// The parser of a law by its name.
 pub fn a_law() -> impl TypedValueParser<Value = &'static Law> {
-    let names = LAWS.iter().map(|law| law.name);
+    let names = Law::fitted().map(|law| law.name);
     PossibleValuesParser::new(names)
         .map(|name| Law::named(&name).expect("clap has found the name among the laws"))
 }

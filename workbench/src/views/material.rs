@@ -5,7 +5,7 @@ use eframe::egui::{
 };
 
 use gelbench::material::Card;
-use gelbench::material::registry::LAWS;
+use gelbench::material::registry::Law;
 use gelbench_calibration::calibration::KEYS;
 use gelbench_mechanics::material::registry::MARLOW_TABLE;
 use gelbench_report::results::material_chart;
@@ -225,7 +225,7 @@ impl Materials {
                 .selected_text(name)
                 .show_ui(ui, |ui| {
                     ui.selectable_value(law, None, "all laws");
-                    for known in LAWS.iter().filter(|known| known.name != MARLOW_TABLE) {
+                    for known in Law::fitted().filter(|known| known.name != MARLOW_TABLE) {
                         ui.selectable_value(law, Some(known.name.to_owned()), known.name);
                     }
                 });

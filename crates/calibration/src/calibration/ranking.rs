@@ -8,7 +8,7 @@ use super::fitted::{Fit, Protocols};
 use super::settings::{FitSettings, MEASURE};
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
-use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
+use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 
 /// By what laws are ranked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,8 +47,7 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
             .any(|one| one.axis == axis)
     };
     let (both_axes, measure) = (axis(0) && axis(1), StressMeasure::Nominal);
-    let eligible: Vec<&'static Law> = LAWS
-        .iter()
+    let eligible: Vec<&'static Law> = Law::fitted()
         .filter(|law| ![MARLOW_TABLE, SWELLING].contains(&law.name))
         .filter(|law| {
             let own = law.with_values(&[], measure, MEASURE).0;

@@ -3,27 +3,37 @@
 
 use std::ops::{Add, Mul};
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{SMatrix, SVector};
 
-/// A function f of four variables x at a point: its 2-jet.
+/// A function f of N variables x at a point: its 2-jet.
 #[derive(Clone, Copy, Debug)]
-pub struct Jet {
+pub struct Jet<const N: usize = 4> {
     /// f.
     pub value: f64,
     /// ∂f/∂x.
-    pub gradient: Vector4<f64>,
+    pub gradient: SVector<f64, N>,
     /// ∂²f/∂x².
-    pub hessian: Matrix4<f64>,
+    pub hessian: SMatrix<f64, N, N>,
 }
 
-impl Jet {
+impl<const N: usize> Jet<N> {
+    /// A number that depends on no variable.
+    #[inline(always)]
+    pub fn constant(value: f64) -> Self {
+        Self {
+            value,
+            gradient: SVector::zeros(),
+            hessian: SMatrix::zeros(),
+        }
+    }
+
     /// The variables with some values.
     #[inline(always)]
-    pub fn variables(values: [f64; 4]) -> [Self; 4] {
-        std::array::from_fn(|index| Self {
-            value: values[index],
-            gradient: Vector4::ith(index, 1.0),
-            hessian: Matrix4::zeros(),
+    pub fn variables(values: [f64; N]) -> [Self; N] {
+        std::array::from_fn(|index| {
+            let mut variable = Self::constant(values[index]);
+            variable.gradient[index] = 1.0;
+            variable
         })
     }
 
@@ -57,7 +67,7 @@ impl Jet {
     }
 }
 
-impl Add for Jet {
+impl<const N: usize> Add for Jet<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -70,11 +80,28 @@ impl Add for Jet {
     }
 }
 
-impl Mul<Jet> for f64 {
-    type Output = Jet;
+impl<const N: usize> Mul for Jet<N> {
+    type Output = Self;
 
     #[inline(always)]
-    fn mul(self, jet: Jet) -> Jet {
+    fn mul(self, other: Self) -> Self {
+        let mixed = self.gradient * other.gradient.transpose();
+        Self {
+            value: self.value * other.value,
+            gradient: self.value * other.gradient + other.value * self.gradient,
+            hessian: self.value * other.hessian
+                + other.value * self.hessian
+                + mixed
+                + mixed.transpose(),
+        }
+    }
+}
+
+impl<const N: usize> Mul<Jet<N>> for f64 {
+    type Output = Jet<N>;
+
+    #[inline(always)]
+    fn mul(self, jet: Jet<N>) -> Jet<N> {
         Jet {
             value: self * jet.value,
             gradient: self * jet.gradient,

@@ -296,6 +296,16 @@ impl<'a> Parameters<'a> {
         chosen.1
     }
 
+    /// A text that a card states; empty where there is no card.
+    pub fn text(&self, key: &'static str) -> String {
+        let text = match &self.origin {
+            Origin::Card(section) => section.text(key),
+            Origin::Values(_) => String::new(),
+        };
+        self.choices.borrow_mut().push((key, text.clone()));
+        text
+    }
+
     /// A known condition of the material in its internal unit, which is never fitted: the card's value, or `standard`
     /// where the card states none; where `standard` is NaN, the card must state a value.
     pub fn condition(&self, key: &'static str, dimension: Dimension, standard: f64) -> f64 {

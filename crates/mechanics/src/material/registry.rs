@@ -1,5 +1,6 @@
 //! The laws and the shipped cards by name.
 
+use super::energy;
 use super::law::HyperelasticLaw;
 use super::marlow::{ExponentialCurve, TableCurve};
 use super::ogden::Convention;
@@ -47,6 +48,11 @@ impl Law {
         LAWS.iter().find(|law| law.name == name)
     }
 
+    /// The laws that have parameters, or take the curve of a test: those that are fitted.
+    pub fn fitted() -> impl Iterator<Item = &'static Self> + Clone {
+        LAWS.iter().filter(|law| law.name != ENERGY)
+    }
+
     /// Whether the law is the curve of a test, whose measures belong to it.
     pub fn is_measured_curve(&self) -> bool {
         [MARLOW_EXPONENTIAL, MARLOW_TABLE].contains(&self.name)
@@ -74,6 +80,9 @@ impl Law {
         (law, parameters.finish())
     }
 }
+
+/// The law that is a formula.
+const ENERGY: &str = "energy";
 
 /// Every law.
 pub const LAWS: &[Law] = &[
@@ -141,6 +150,11 @@ pub const LAWS: &[Law] = &[
         name: "veronda-westmann",
         formula: "Ψ = C (e^(β (I₁ − 3)) − 1) − ½ C β (I₂ − 3)",
         read: VerondaWestmann::from_card,
+    },
+    Law {
+        name: ENERGY,
+        formula: "Ψ(I₁, I₂) or Ψ(C₁₁, C₁₂, C₂₂) as the card writes it",
+        read: energy::from_card,
     },
     Law {
         name: MARLOW_EXPONENTIAL,

@@ -67,6 +67,14 @@ pub const SAMPLES: &[(&str, &str)] = &[
         "holzapfel-ogden",
         "a = \"0.02 MPa\"\nb = 0.3\na_f = \"0.03 MPa\"\nb_f = 0.2\na_s = \"0.01 MPa\"\nb_s = 0.3\na_fs = \"5 kPa\"\nb_fs = 0.4\nangle = \"35 deg\"",
     ),
+    (
+        "energy",
+        "energy = \"0.03*(I1 - 3) + 0.004*(I1 - 3)^2 + 0.01*log1p((I2 - 3)/3)\"",
+    ),
+    (
+        "energy",
+        "energy = \"0.02*(I1 - 3) + 0.01*expm1(max(0.8*(C11 - 1) + 0.2*(C22 - 1) + 0.3*C12, 0)^2)\"",
+    ),
 ];
 
 /// Laws of bodies that change their volume, as [`SAMPLES`].

@@ -76,7 +76,9 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
             correction,
             elements,
         });
-    let outline = grids.map(Outline::Grid);
+    // What cannot be read is NaN.
+    let has_size = problem.size.iter().all(|size| *size > 0.0);
+    let outline = grids.filter(|_| has_size).map(Outline::Grid);
     let measurements = measurements::read(root, outline.as_ref());
     let (card, outline) = (card?, outline?);
     warn_of_own_reference(root, &outline);

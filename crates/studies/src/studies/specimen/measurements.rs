@@ -68,6 +68,8 @@ impl Extensometer {
 
 /// Reads `[[probe]]`, `[[line]]` and `[[extensometer]]` of a sheet, which has no outline where it could not be read.
 pub fn read(root: &Section, outline: Option<&Outline>) -> Measurements {
+    let wanted = ["probe", "line", "extensometer"];
+    let outline = outline.filter(|_| wanted.iter().any(|key| root.has(key)));
     let region = outline.map(|outline| (outline.lattice(), outline.bounding_box()));
     let region = region.as_ref();
     Measurements {
