@@ -111,7 +111,7 @@ fn pictures_and_vtk_files_are_what_they_claim() {
         "mesh",
         "estimated_error",
     ] {
-        let bytes = fs::read(output.join(format!("plate_{name}.png"))).unwrap();
+        let bytes = fs::read(output.join(format!("small_{name}.png"))).unwrap();
         assert!(
             bytes.starts_with(b"\x89PNG") && bytes.len() > 5_000,
             "{name}"

@@ -346,21 +346,12 @@ impl<'a> Parameters<'a> {
         let strains = section.multiples("strain", Bound::Any, LARGEST_STRAIN);
         let stresses = section.quantities("stress", Dimension::Stress, Bound::Any);
         if strains.len() != stresses.len() {
-            section.fault(
-                "stress",
-                &format!(
-                    "has {} values and strain has {}",
-                    stresses.len(),
-                    strains.len()
-                ),
-                "give one stress for each strain",
-            );
+            let counts = [stresses.len(), strains.len()];
+            let message = format!("has {} values and strain has {}", counts[0], counts[1]);
+            section.fault("stress", &message, "give one stress for each strain");
         }
-        strains
-            .into_iter()
-            .zip(stresses)
-            .map(|(strain, stress)| [strain, stress])
-            .collect()
+        let pairs = strains.into_iter().zip(stresses);
+        pairs.map(<[f64; 2]>::from).collect()
     }
 
     /// Records a fault about a key of the card.

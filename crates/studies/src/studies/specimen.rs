@@ -20,7 +20,7 @@ pub(super) mod forces;
 mod headline;
 mod history;
 mod measured_fields;
-pub(super) mod measurements;
+mod measurements;
 mod outcome;
 pub(super) mod problem;
 mod read;
@@ -32,7 +32,7 @@ pub use along::Along;
 pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };
-pub(crate) use read::read_moving;
+pub(crate) use read::{read_measurements, read_moving};
 use results::end::{End, tell};
 use results::models::Models;
 use results::verdict;

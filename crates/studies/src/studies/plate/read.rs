@@ -18,9 +18,8 @@ use crate::studies::sections::{
     MOST_CELLS, Tolerances, check_range, multiples_of_cells, need_of_cells, read_climb,
     read_models, read_newton, read_plate, refuse_memory,
 };
-use crate::studies::specimen::measurements;
 use crate::studies::specimen::{
-    Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen,
+    Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen, read_measurements,
 };
 use crate::units::Dimension;
 
@@ -79,7 +78,7 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
     // What cannot be read is NaN.
     let has_size = problem.size.iter().all(|size| *size > 0.0);
     let outline = grids.filter(|_| has_size).map(Outline::Grid);
-    let measurements = measurements::read(root, outline.as_ref());
+    let measurements = read_measurements(root, outline.as_ref());
     let (card, outline) = (card?, outline?);
     warn_of_own_reference(root, &outline);
     Some(Specimen {

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::measurements;
 use super::problem::{Method, Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
@@ -18,10 +17,12 @@ use crate::studies::sections::{Tolerances, check_thickness, read_models, refuse_
 use crate::units::Dimension;
 
 mod materials;
+mod measurements;
 mod outline;
 mod supports;
 
 use materials::{Cards, Materials};
+pub(crate) use measurements::read_measurements;
 use outline::{Import, SHAPES, read_outline, usual_mesh};
 use supports::SupportsAndLoads;
 
@@ -69,7 +70,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let states = (factors.len(), refinement);
     let specimen = sheet.specimen(root, materials, (&path, &group), states);
     let outline = specimen.as_ref().map(|own| &own.outline);
-    let measurements = measurements::read(root, outline);
+    let measurements = read_measurements(root, outline);
     let specimen = specimen?;
     let specimen = Specimen {
         factors,
