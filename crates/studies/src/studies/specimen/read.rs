@@ -4,9 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::problem::{Method, Outline, Refinement, Specimen};
-use crate::budget::Need;
 use crate::document::{Bound, Section};
-use crate::error::suggestion;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::BoundaryProblem;
@@ -19,11 +17,13 @@ use crate::units::Dimension;
 mod materials;
 mod measurements;
 mod outline;
+mod path;
 mod supports;
 
 use materials::{Cards, Materials};
 pub(crate) use measurements::read_measurements;
 use outline::{Import, SHAPES, read_outline, usual_mesh};
+use path::{check_measured, read_path};
 use supports::SupportsAndLoads;
 
 /// What a study must say of the specimen; cells and lattice have defaults.
@@ -198,19 +198,6 @@ impl<'a> StatedSheet<'a> {
     }
 }
 
-/// The load factors and the measured group.
-fn read_path(path: &Section, remembers: bool) -> (Vec<f64>, String) {
-    let factors = read_factors(path, remembers);
-    let group = path.text("measured_group");
-    path.unknown_keys();
-    let need = Need {
-        instants: factors.len() as f64,
-        ..Need::default()
-    };
-    path.affords("factors", need, "take fewer");
-    (factors, group)
-}
-
 fn read_correction(section: &Section) -> Option<Method> {
     let method = section.choice("method", &Method::NAMES);
     section.unknown_keys();
@@ -263,61 +250,6 @@ fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
         let hint =
             "write a [[material]] for each, with `on` and its name, if their materials differ";
         section.warning("file", &message, hint);
-    }
-}
-
-/// Load factors above the first may be percentages, above the second they hardly are anything else.
-const LARGE_FACTORS: [f64; 2] = [5.0, 10.0];
-
-/// The load factors, ascending unless the material remembers how it was loaded.
-fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
-    let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
-    let falls = factors.windows(2).any(|pair| {
-        if remembers {
-            pair[1] == pair[0]
-        } else {
-            pair[1] <= pair[0]
-        }
-    });
-    if remembers && falls {
-        let message = "must differ from one to the next";
-        path.fault("factors", message, "such as [0.5, 1.0, 0.5]");
-        return factors;
-    }
-    if path.has("factors") && (factors.is_empty() || falls) {
-        let message = "must be one or more ascending load factors";
-        let hint =
-            "such as [0.5, 1.0]; only a card with `[softening]` depends on the loading history";
-        path.fault("factors", message, hint);
-    }
-    let largest = factors.iter().copied().fold(0.0, f64::max);
-    if largest > LARGE_FACTORS[0] {
-        let message = format!(
-            "{largest} means {} % of the stated loads and motions",
-            100.0 * largest
-        );
-        let hint = format!(
-            "write \"{largest} %\" if percent is meant; otherwise state larger loads instead"
-        );
-        if largest > LARGE_FACTORS[1] {
-            path.fault("factors", &message, &hint);
-        } else {
-            path.warning("factors", &message, &hint);
-        }
-    }
-    factors
-}
-
-/// Records a measured group that the specimen does not have.
-fn check_measured(path: &Section, group: &str, mesh: &Mesh) {
-    if path.has("measured_group") && !mesh.groups().contains_key(group) {
-        let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
-        let message = format!("the specimen has no group `{group}`");
-        path.fault(
-            "measured_group",
-            &message,
-            &suggestion(group, &known, "its groups are"),
-        );
     }
 }
 
