@@ -17,7 +17,7 @@ th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bo
 th { border-bottom: 2px solid #999; font-weight: 600; vertical-align: bottom; }
 td { white-space: nowrap; } td.long { white-space: normal; } td.number { text-align: right; }
 td.pass { color: #176b2c; font-weight: 600; } td.fail, p.fail { color: #b00020; font-weight: 600; }
-td.pass, td.fail, td.open { position: sticky; right: 0; background: #fff; white-space: normal; }
+td.pass, td.fail, td.open, table:has(td.pass, td.fail, td.open) th:last-child { position: sticky; right: 0; background: #fff; box-shadow: -.5rem 0 .5rem #fff; white-space: normal; }
 @media (max-width: 40rem) { td { white-space: normal; } td.number { white-space: nowrap; } th, td { padding: .2rem .35rem; } }
 figure { margin: 1.5rem 0; } img { max-width: 100%; border: 1px solid #eee; } figcaption { color: #555; font-size: .9rem; }
 code { font-size: .92em; } pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; }
