@@ -115,15 +115,18 @@ class Condition:
         rows = finite(self.values(start), f"the values of `{self.name}` at the start").size
         size = start.size
 
-        def linearise(u: Floats) -> tuple[Floats, Csr]:
+        # Behind the field the library's unknowns may have others, which the conditions do not know.
+        def linearise(unknowns: Floats) -> tuple[Floats, Csr]:
+            u = unknowns[:size]
             values = self.values(u)
             if values.size != rows:
                 raise fault("conditions", f"`{self.name}` has {values.size} values, and had {rows}", "return equally many each time")
             return values, _csr(self._jacobian(u), (rows, size), f"the Jacobian of `{self.name}`")
 
-        def curvature(u: Floats, multipliers: Floats) -> Csr:
+        def curvature(unknowns: Floats, multipliers: Floats) -> Csr:
             assert self._curvature is not None
-            return _csr(self._curvature(u, multipliers), (size, size), f"the curvature of `{self.name}`")
+            begins, places, values = _csr(self._curvature(unknowns[:size], multipliers), (size, size), f"the curvature of `{self.name}`")
+            return np.pad(begins, (0, unknowns.size - size), mode="edge"), places, values
 
         unknowns = None
         if self._unknowns is not None:
@@ -154,6 +157,8 @@ def linear(name: str, matrix: Matrix, right_hand_side: ArrayLike, *, unknowns: A
         As of `Condition`.
     """
     given = finite(floats(right_hand_side, "right_hand_side", (None,)), "right_hand_side")
+    if not hasattr(matrix, "shape"):
+        matrix = floats(np.atleast_2d(np.asarray(matrix)), "matrix", (None, None))
     if matrix.shape[0] != given.size:
         raise fault("right_hand_side", f"has {given.size} entries, the matrix {matrix.shape[0]} rows", "give one a row")
 
@@ -249,6 +254,7 @@ def correct(
     *,
     start: ArrayLike | None = None,
     weights: ArrayLike | None = None,
+    covariance: ArrayLike | None = None,
     estimate: Iterable[int] = (),
     tolerance: float = 1e-10,
     movement: float = 1e-9,
@@ -269,6 +275,9 @@ def correct(
     weights : array_like, optional
         The diagonal of W, n: inverse variances of ū; 1 by default. An entry with weight 0 has no data: it is a parameter
         that is estimated with the field.
+    covariance : array_like, optional
+        W⁻¹, n × n, symmetric and positive definite, in place of `weights`: of data whose errors are correlated, as those of overlapping
+        subsets of an image. It is dense, and so is the time for it: seconds at 1,000 unknowns.
     estimate : iterable of int
         Unknowns whose uncertainty is requested; the variance of the data follows from their residuals.
     tolerance : float
@@ -278,7 +287,10 @@ def correct(
     max_steps : int
         Largest number of steps.
     solver : {"automatic", "dense", "cholesky", "kkt", "symmetric"}
-        Form of the projection.
+        How the linear system of each step is solved, with B the Jacobian of all conditions. "dense": QR of W^(−½) Bᵀ, up to some thousand
+        unknowns, the most exact; "cholesky": sparse Cholesky of B W⁻¹ Bᵀ, with positive weights and few conditions; "kkt": sparse LU of the
+        whole system, always possible; "symmetric": sparse Cholesky of a square B whose conditions are those of an energy.
+        "automatic" chooses by size, weights and `unknowns`.
     progress : callable or tqdm bar, optional
         Reserved for long computations.
 
@@ -299,6 +311,8 @@ def correct(
     own = np.ones(given.size) if weights is None else finite(floats(weights, "weights", (given.size,)), "weights")
     if (own < 0.0).any():
         raise fault("weights", f"holds {own.min()}", "weights are inverse variances, or zero")
+    if weights is not None and covariance is not None:
+        raise fault("covariance", "is given beside weights", "give one of both: its inverse is their matrix")
     wanted = [whole(unknown, "estimate") for unknown in estimate]
     if any(unknown not in range(given.size) for unknown in wanted):
         raise fault("estimate", "names unknowns that the field does not have", f"it has {given.size}, counted from 0")
@@ -313,15 +327,57 @@ def correct(
     if not (own > 0.0).any() and sum(one["rows"] for one in listed) < given.size:
         hint = "give measured entries a positive weight, or state as many conditions as unknowns"
         raise fault("weights", "are all zero, and the conditions alone do not determine the field", hint)
+    if covariance is not None:
+        root = _root(covariance, given.size)
+        given, begin, own = (np.concatenate([one, np.linalg.solve(root, one)]) for one in (given, begin, own))
+        own[: given.size // 2], own[given.size // 2 :] = 0.0, 1.0
+        listed.append(_link(root))
+    if solver == "dense":
+        _check_dense(given.size, sum(one["rows"] for one in listed))
     found = _core.corrected(given, begin, own, listed, settings, wanted, callback(progress))
     u, residuals, lengths, multipliers, estimates = found
     return Corrected(
-        u,
-        dict(multipliers),
+        u if covariance is None else u[: u.size // 2],
+        {name: values for name, values in multipliers if name != _LINK},
         np.array(residuals),
         np.array(lengths),
         {unknown: Estimate(*one) for unknown, one in zip(wanted, estimates, strict=True)},
     )
+
+
+_LINK = "correlated errors"
+"""The condition u = L v between a field with correlated errors and its uncorrelated part v, of which the data are."""
+
+
+def _root(covariance: ArrayLike, size: int) -> Floats:
+    """The Cholesky factor L of a covariance."""
+    given = finite(floats(covariance, "covariance", (size, size)), "covariance")
+    if not np.allclose(given, given.T, rtol=1e-9, atol=1e-12 * np.abs(given).max(initial=0.0)):
+        raise fault("covariance", "is not symmetric", "give the covariance of the errors of the field's entries")
+    try:
+        found: Floats = np.linalg.cholesky(given)
+    except np.linalg.LinAlgError:
+        raise fault("covariance", "is not positive definite", "add the variance of each entry's own error to the diagonal") from None
+    return found
+
+
+def _link(root: Floats) -> dict[str, Any]:
+    size = len(root)
+    matrix = _csr(np.hstack([-np.eye(size), root]), (size, 2 * size), "the covariance")
+
+    def linearise(unknowns: Floats) -> tuple[Floats, Csr]:
+        return root @ unknowns[size:] - unknowns[:size], matrix
+
+    unknowns = list(range(size, 2 * size))
+    return {"name": _LINK, "rows": size, "linearise": linearise, "curvature": None, "unknowns": unknowns}
+
+
+def _check_dense(unknowns: int, rows: int) -> None:
+    """Refuses matrices that no memory holds."""
+    gigabytes = 8e-9 * unknowns * (unknowns + rows)
+    if gigabytes > 4.0:
+        message = f"would need {gigabytes:.0f} GB for {unknowns} unknowns and {rows} conditions"
+        raise fault("solver", message, 'leave it "automatic", or take "kkt"')
 
 
 def _refuse_equal_names(conditions: Sequence[Condition]) -> None:

@@ -135,3 +135,32 @@ def test_what_is_wrong_is_named(wrong, named):
 def test_as_many_conditions_as_unknowns_need_no_weights():
     square = corrector.Condition("c", lambda u: u - 1.0, np.eye(2), unknowns=[0, 1])
     assert corrector.correct([0.0, 0.0], [square], weights=[0.0, 0.0]).field == pytest.approx([1.0, 1.0])
+
+
+def test_correlated_errors_are_weighted_by_the_inverse_of_their_covariance():
+    rng = np.random.default_rng(3)
+    data, matrix, right = rng.normal(size=30), rng.normal(size=(5, 30)), rng.normal(size=5)
+    apart = np.subtract.outer(np.arange(30), np.arange(30))
+    covariance = np.exp(-0.5 * (apart / 2.0) ** 2) + 0.1 * np.eye(30)
+    gain = covariance @ matrix.T @ np.linalg.inv(matrix @ covariance @ matrix.T)
+    exact = data - gain @ (matrix @ data - right)
+    found = corrector.correct(data, [corrector.linear("rows", matrix.tolist(), right)], covariance=covariance.tolist(), estimate=[4])
+    assert found.field == pytest.approx(exact, abs=1e-9)
+    assert found.multipliers["rows"] == pytest.approx(np.linalg.solve(matrix @ covariance @ matrix.T, matrix @ data - right), abs=1e-8)
+    assert list(found.multipliers) == ["rows"]
+    # The variance of the data's scale follows from their residuals.
+    factor = (data - exact) @ np.linalg.solve(covariance, data - exact) / 5
+    spread = np.sqrt(factor * (covariance - gain @ matrix @ covariance)[4, 4])
+    assert found.estimates[4].value == pytest.approx(exact[4]) and found.estimates[4].standard_error == pytest.approx(spread, rel=1e-6)
+    diagonal = corrector.correct([0.0, 2.0], [parabola()], start=[1.0, 1.0], covariance=[[1.0, 0.0], [0.0, 0.25]])
+    weighted = corrector.correct([0.0, 2.0], [parabola()], start=[1.0, 1.0], weights=[1.0, 4.0])
+    assert diagonal.field == pytest.approx(weighted.field, abs=1e-7)
+    for wrong, words in (([[1.0, 0.5], [0.0, 1.0]], "not symmetric"), ([[1.0, 2.0], [2.0, 1.0]], "positive definite"), ([1.0, 1.0], "covariance")):
+        with pytest.raises(gb.InputError, match=words):
+            corrector.correct([0.0, 2.0], [parabola()], covariance=wrong)
+
+
+def test_a_dense_solver_that_no_memory_holds_is_refused():
+    mean = corrector.Condition("mean", lambda u: [u.sum()], sparse.csr_matrix(np.ones((1, 40_000))))
+    with pytest.raises(gb.InputError, match="13 GB"):
+        corrector.correct(np.zeros(40_000), [mean], solver="dense")
