@@ -17,6 +17,7 @@ from ._images import Tracked, track
 from ._load import load
 from ._markers import Correction, correct
 from ._material import Material, Parameter, laws, materials
+from ._motion import Motion
 from ._plate import Plate
 from ._results import Field, Results
 from ._solution import AtPoints, GroupForce, Solution, State
@@ -39,6 +40,7 @@ __all__ = [
     "InputError",
     "Material",
     "Parameter",
+    "Motion",
     "Plate",
     "Results",
     "Solution",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import os
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
@@ -12,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import InputError, WriteError, fault
 from ._energy import Energy, card_of
-from ._quantities import Floats, PathLike, Quantity, array_of, text
+from ._errors import InputError, WriteError, fault
+from ._quantities import Floats, PathLike, Quantity, array_of, text, toml
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -182,6 +183,48 @@ class Material:
         """
         units = {key: own.unit.strip("–") for key, own in self.parameters.items()}
         return Material._of(self._card.with_parameters({key: text(value, units.get(key, ""), key) for key, value in values.items()}))
+
+    def with_properties(
+        self,
+        *,
+        density: Quantity | None = None,
+        viscosity: Mapping[str, Any] | None = None,
+        softening: Mapping[str, Any] | None = None,
+        volume: Mapping[str, Any] | None = None,
+    ) -> Material:
+        """The same law with more of the material's behaviour, as sections of its card.
+
+        Parameters
+        ----------
+        density : quantity
+            Such as ``"1020 kg/m^3"``.
+        viscosity : mapping
+            ``{"shear": "50 Pa*s"}``, ``{"relaxation": [{"share": 0.3, "time": "2 s"}]}``, or both: what motions dissipate.
+        softening : mapping
+            Mullins softening of Ogden and Roxburgh: ``{"r": 2.0, "m": "0.02 MPa", "beta": 0.1}``.
+        volume : mapping
+            Resistance to a change of volume: ``{"poisson_ratio": 0.45}`` or ``{"bulk_modulus": "1 MPa"}``. Plane strain needs it:
+            ``settings={"material": {"sheet": "plane-strain"}}`` of a plate or a specimen.
+
+        Raises
+        ------
+        gelbench.InputError
+            With every fault, and where the card states such a property already.
+        """
+        viscous = dict(viscosity or {})
+        terms = [dict(term) for term in viscous.pop("relaxation", [])]
+        sections: dict[str, Any] = {"softening": dict(softening or {}), "volume": dict(volume or {}), "viscosity": viscous}
+        if terms:
+            sections["viscosity.relaxation"] = terms
+        added = toml(sections)
+        stated = [name for name in ("softening", "volume", "viscosity") if f"[{name}" in added and re.search(rf"(?m)^\[+{name}\b", self.text)]
+        if stated:
+            raise fault(stated[0], f"is stated by the card `{self.name}`", "change it in the card's text")
+        text_ = self.text
+        if density is not None:
+            line = f"density = {text(density, 'kg/m^3', 'density')!r}\n"
+            text_ = line + re.sub(r"(?m)^density *=.*\n", "", text_)
+        return Material.from_text(f"{text_.rstrip()}\n{added}", self.name)
 
     @property
     def name(self) -> str:

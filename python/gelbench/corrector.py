@@ -355,10 +355,9 @@ def _root(covariance: ArrayLike, size: int) -> Floats:
     if not np.allclose(given, given.T, rtol=1e-9, atol=1e-12 * np.abs(given).max(initial=0.0)):
         raise fault("covariance", "is not symmetric", "give the covariance of the errors of the field's entries")
     try:
-        found: Floats = np.linalg.cholesky(given)
+        return np.asarray(np.linalg.cholesky(given), dtype=np.float64)
     except np.linalg.LinAlgError:
         raise fault("covariance", "is not positive definite", "add the variance of each entry's own error to the diagonal") from None
-    return found
 
 
 def _link(root: Floats) -> dict[str, Any]:

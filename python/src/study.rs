@@ -10,7 +10,7 @@ use gelbench::document::with_files;
 use gelbench::error::{Diagnostic, Error};
 use gelbench::kinds;
 use gelbench::mesh::{CellShape, MeshData};
-use gelbench::studies::{Kind, Loaded, Progress};
+use gelbench::studies::{Kind, Loaded, PreparedStudy, Progress};
 use gelbench::units::{self, Dimension};
 use gelbench_mechanics::material::softened_law::check_memory;
 use gelbench_studies::studies::specimen::{self, Along, Specimen};
@@ -228,17 +228,33 @@ pub fn solve_sheet(
     Solution::new(py, found, sheet, groups)
 }
 
-/// Computes a study file of any kind.
+/// A study of any kind: a file, or a text with the files that it names and no disk has.
+fn ready(
+    path: &Path,
+    allow_large: bool,
+    text: Option<String>,
+    files: Files,
+) -> Result<PreparedStudy, Error> {
+    let budget = budget(allow_large);
+    match text {
+        Some(text) => with_files(files, || kinds::read_given(path, text, budget)),
+        None => kinds::read(path, budget),
+    }
+}
+
+/// Computes a study of any kind.
 #[pyfunction]
-#[pyo3(signature = (path, progress=None, allow_large=false))]
+#[pyo3(signature = (path, progress=None, allow_large=false, text=None, files=Files::new()))]
 pub fn run(
     py: Python<'_>,
     path: PathBuf,
     progress: Option<Py<PyAny>>,
     allow_large: bool,
+    text: Option<String>,
+    files: Files,
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
-        let ready = kinds::read(&path, budget(allow_large))?;
+        let ready = ready(&path, allow_large, text, files)?;
         let (folder, with_report) = (ready.output.folder.clone(), ready.output.report);
         let told = |what: &str| watch.tell(what);
         let results = ready.compute(Progress::to(&told))?;
@@ -260,12 +276,18 @@ pub fn quantity(py: Python<'_>, text: &str, unit: &str) -> PyResult<f64> {
         .map_err(|fault| exception(py, &refused(format!("\"{text}\": {fault}"))))
 }
 
-/// Reads a study file of any kind and tells what it will compute, and what deserves attention.
+/// Reads a study of any kind and tells what it will compute, and what deserves attention.
 #[pyfunction]
-#[pyo3(signature = (path, allow_large=false))]
-pub fn check(py: Python<'_>, path: PathBuf, allow_large: bool) -> PyResult<(String, Vec<String>)> {
+#[pyo3(signature = (path, allow_large=false, text=None, files=Files::new()))]
+pub fn check(
+    py: Python<'_>,
+    path: PathBuf,
+    allow_large: bool,
+    text: Option<String>,
+    files: Files,
+) -> PyResult<(String, Vec<String>)> {
     let found = py.detach(|| {
-        let ready = kinds::read(&path, budget(allow_large))?;
+        let ready = ready(&path, allow_large, text, files)?;
         let warnings = ready.warnings.iter().map(ToString::to_string).collect();
         Ok((ready.about, warnings))
     });

@@ -180,3 +180,17 @@ def test_a_material_is_made_of_a_law_and_its_parameters():
             gb.Material("gent", **wrong)
     with pytest.raises(gb.InputError, match="did you mean `gent`"):
         gb.Material("gnt", mu=1)
+
+
+def test_a_material_gets_more_properties_which_its_card_states_once():
+    plain = gb.Material("neo-hooke", c10=0.05)
+    soft = plain.with_properties(density="1020 kg/m^3", softening={"r": 2.0, "m": "0.02 MPa", "beta": 0.1})
+    assert soft.stress(1.5) == plain.stress(1.5) and soft.density == pytest.approx(1.02e-9) and "[softening]" in soft.text
+    with pytest.raises(gb.InputError, match="softening"):
+        soft.with_properties(softening={"r": 3.0, "m": "0.02 MPa", "beta": 0.1})
+    strained = plain.with_properties(volume={"poisson_ratio": 0.4})
+    plates = [gb.Plate(30, 10, 2, strained, cells=(6, 2), settings={"material": {"sheet": own}}) for own in ("plane-stress", "plane-strain")]
+    forces = [plate.solve("finite-element", 0.1).force for plate in plates]
+    assert forces[1] > 1.05 * forces[0]
+    with pytest.raises(gb.InputError, match="share"):
+        plain.with_properties(viscosity={"relaxation": [{"share": 2.0, "time": "2 s"}]})

@@ -1,0 +1,185 @@
+"""Plates and specimens that move in time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from . import _core
+from ._errors import fault
+from ._material import in_memory
+from ._plate import Plate
+from ._progress import Progress, callback
+from ._quantities import Quantity, text, toml
+from ._results import Results
+from ._specimen import Specimen
+from ._study import Files, Settings, merged
+
+__all__ = ["Motion"]
+
+UNITS = {"amplitude": "", "frequency": "Hz", "to": "", "begin": "s", "end": "s", "time": "s", "stretches": "", "factors": "", "times": "s"}
+"""Units of plain numbers of a drive."""
+
+ARGUMENTS = {
+    "kind": "it is that of a motion",
+    "plate": "give a Plate",
+    "specimen": "give a Specimen",
+    "support": "give a Specimen with supports=",
+    "load": "give a Specimen with loads=",
+    "start": "give it as start=",
+    "grip": "give it as drive=",
+    "path": "give it as drive=",
+    "gravity": "give it as gravity=",
+    "probe": "give them as probes=",
+    "time.duration": "give it as duration=",
+    "time.interval": "give it as interval=",
+    "material.density": "give it as density=",
+    "material.viscosity": "give it as viscosity=",
+}
+"""Settings that are arguments, and the remedy."""
+
+OF_EQUILIBRIA = ("load", "path", "mass_spring", "corrector", "finite_element", "tolerances", "pictures", "models")
+"""Sections of a sheet's equilibria that a motion does not take over."""
+
+
+class Motion:
+    """A plate or a specimen that moves in time: grips or loads that are held, driven or released, with inertia and viscosity.
+
+    Parameters
+    ----------
+    sheet : Plate or Specimen
+        The sheet, with its material, supports and loads.
+    duration : quantity
+        How long it moves [s].
+    start : quantity
+        The stretch of a plate, or the load factor of a specimen, at which the sheet was held before.
+    drive : mapping
+        ``{"motion": "hold"}``, ``{"motion": "release", "time": 0}``, ``{"motion": "ramp", "to": 0.5, "end": 0.1}``,
+        ``{"motion": "sine", "amplitude": 0.05, "frequency": 2}``, or ``{"motion": "table", "times": […], "stretches": […]}`` of a plate and
+        ``"factors"`` of a specimen; plain numbers are ratios, s and Hz.
+    interval : quantity, optional
+        Time between the instants of the results [s]; a hundredth of the duration if omitted.
+    density : quantity, optional
+        Such as ``"1020 kg/m^3"``, if the card has none.
+    viscosity : mapping, optional
+        Instead of the card's: ``{"shear": "50 Pa*s"}``, ``{"relaxation": [{"share": 0.3, "time": "2 s"}]}``, or both.
+    gravity : tuple of quantity, optional
+        Acceleration in the plane of the sheet, such as ``("0 m/s^2", "-9.81 m/s^2")``.
+    probes : mapping, optional
+        Points at rest by name [mm], whose displacement and velocity are reported.
+    settings : mapping, optional
+        Other keys of a study, by section, such as ``{"time": {"integrator": "generalised-alpha"}, "corrector": {"enabled": False}}``.
+
+    Raises
+    ------
+    gelbench.InputError
+        With every fault.
+
+    Examples
+    --------
+    >>> plate = gb.Plate(length=150, width=50, thickness=2, material="pva-10", cells=(30, 10))
+    >>> motion = gb.Motion(plate, "0.1 s", start=0.1, drive={"motion": "release"}, density="1020 kg/m^3")
+    >>> results = motion.run()
+    """
+
+    def __init__(
+        self,
+        sheet: Plate | Specimen,
+        duration: Quantity,
+        *,
+        start: Quantity = 0.0,
+        drive: Mapping[str, Any],
+        interval: Quantity | None = None,
+        density: Quantity | None = None,
+        viscosity: Mapping[str, Any] | None = None,
+        gravity: Sequence[Quantity] | None = None,
+        probes: Mapping[str, Sequence[Quantity]] | None = None,
+        settings: Settings | None = None,
+    ) -> None:
+        if not isinstance(sheet, (Plate, Specimen)):
+            raise fault("sheet", f"is {sheet!r}", "give a Plate or a Specimen")
+        if sheet._mesh is not None:
+            raise fault("sheet", "its mesh is on no disk", "save the mesh, and name its file in a study for gelbench.run")
+        self.sheet = sheet
+        self.material = sheet.material
+        length = text(duration, "s", "duration")
+        own: dict[str, Any] = {
+            "kind": "motion",
+            "material": {} if density is None else {"density": text(density, "kg/m^3", "density")},
+            "time": {"duration": length, "interval": _hundredth(length) if interval is None else text(interval, "s", "interval")},
+            "probe": [{"name": name, "at": [text(one, "mm", "probes") for one in at]} for name, at in (probes or {}).items()],
+        }
+        if gravity is not None:
+            x, y = gravity
+            own["gravity"] = {"x": text(x, "m/s^2", "gravity"), "y": text(y, "m/s^2", "gravity")}
+        own |= _of_sheet(sheet, text(start, "", "start"), {key: _texts(value, key) for key, value in drive.items()})
+        viscous = dict(viscosity or {})
+        terms = viscous.pop("relaxation", [])
+        if viscous:
+            own["material.viscosity"] = viscous
+        if terms:
+            own["material.viscosity.relaxation"] = [dict(term) for term in terms]
+        self._sections = merged(own, settings, ARGUMENTS)
+        study, files = self._here()
+        _core.check("motion", False, study, files)
+
+    def _here(self) -> tuple[str, Files]:
+        name, files = in_memory(self.material)
+        sections = {**self._sections, "material": {"card": name, **self._sections["material"]}}
+        return toml({key: value for key, value in sections.items() if value}), files
+
+    def study(self) -> str:
+        """The text of the study, which ``gelbench run`` computes with bit-identical results; it names the card as `Material.save` may
+        write it beside the study."""
+        return self._here()[0]
+
+    def run(self, *, progress: Progress | None = None, allow_large: bool = False) -> Results:
+        """Computes the motion of springs, corrected springs and finite elements.
+
+        Parameters
+        ----------
+        progress, allow_large
+            As of `Plate.solve`.
+
+        Returns
+        -------
+        Results
+            Tables over time, requirements, warnings, fields at every instant and pictures.
+
+        Raises
+        ------
+        gelbench.SolveError
+            If a model has no solution.
+        """
+        study, files = self._here()
+        return Results(_core.run("motion", callback(progress), allow_large, study, files))
+
+    def __repr__(self) -> str:
+        return f"<gelbench.Motion of {self._sections['time']['duration']}: {self.sheet!r}>"
+
+
+def _of_sheet(sheet: Plate | Specimen, start: str, drive: dict[str, Any]) -> dict[str, Any]:
+    """The sections of a motion that state the sheet, its start and its drive."""
+    kept = {name: own for name, own in sheet._sections.items() if name not in OF_EQUILIBRIA}
+    if isinstance(sheet, Plate):
+        return {**kept, "start": {"stretch": start}, "grip": drive}
+    conditions = {name: own for name, own in sheet._conditions.items() if own}
+    path = {**drive, "measured_group": sheet._measured}
+    return {**kept, **conditions, "start": {"factor": start}, "path": path}
+
+
+def _texts(value: Any, key: str) -> Any:
+    """Plain numbers of a drive as texts with their unit."""
+    if key not in UNITS:
+        return value
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        return text(value, UNITS[key], f"drive.{key}")
+    return [text(one, UNITS[key], f"drive.{key}") for one in value]
+
+
+def _hundredth(duration: str) -> str:
+    number, _, unit = duration.partition(" ")
+    try:
+        return f"{float(number) / 100!r} {unit}"
+    except ValueError:
+        raise fault("interval", "is missing", 'give it, such as "1 ms"') from None
