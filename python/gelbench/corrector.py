@@ -329,7 +329,8 @@ def correct(
         raise fault("weights", "are all zero, and the conditions alone do not determine the field", hint)
     if covariance is not None:
         root = _root(covariance, given.size)
-        given, begin, own = (np.concatenate([one, np.linalg.solve(root, one)]) for one in (given, begin, own))
+        pairs = (np.concatenate([one, np.linalg.solve(root, one)]) for one in (given, begin, own))
+        given, begin, own = (np.asarray(one, dtype=np.float64) for one in pairs)
         own[: given.size // 2], own[given.size // 2 :] = 0.0, 1.0
         listed.append(_link(root))
     if solver == "dense":
