@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use gelbench::mesh::Mesh;
+use gelbench_report::results::Finding;
 
 use super::deviations::Deviation;
 use super::engine::{Answer, Fault, Solved, Task, meshes};
@@ -68,6 +69,8 @@ pub struct Table {
     scene: History<Scene>,
     sheet: Scene,
     meshes: Result<[Mesh; 2], Fault>,
+    /// What belongs to the nodes of each mesh, in mm².
+    areas: [Vec<f64>; 2],
     shown: [Option<Shown>; 3],
     faults: [Option<Fault>; 3],
     asked: [Option<Asked>; 3],
@@ -92,8 +95,10 @@ pub struct Table {
 impl Table {
     /// With a scene on it.
     pub fn new(scene: Scene) -> Self {
+        let (meshes, areas) = meshed(&scene);
         Self {
-            meshes: meshes(&scene).map_err(Fault::from),
+            meshes,
+            areas,
             sheet: scene.clone(),
             scene: History::new(scene),
             shown: [None, None, None],
@@ -142,6 +147,14 @@ impl Table {
     /// Why a model has no newer result.
     pub fn fault(&self, model: Model) -> Option<&Fault> {
         self.faults[model as usize].as_ref()
+    }
+
+    /// What the command would warn of in the state that is held, as the finite elements found it last.
+    pub fn warnings(&self) -> &[Finding] {
+        let held = self
+            .shown(Model::Elements)
+            .filter(|_| self.played().is_none());
+        held.map_or(&[], |shown| &shown.solved.warnings)
     }
 
     /// What springs or corrected springs deviate from the finite elements.
@@ -242,11 +255,11 @@ impl Table {
             && scene.size == self.sheet.size
             && scene.cells == self.sheet.cells;
         if !same_mesh || self.meshes.is_err() {
-            self.meshes = meshes(scene).map_err(Fault::from);
+            (self.meshes, self.areas) = meshed(scene);
             self.shown = [None, None, None];
             self.sheets += 1;
         }
-        self.sheet = scene.clone();
+        self.sheet = self.scene.now().clone();
         self.faults = [None, None, None];
         self.deviations = [None; 2];
         self.curves = Default::default();
@@ -351,6 +364,14 @@ impl Table {
     pub fn forget_tasks(&mut self) {
         self.oldest = self.numbers + 1;
     }
+}
+
+/// The meshes of a scene, and what belongs to their nodes, in mm².
+fn meshed(scene: &Scene) -> (Result<[Mesh; 2], Fault>, [Vec<f64>; 2]) {
+    let meshes = meshes(scene).map_err(Fault::from);
+    let areas = |meshes: &[Mesh; 2]| meshes.each_ref().map(Mesh::areas_of_all_nodes);
+    let areas = meshes.as_ref().map_or_else(|_| Default::default(), areas);
+    (meshes, areas)
 }
 
 mod compared;
