@@ -186,7 +186,7 @@ fn a_dropped_file_that_nothing_reads_says_what_would_be() {
 
 #[test]
 fn the_points_of_a_dropped_test_are_drawn_at_once() {
-    let mut bench = window([1400.0, 900.0], small());
+    let mut bench = window([800.0, 600.0], small());
     let test = include_bytes!("../../materials/data/treloar_1944_uniaxial.csv");
     state_mut(&mut bench).open("treloar_1944_uniaxial.csv", test);
     bench.step();
@@ -197,7 +197,11 @@ fn the_points_of_a_dropped_test_are_drawn_at_once() {
     let lines = &materials.seen().unwrap().lines;
     assert_eq!(lines.len(), 1);
     assert!(lines[0].points.len() > 20 && lines[0].stroke == Stroke::Points);
-    assert!(bench.query_by_label_contains("as they were read").is_some());
+    let chart = bench.get_by_label_contains("as they were read").rect();
+    assert!(
+        chart.bottom() < 300.0,
+        "below {chart:?} the points are seen"
+    );
     // A file that does not say what was measured is asked about at once too.
     state_mut(&mut bench).open("bare.csv", b"strain,stress\n0.1,0.01\n0.2,0.02\n0.3,0.03\n");
     until(&mut bench, |bench| bench.materials().found().is_some());

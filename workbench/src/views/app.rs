@@ -262,7 +262,10 @@ impl Workbench {
         }
         match self.exports.receive() {
             None => (),
-            Some(Ok(written)) => self.give(written),
+            Some(Ok(written)) => {
+                self.told.clear();
+                self.give(written);
+            }
             Some(Err(fault)) => self.told = format!("{}; {}", fault.message, fault.advice),
         }
         self.receive_files(context);

@@ -132,11 +132,16 @@ impl Materials {
                     beside.show(&mut columns[1], |ui| self.tests(ui, table));
                     saves
                 })
-            } else {
+            } else if self.question.tests.is_empty() {
                 let saves = self.card(ui, table);
                 ui.separator();
                 self.tests(ui, table);
                 saves
+            } else {
+                // What was dropped is seen without scrolling.
+                self.tests(ui, table);
+                ui.separator();
+                self.card(ui, table)
             }
         });
         scroll.inner

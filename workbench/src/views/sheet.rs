@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align, Align2, Color32, FontId, Label, Mesh as Triangles, Painter, Pos2, Rect, RichText,
-    Sense, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
+    Align2, Color32, FontId, Label, Margin, Mesh as Triangles, Painter, Pos2, Rect, RichText,
+    Sense, Shape, Stroke, Ui, UiBuilder, vec2,
 };
 
 use gelbench::mesh::Mesh;
@@ -21,8 +21,17 @@ use crate::logic::table::{Drawn, Table};
 /// Multipliers that are drawn at most.
 const ARROWS: usize = 300;
 
-/// The width that the name of a model takes above its sheet.
-const NAME: f32 = 190.0;
+/// The heights of the scale of the colours, and of the row of warnings above it.
+const BAR: f32 = 34.0;
+const WARNINGS: f32 = 18.0;
+
+/// What is free around a sheet for its name and the knob of its grip.
+const AROUND: Margin = Margin {
+    left: 14,
+    right: 14,
+    top: 26,
+    bottom: 8,
+};
 
 /// What was drawn last: it is drawn again where nothing changed.
 #[derive(Default)]
@@ -66,8 +75,8 @@ impl Sheets {
             .collect();
         let span = self.span(table, &models);
         let range = span.range;
-        let bar = Rect::from_min_max(pos2(area.left(), area.bottom() - 34.0), area.max);
-        let sheets = Rect::from_min_max(area.min, pos2(area.right(), bar.top()));
+        let (above, bar) = area.split_top_bottom_at_y(area.bottom() - BAR);
+        let (sheets, row) = above.split_top_bottom_at_y(above.bottom() - WARNINGS);
         let over = table.scene().look.layout == Layout::Over;
         let areas = rows(sheets, if over { 1 } else { models.len() });
         let under = |row: &&Rect| background.hover_pos().is_some_and(|at| row.contains(at));
@@ -81,7 +90,7 @@ impl Sheets {
                 ui,
                 painter: ui.painter().with_clip_rect(own),
                 table,
-                view: self.view(table.scene(), own.shrink2(vec2(14.0, 26.0))),
+                view: self.view(table.scene(), own - AROUND),
                 range,
                 outline_only: over && number > 0,
             };
@@ -107,7 +116,7 @@ impl Sheets {
             ui.painter()
                 .text(place, Align2::LEFT_CENTER, "pull me", font, ink);
         }
-        warnings(ui, table, sheets);
+        warnings(ui, table, row);
         colour_bar(ui, table.shown_colour().name(), span, bar);
         if !held.as_ref().is_some_and(|held| held.holding) {
             self.room = room(table.scene());
@@ -255,26 +264,19 @@ fn label(place: &Place, model: Model, at: Pos2) {
     place.painter.text(at, Align2::LEFT_TOP, text, font, ink);
 }
 
-/// What the command would warn of, in the margin above the sheets, where it moves nothing; in full below and under the pointer.
-fn warnings(ui: &mut Ui, table: &Table, sheets: Rect) {
+/// What the command would warn of, in a row that is there without warnings too, so that they move nothing; in full below the sheets
+/// and under the pointer.
+fn warnings(ui: &mut Ui, table: &Table, row: Rect) {
     let warnings = table.warnings();
     if warnings.is_empty() {
         return;
     }
     let headlines: Vec<String> = warnings.iter().map(headline).collect();
     let whole: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    let margin = Rect::from_min_max(
-        sheets.min + vec2(NAME, 3.0),
-        pos2(sheets.right() - 6.0, sheets.top() + 24.0),
-    );
-    let mut margin = ui.new_child(
-        UiBuilder::new()
-            .max_rect(margin)
-            .layout(egui::Layout::right_to_left(Align::TOP)),
-    );
     let ink = ui.visuals().warn_fg_color;
     let words = RichText::new(format!("warning: {}", headlines.join(" · "))).color(ink);
-    let label = margin.add(Label::new(words).truncate());
+    let mut row = ui.new_child(UiBuilder::new().max_rect(row.shrink2(vec2(6.0, 0.0))));
+    let label = row.add(Label::new(words).truncate());
     label.on_hover_text(whole.join("\n\n"));
 }
 

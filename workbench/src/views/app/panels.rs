@@ -22,6 +22,9 @@ const TEXT_SIZES: [(&str, f32); 4] = [
 /// The width below which the panel of the controls is folded at first.
 const NARROW: f32 = 640.0;
 
+/// The height below which the sheets have most of it.
+const LOW: f32 = 560.0;
+
 /// The width that a chart beside the figures has at least.
 const CHART: f32 = 260.0;
 
@@ -33,7 +36,9 @@ impl Workbench {
                 ScrollArea::vertical().show(ui, |ui| self.controls(ui));
             });
         }
-        let height = (0.38 * ui.available_height()).min(260.0);
+        let room = ui.available_height();
+        let share = if room < LOW { 0.2 } else { 0.38 };
+        let height = (share * room).min(260.0);
         Panel::bottom("figures")
             .default_size(height)
             .resizable(true)
