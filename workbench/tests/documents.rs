@@ -186,7 +186,7 @@ fn exports_of_several_files_have_a_folder_of_their_own_and_replace_nothing_unask
     let folder = Folder::new("export");
     fs::create_dir_all(folder.at("sheet")).unwrap();
     fs::write(folder.at("sheet/springs.vtu"), "of others").unwrap();
-    let (mut bench, asked) = answered(&[folder.0.clone()]);
+    let (mut bench, asked) = answered(std::slice::from_ref(&folder.0));
     until(&mut bench, |bench| bench.table.is_settled());
     bench.get_by_label("export").click();
     bench.run_steps(2);
