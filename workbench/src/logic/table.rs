@@ -9,7 +9,7 @@ use super::deviations::Deviation;
 use super::engine::{Answer, Fault, Solved, Task, meshes};
 use super::history::History;
 use super::playing::Playing;
-use super::scene::{CardFile, Grip, Known, Model, Scene};
+use super::scene::{CardFile, Grip, Known, Look, Model, Scene};
 
 /// What a user does.
 #[derive(Clone, Debug)]
@@ -216,6 +216,7 @@ impl Table {
     /// Does what a user does.
     pub fn act(&mut self, action: Action) {
         self.message = None;
+        let before = self.drawn_as();
         match action {
             Action::Change { scene, gesture } => {
                 self.holding = gesture;
@@ -235,9 +236,15 @@ impl Table {
                 }
             }
         }
-        self.revision += 1;
         self.lay_out();
         self.end_other_motions();
+        self.revision += u64::from(before != self.drawn_as());
+    }
+
+    /// What decides how the fields are drawn besides their results: not where the grip is, which moves in every frame.
+    fn drawn_as(&self) -> (Look, usize, Option<u64>) {
+        let motion = self.moving.as_ref().map(Playing::number);
+        (self.scene().look, self.sheets, motion)
     }
 
     /// Meshes a new sheet; what was found of the old one is put away.
@@ -296,7 +303,7 @@ impl Table {
             _ => plain.known,
         };
         let mut asked = scene.clone();
-        asked.look = super::scene::Look {
+        asked.look = Look {
             colour,
             known,
             ..plain
@@ -369,7 +376,7 @@ impl Table {
 /// The meshes of a scene, and what belongs to their nodes, in mm².
 fn meshed(scene: &Scene) -> (Result<[Mesh; 2], Fault>, [Vec<f64>; 2]) {
     let meshes = meshes(scene).map_err(Fault::from);
-    let areas = |meshes: &[Mesh; 2]| meshes.each_ref().map(Mesh::areas_of_all_nodes);
+    let areas = |meshes: &[Mesh; 2]| meshes.each_ref().map(compared::node_areas);
     let areas = meshes.as_ref().map_or_else(|_| Default::default(), areas);
     (meshes, areas)
 }
