@@ -1,5 +1,6 @@
 //! The table: what lies on it, what was found of it, what is still to be solved. It draws nothing and waits for nothing.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use gelbench::mesh::Mesh;
@@ -69,8 +70,8 @@ pub struct Table {
     scene: History<Scene>,
     sheet: Scene,
     meshes: Result<[Mesh; 2], Fault>,
-    /// What belongs to the nodes of each mesh, in mm².
-    areas: [Vec<f64>; 2],
+    /// The areas of the nodes of each mesh, once colours need them: the first picture has none.
+    areas: [OnceCell<Vec<f64>>; 2],
     shown: [Option<Shown>; 3],
     faults: [Option<Fault>; 3],
     asked: [Option<Asked>; 3],
@@ -95,10 +96,9 @@ pub struct Table {
 impl Table {
     /// With a scene on it.
     pub fn new(scene: Scene) -> Self {
-        let (meshes, areas) = meshed(&scene);
         Self {
-            meshes,
-            areas,
+            meshes: meshes(&scene).map_err(Fault::from),
+            areas: Default::default(),
             sheet: scene.clone(),
             scene: History::new(scene),
             shown: [None, None, None],
@@ -262,7 +262,8 @@ impl Table {
             && scene.size == self.sheet.size
             && scene.cells == self.sheet.cells;
         if !same_mesh || self.meshes.is_err() {
-            (self.meshes, self.areas) = meshed(scene);
+            self.meshes = meshes(scene).map_err(Fault::from);
+            self.areas = Default::default();
             self.shown = [None, None, None];
             self.sheets += 1;
         }
@@ -371,14 +372,6 @@ impl Table {
     pub fn forget_tasks(&mut self) {
         self.oldest = self.numbers + 1;
     }
-}
-
-/// The meshes of a scene, and what belongs to their nodes, in mm².
-fn meshed(scene: &Scene) -> (Result<[Mesh; 2], Fault>, [Vec<f64>; 2]) {
-    let meshes = meshes(scene).map_err(Fault::from);
-    let areas = |meshes: &[Mesh; 2]| meshes.each_ref().map(compared::node_areas);
-    let areas = meshes.as_ref().map_or_else(|_| Default::default(), areas);
-    (meshes, areas)
 }
 
 mod compared;

@@ -1,6 +1,7 @@
 //! The sheet in motion, once its grip has let go.
 
 use super::Table;
+use super::compared::node_areas;
 use crate::logic::engine::Fault;
 use crate::logic::engine::motion::{self, MotionAnswer, MotionQuestion};
 use crate::logic::playing::Playing;
@@ -147,8 +148,10 @@ impl Table {
             None => self.values(*model),
         };
         let weighted = models.iter().filter_map(|model| {
+            let values = values(model)?;
             let areas = &self.areas[usize::from(*model == Model::Elements)];
-            Some(values(model)?.into_iter().zip(areas.iter().copied()))
+            let areas = areas.get_or_init(|| self.mesh(*model).map_or_else(Vec::new, node_areas));
+            Some(values.into_iter().zip(areas.iter().copied()))
         });
         weighted.flatten().collect()
     }
