@@ -50,12 +50,14 @@ fn main() -> std::process::ExitCode {
 
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop {
+    use std::path::Path;
     use std::process::ExitCode;
 
     use eframe::egui::{Theme, ViewportBuilder};
     use gelbench_workbench::logic::scene::Scene;
     use gelbench_workbench::measure::Measure;
     use gelbench_workbench::views::app::Workbench;
+    use gelbench_workbench::views::files::Recent;
 
     const USAGE: &str = "gelbench-workbench [FILE …] [--frames NUMBER] [--size WIDTHxHEIGHT] [--dark | --light]\n\n\
         Opens the workbench with studies and cards.\n\
@@ -92,8 +94,9 @@ mod desktop {
                     context.egui_ctx.set_theme(theme);
                 }
                 let mut bench = Workbench::new(&context.egui_ctx, Scene::default());
+                bench.remember(Recent::of_user());
                 for file in &options.files {
-                    bench.open(file, &std::fs::read(file)?);
+                    bench.open_path(Path::new(file));
                 }
                 if options.frames > 0 {
                     bench = bench.measuring(Measure::of(options.frames));

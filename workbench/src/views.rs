@@ -2,6 +2,8 @@
 
 pub mod app;
 pub mod chart;
+pub mod closer;
+pub mod colour_bar;
 pub mod colours;
 pub mod controls;
 pub mod exports;
@@ -12,6 +14,7 @@ pub mod fonts;
 pub mod grip;
 pub mod guide;
 pub mod material;
+pub mod question;
 pub mod report;
 pub mod sheet;
 pub mod study;

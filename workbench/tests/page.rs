@@ -131,9 +131,10 @@ fn tests_are_fitted(page: &mut Browser) {
             name: "treloar_1944_uniaxial.csv".into(),
             text: text.into(),
         }],
+        fit: true,
         ..FitQuestion::default()
     };
-    let here = Fitter.answer(&question).unwrap();
+    let here = Fitter.answer(&question).unwrap().ranking.unwrap();
     let laws: Vec<&str> = here.fits.iter().map(|fit| fit.law.as_str()).collect();
     let there = told["fits"].as_array().unwrap();
     let there: Vec<&str> = there.iter().map(|fit| fit[0].as_str().unwrap()).collect();

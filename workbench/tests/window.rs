@@ -2,6 +2,7 @@
 
 use eframe::egui::{Key, Modifiers, Rect, pos2, vec2};
 use egui_kittest::kittest::Queryable;
+use gelbench_report::results::Stroke;
 use gelbench_workbench::logic::scene::Model;
 use gelbench_workbench::views::app::{Tab, Workbench};
 use gelbench_workbench::views::guide::Shows;
@@ -102,13 +103,7 @@ fn all_that_is_needed_is_inside_the_window_in_every_size_and_light() {
             bench.step();
             let inside = Rect::from_min_max(pos2(0.0, 0.0), pos2(size[0], size[1]));
             for label in [
-                "sheet",
-                "material",
-                "undo",
-                "redo",
-                "save study",
-                "guide",
-                "controls",
+                "sheet", "material", "undo", "redo", "file", "guide", "controls",
             ] {
                 let rect = bench.get_by_label(label).rect();
                 assert!(
@@ -173,6 +168,44 @@ fn dropped_files_find_their_view_and_bad_ones_are_told() {
     state_mut(&mut bench).open("pull.csv", b"# test: uniaxial\n");
     bench.step();
     assert_eq!(state(&bench).tab(), Tab::Material);
+}
+
+#[test]
+fn a_dropped_file_that_nothing_reads_says_what_would_be() {
+    let mut bench = window([800.0, 600.0], small());
+    for (name, content) in [("photo.jpg", &b"\xff\xd8"[..]), ("notes.md", b"# notes")] {
+        state_mut(&mut bench).open(name, content);
+        bench.step();
+        let said = state(&bench).said();
+        assert!(said.contains(name) && said.contains("(.toml"), "{said}");
+        assert_eq!(state(&bench).tab(), Tab::Sheet, "nothing else happens");
+        assert!(state(&bench).studies().files().is_empty());
+        assert!(bench.query_by_label_contains(name).is_some());
+    }
+}
+
+#[test]
+fn the_points_of_a_dropped_test_are_drawn_at_once() {
+    let mut bench = window([800.0, 600.0], small());
+    let test = include_bytes!("../../materials/data/treloar_1944_uniaxial.csv");
+    state_mut(&mut bench).open("treloar_1944_uniaxial.csv", test);
+    bench.step();
+    until(&mut bench, |bench| bench.materials().seen().is_some());
+    bench.run_steps(2);
+    let materials = state(&bench).materials();
+    assert!(materials.found().is_none(), "nothing was fitted");
+    let lines = &materials.seen().unwrap().lines;
+    assert_eq!(lines.len(), 1);
+    assert!(lines[0].points.len() > 20 && lines[0].stroke == Stroke::Points);
+    let chart = bench.get_by_label_contains("as they were read").rect();
+    assert!(
+        chart.bottom() < 300.0,
+        "below {chart:?} the points are seen"
+    );
+    // A file that does not say what was measured is asked about at once too.
+    state_mut(&mut bench).open("bare.csv", b"strain,stress\n0.1,0.01\n0.2,0.02\n0.3,0.03\n");
+    until(&mut bench, |bench| bench.materials().found().is_some());
+    assert!(state(&bench).materials().found().unwrap().is_err());
 }
 
 #[test]

@@ -56,7 +56,7 @@ pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
 pub use fields::{Animation, FieldFigure, Frame, Panel, Values};
 pub use finding::{Finding, Found, Weight};
 pub use fit::fit_json;
-pub use fit_picture::fit_picture;
+pub use fit_picture::{fit_picture, tests_chart};
 pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
 pub use group::{NamedGroup, group_json, group_picture, group_table};
 pub use headline::{Gauge, Headline, LoadedSheet};

@@ -27,6 +27,7 @@ mod series;
 pub mod specimen;
 mod steps;
 
+pub use findings::findings_of_state;
 pub use models::{ModelKind, OneModel};
 pub use steps::Steps;
 

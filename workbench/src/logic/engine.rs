@@ -11,7 +11,7 @@ use gelbench::error::Error;
 use gelbench::solve::{LinearSolver, Loading, Stage};
 use gelbench_mechanics::problem::CellLaws;
 use gelbench_mechanics::solve::{Tangent, compliance};
-use gelbench_report::results::nodal_states;
+use gelbench_report::results::{Finding, nodal_states};
 
 use super::background::Worker;
 use super::scene::{Colour, Grip, Known, Model, Scene};
@@ -69,6 +69,8 @@ pub struct Solved {
     pub moment: f64,
     /// Finite elements: their displacements at the nodes of the lattice in mm.
     pub on_lattice: Option<Vec<f64>>,
+    /// Finite elements: what the command would warn of.
+    pub warnings: Vec<Finding>,
     /// Multipliers of the correction at each node in mm²/N; nothing where they were not wanted.
     pub multipliers: Option<Vec<f64>>,
 }
@@ -159,6 +161,10 @@ impl Engine {
             Some(before) => std::mem::replace(&mut body.displacement, before),
             None => body.displacement.clone(),
         };
+        let warnings = match task.model {
+            Model::Elements => bodies.warnings(),
+            _ => Vec::new(),
+        };
         let (mesh, lattice) = (&bodies.made(task.model).mesh, &bodies.lattice);
         let on_lattice =
             (task.model == Model::Elements).then(|| mesh.displacement_on(&displacement, lattice));
@@ -169,6 +175,7 @@ impl Engine {
             force,
             moment,
             on_lattice,
+            warnings,
             multipliers,
         })
     }

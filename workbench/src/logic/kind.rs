@@ -4,8 +4,9 @@ use gelbench::calibration::TestData;
 use gelbench::document::Statements;
 use gelbench::document::with_files;
 use gelbench::markers::{ReadSettings, read};
+use gelbench_base::document::is_table_path;
 use gelbench_calibration::calibration::KEYS;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a file may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,8 +19,10 @@ pub enum Kind {
     Test,
     /// A measured field.
     Field,
-    /// Anything else that a study may name.
-    Other,
+    /// A mesh, which a study may name.
+    Named,
+    /// What nothing reads.
+    Unread,
 }
 
 /// Kinds of studies that are sheets between two grips.
@@ -32,11 +35,22 @@ impl Kind {
         match (ending.as_str(), text) {
             ("toml", Some(text)) => Self::of_toml(text),
             ("vtu" | "vtk" | "pvd" | "frd", _) => Self::Field,
-            ("csv" | "txt" | "tsv" | "dat", Some(text)) => Self::of_table(name, text),
-            // Tables in other encodings are measured fields: those of cameras.
-            ("csv" | "txt" | "tsv" | "dat", None) => Self::Field,
-            _ => Self::Other,
+            _ if is_table_path(Path::new(name)) => match text {
+                Some(text) => Self::of_table(name, text),
+                // Tables in other encodings are measured fields: those of cameras.
+                None => Self::Field,
+            },
+            ("msh" | "inp", _) => Self::Named,
+            _ => Self::Unread,
         }
+    }
+
+    /// What is said of a file that nothing reads: what would be read.
+    pub fn nothing_reads(name: &str) -> String {
+        format!(
+            "nothing reads {name}. What is read: studies and cards (.toml, UTF-8), tests (.csv, .txt, .tsv, .dat), measured fields \
+             (tables, also .xlsx, .npy, .npz and .mat; .vtu, .vtk, .pvd, .frd), and meshes that a study names (.msh, .inp)"
+        )
     }
 
     /// Whether a text is a material card.
@@ -112,10 +126,13 @@ mod tests {
             ("motion.toml", motion, Kind::Study),
             ("card.toml", card, Kind::Sheet),
             ("short.toml", "[plate]\nwidth = \"4 cm\"\n", Kind::Sheet),
-            ("mesh.msh", "$MeshFormat\n", Kind::Other),
+            ("mesh.msh", "$MeshFormat\n", Kind::Named),
+            ("notes.md", "# notes\n", Kind::Unread),
         ] {
             assert_eq!(Kind::of(name, Some(text)), kind, "{name}");
         }
         assert_eq!(Kind::of("camera.csv", None), Kind::Field);
+        assert_eq!(Kind::of("camera.XLSX", None), Kind::Field);
+        assert_eq!(Kind::of("photo.jpg", None), Kind::Unread);
     }
 }

@@ -11,7 +11,7 @@ use gelbench::material::registry::Law;
 use gelbench::material::stability::stable_range;
 use gelbench::results::Drawing;
 use gelbench_calibration::calibration::StableRange;
-use gelbench_report::results::{LineChart, fit_picture};
+use gelbench_report::results::{LineChart, fit_picture, tests_chart};
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -35,6 +35,17 @@ pub struct FitQuestion {
     pub reading: Statements,
     /// The law; all laws where there is none.
     pub law: Option<String>,
+    /// Whether laws are fitted, or the tests are only looked at.
+    pub fit: bool,
+}
+
+/// What came of a question.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct FitAnswer {
+    /// The points of the tests.
+    pub measured: LineChart,
+    /// The laws, where they were fitted.
+    pub ranking: Option<Ranking>,
 }
 
 /// A fitted law.
@@ -81,16 +92,20 @@ pub struct Fitter;
 
 impl Worker for Fitter {
     type Question = FitQuestion;
-    type Answer = Result<Ranking, Fault>;
+    type Answer = Result<FitAnswer, Fault>;
     const NAME: &'static str = "fitter";
 
-    fn answer(&mut self, question: &FitQuestion) -> Result<Ranking, Fault> {
-        fit(question).map_err(Fault::from)
+    fn answer(&mut self, question: &FitQuestion) -> Result<FitAnswer, Fault> {
+        let tests = read(&question.tests, &question.reading)?;
+        let ranking = question.fit.then(|| fit(question, &tests)).transpose()?;
+        Ok(FitAnswer {
+            measured: tests_chart(&tests),
+            ranking,
+        })
     }
 }
 
-fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
-    let tests = read(&question.tests, &question.reading)?;
+fn fit(question: &FitQuestion, tests: &[TestData]) -> Result<Ranking, Error> {
     let settings = FitSettings::default();
     let (fits, without) = match &question.law {
         Some(name) => {
@@ -100,9 +115,9 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
                     "choose one from the list",
                 )
             })?;
-            (vec![calibration::fit(law, &tests, &settings)?], Vec::new())
+            (vec![calibration::fit(law, tests, &settings)?], Vec::new())
         }
-        None => calibration::rank(&tests, &settings),
+        None => calibration::rank(tests, &settings),
     };
     let provenance = Provenance {
         files: question
@@ -113,7 +128,7 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
         reading: question.reading.clone(),
         base_card: None,
     };
-    let fitted = |fit: &Fit| fitted(fit, &fit.fitted_tests(&tests), &provenance);
+    let fitted = |fit: &Fit| fitted(fit, &fit.fitted_tests(tests), &provenance);
     Ok(Ranking {
         fits: fits.iter().map(fitted).collect(),
         without,
@@ -241,9 +256,10 @@ mod tests {
         let question = FitQuestion {
             tests: vec![treloar()],
             law: Some("yeoh".into()),
+            fit: true,
             ..FitQuestion::default()
         };
-        let ranking = Fitter.answer(&question).unwrap();
+        let ranking = Fitter.answer(&question).unwrap().ranking.unwrap();
         let fit = &ranking.fits[0];
         // The guide: `gelbench materials fit materials/data/treloar_1944_uniaxial.csv --law yeoh`.
         assert_eq!(fit.parameters[0], ["c10", "0.176284 MPa", "no interval"]);
@@ -264,6 +280,7 @@ mod tests {
         let mut question = FitQuestion {
             tests: vec![bare],
             law: Some("neo-hooke".into()),
+            fit: true,
             ..FitQuestion::default()
         };
         let fault = Fitter.answer(&question).unwrap_err();
@@ -277,7 +294,8 @@ mod tests {
         ] {
             question.reading.insert(key.into(), value.into());
         }
-        assert_eq!(Fitter.answer(&question).unwrap().fits.len(), 1, "{fault:?}");
+        let ranking = Fitter.answer(&question).unwrap().ranking.unwrap();
+        assert_eq!(ranking.fits.len(), 1, "{fault:?}");
     }
 
     #[test]

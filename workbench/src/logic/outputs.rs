@@ -72,6 +72,16 @@ pub struct Written {
     pub files: Vec<NamedFile>,
 }
 
+impl Written {
+    /// A file by itself.
+    pub fn file(file: NamedFile) -> Self {
+        Self {
+            name: file.0.clone(),
+            files: vec![file],
+        }
+    }
+}
+
 /// Writes what goes out.
 #[derive(Default)]
 pub struct Writer;

@@ -192,6 +192,11 @@ impl Playing {
         least.unwrap_or_else(|| all.iter().map(end).fold(0.0, f64::max))
     }
 
+    /// Whether there is anything to be played: until then what was held stays.
+    pub fn has_begun(&self) -> bool {
+        self.computed() > 0.0
+    }
+
     /// Plays for so many seconds; from the end it begins again. Whether another instant is shown.
     pub fn advance(&mut self, seconds: f64) -> bool {
         let before = self.instant();

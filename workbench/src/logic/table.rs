@@ -1,14 +1,16 @@
 //! The table: what lies on it, what was found of it, what is still to be solved. It draws nothing and waits for nothing.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use gelbench::mesh::Mesh;
+use gelbench_report::results::Finding;
 
 use super::deviations::Deviation;
 use super::engine::{Answer, Fault, Solved, Task, meshes};
 use super::history::History;
 use super::playing::Playing;
-use super::scene::{CardFile, Grip, Known, Model, Scene};
+use super::scene::{CardFile, Grip, Known, Look, Model, Scene};
 
 /// What a user does.
 #[derive(Clone, Debug)]
@@ -68,6 +70,8 @@ pub struct Table {
     scene: History<Scene>,
     sheet: Scene,
     meshes: Result<[Mesh; 2], Fault>,
+    /// The areas of the nodes of each mesh, once colours need them: the first picture has none.
+    areas: [OnceCell<Vec<f64>>; 2],
     shown: [Option<Shown>; 3],
     faults: [Option<Fault>; 3],
     asked: [Option<Asked>; 3],
@@ -94,6 +98,7 @@ impl Table {
     pub fn new(scene: Scene) -> Self {
         Self {
             meshes: meshes(&scene).map_err(Fault::from),
+            areas: Default::default(),
             sheet: scene.clone(),
             scene: History::new(scene),
             shown: [None, None, None],
@@ -142,6 +147,14 @@ impl Table {
     /// Why a model has no newer result.
     pub fn fault(&self, model: Model) -> Option<&Fault> {
         self.faults[model as usize].as_ref()
+    }
+
+    /// What the command would warn of in the state that is held, as the finite elements found it last.
+    pub fn warnings(&self) -> &[Finding] {
+        let held = self
+            .shown(Model::Elements)
+            .filter(|_| self.played().is_none());
+        held.map_or(&[], |shown| &shown.solved.warnings)
     }
 
     /// What springs or corrected springs deviate from the finite elements.
@@ -203,6 +216,7 @@ impl Table {
     /// Does what a user does.
     pub fn act(&mut self, action: Action) {
         self.message = None;
+        let before = self.drawn_as();
         match action {
             Action::Change { scene, gesture } => {
                 self.holding = gesture;
@@ -222,9 +236,15 @@ impl Table {
                 }
             }
         }
-        self.revision += 1;
         self.lay_out();
         self.end_other_motions();
+        self.revision += u64::from(before != self.drawn_as());
+    }
+
+    /// What decides how the fields are drawn besides their results: not where the grip is, which moves in every frame.
+    fn drawn_as(&self) -> (Look, usize, Option<u64>) {
+        let motion = self.moving.as_ref().map(Playing::number);
+        (self.scene().look, self.sheets, motion)
     }
 
     /// Meshes a new sheet; what was found of the old one is put away.
@@ -243,10 +263,11 @@ impl Table {
             && scene.cells == self.sheet.cells;
         if !same_mesh || self.meshes.is_err() {
             self.meshes = meshes(scene).map_err(Fault::from);
+            self.areas = Default::default();
             self.shown = [None, None, None];
             self.sheets += 1;
         }
-        self.sheet = scene.clone();
+        self.sheet = self.scene.now().clone();
         self.faults = [None, None, None];
         self.deviations = [None; 2];
         self.curves = Default::default();
@@ -283,7 +304,7 @@ impl Table {
             _ => plain.known,
         };
         let mut asked = scene.clone();
-        asked.look = super::scene::Look {
+        asked.look = Look {
             colour,
             known,
             ..plain

@@ -8,30 +8,38 @@ use web_time::Instant;
 
 use super::exports::Exports;
 use super::field::Fields;
+use super::files::Files;
+#[cfg(not(target_arch = "wasm32"))]
+use super::files::Recent;
 use super::fonts;
 use super::material::Materials;
 use super::sheet::Sheets;
-use super::study::{Studies, plain};
+use super::study::Studies;
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Engine;
 use crate::logic::engine::motion::Mover;
-use crate::logic::kind::Kind;
-use crate::logic::material::TestFile;
+use crate::logic::outputs::Written;
 use crate::logic::scene::Scene;
 use crate::logic::table::{Action, Table};
 use crate::measure::Measure;
 
+mod documents;
 mod inbox;
 mod motion;
 mod outputs;
 mod panels;
 
+use documents::{Document, Leaving};
 use inbox::Inbox;
 
 const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
 const LET_GO: Key = Key::L;
 const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+const SAVE_AS: KeyboardShortcut =
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+#[cfg(not(target_arch = "wasm32"))]
+const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
 
 /// Fits, corrects or runs what is shown.
 const RUN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Enter);
@@ -65,6 +73,13 @@ pub struct Workbench {
     engines: [Background<Engine>; 3],
     movers: [Background<Mover>; 3],
     exports: Exports,
+    files: Files,
+    #[cfg(not(target_arch = "wasm32"))]
+    recent: Recent,
+    documents: [Document; 4],
+    leaving: Option<Leaving>,
+    /// Whether the window closes now.
+    closes: bool,
     damping: f64,
     /// Whether the sheet is let go when the mouse lets the grip go, and whether it is to be now.
     springs_back: bool,
@@ -95,10 +110,16 @@ impl Workbench {
         let wake: Wake = Arc::new(move || context.request_repaint());
         let background = || Background::new(Arc::clone(&wake));
         let mover = || Background::new(Arc::clone(&wake));
-        Self {
+        let mut bench = Self {
             engines: [background(), background(), background()],
             movers: [mover(), mover(), mover()],
             exports: Exports::new(Arc::clone(&wake)),
+            files: Files::new(Arc::clone(&wake)),
+            #[cfg(not(target_arch = "wasm32"))]
+            recent: Recent::default(),
+            documents: Default::default(),
+            leaving: None,
+            closes: false,
             damping: motion::FIRST_DAMPING,
             springs_back: false,
             lets_go: false,
@@ -116,7 +137,9 @@ impl Workbench {
             grip_at: None,
             places: BTreeMap::new(),
             measure: None,
-        }
+        };
+        bench.forget_changes();
+        bench
     }
 
     /// The same, pulling by itself and measuring its frames.
@@ -131,50 +154,6 @@ impl Workbench {
     /// What the frames took, where they are measured and all were drawn.
     pub fn measured(&self) -> Option<String> {
         self.measure.as_ref()?.report()
-    }
-
-    /// Takes a file as if it were dropped.
-    pub fn open(&mut self, name: &str, content: &[u8]) {
-        let text = std::str::from_utf8(content).ok().map(str::to_owned);
-        self.guided = None;
-        match (Kind::of(name, text.as_deref()), text) {
-            (Kind::Test, Some(text)) => {
-                let name = plain(name);
-                self.materials.put(TestFile { name, text });
-                self.tab = Tab::Material;
-            }
-            (Kind::Field, _) => {
-                self.fields.take_card(&self.table.scene().card);
-                self.fields.put((plain(name), content.to_vec()));
-                self.tab = Tab::Field;
-            }
-            (Kind::Sheet, Some(text)) => self.lay(name, text),
-            (Kind::Study, Some(text)) => {
-                self.studies.put(name, text);
-                self.tab = Tab::Study;
-            }
-            _ => {
-                self.studies.put_file(name, content.to_vec());
-                self.tab = Tab::Study;
-            }
-        }
-    }
-
-    /// Lays a study of a sheet on the table, or a card; what the table does not take is a study to be run.
-    fn lay(&mut self, name: &str, text: String) {
-        let is_card = Kind::is_card(&text);
-        let file = name.to_owned();
-        self.studies.put_file(name, text.clone().into_bytes());
-        self.table.act(Action::Open {
-            file,
-            text: text.clone(),
-        });
-        match self.table.message() {
-            None => self.told = format!("{name} is open"),
-            Some(_) if is_card => (),
-            Some(_) => self.studies.put(name, text),
-        }
-        self.tab = Tab::Sheet;
     }
 
     /// The view that is shown.
@@ -226,7 +205,9 @@ impl Workbench {
     pub fn show(&mut self, ui: &mut Ui) {
         self.places.clear();
         self.receive(ui.ctx());
-        self.keys(ui);
+        if !self.ask(ui.ctx()) {
+            self.keys(ui);
+        }
         Panel::top("bar").show(ui, |ui| self.bar(ui));
         if !self.told.is_empty() {
             Panel::bottom("told").show(ui, |ui| self.told(ui));
@@ -237,16 +218,24 @@ impl Workbench {
         match self.tab {
             Tab::Sheet => self.sheet_tab(ui),
             Tab::Material => {
-                CentralPanel::default().show(ui, |ui| self.materials.show(ui, &mut self.table));
+                let central = CentralPanel::default();
+                let shown = central.show(ui, |ui| self.materials.show(ui, &mut self.table));
+                if shown.inner {
+                    self.save(Tab::Material, true);
+                }
                 if !ui.input(|input| input.pointer.any_down()) {
                     self.table.let_go();
                 }
             }
             Tab::Field => {
                 self.fields.take_card(&self.table.scene().card);
-                CentralPanel::default().show(ui, |ui| self.fields.show(ui, &mut self.table));
+                let central = CentralPanel::default();
+                let shown = central.show(ui, |ui| self.fields.show(ui, &mut self.table));
+                if let Some(file) = shown.inner {
+                    self.give(Written::file(file));
+                }
             }
-            Tab::Study => drop(CentralPanel::default().show(ui, |ui| self.studies.show(ui))),
+            Tab::Study => self.study_tab(ui),
         }
         self.send();
     }
@@ -260,17 +249,26 @@ impl Workbench {
             .inbox
             .lock()
             .map(|mut files| std::mem::take(&mut *files));
-        for (name, content) in arrived.unwrap_or_default() {
-            self.open(&name, &content);
+        for arrived in arrived.unwrap_or_default() {
+            match arrived {
+                Ok((name, content)) => self.open(&name, &content),
+                Err(fault) => self.told = fault,
+            }
         }
         for engine in &mut self.engines {
             for answer in engine.answers() {
                 self.table.take(answer);
             }
         }
-        if let Some(told) = self.exports.receive() {
-            self.told = told;
+        match self.exports.receive() {
+            None => (),
+            Some(Ok(written)) => {
+                self.told.clear();
+                self.give(written);
+            }
+            Some(Err(fault)) => self.told = format!("{}; {}", fault.message, fault.advice),
         }
+        self.receive_files(context);
         self.play(context);
         self.materials.receive();
         self.fields.receive();
@@ -304,8 +302,15 @@ impl Workbench {
                 self.table.act(Action::Undo);
             }
         }
+        #[cfg(not(target_arch = "wasm32"))]
+        if pressed(&OPEN) {
+            self.files.open();
+        }
+        if pressed(&SAVE_AS) {
+            self.save(self.tab, true);
+        }
         if pressed(&SAVE) {
-            self.save();
+            self.save(self.tab, false);
         }
         if pressed(&RUN) {
             match self.tab {
@@ -372,6 +377,7 @@ impl eframe::App for Workbench {
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(report) = self.measured() {
             println!("{report}");
+            self.forget_changes();
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             self.measure = None;
         }

@@ -43,21 +43,64 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     })
 }
 
-/// The range that holds 96 % of some numbers, and zero where they come near it; nothing where there are none. At corners stresses
-/// have no bound, and would leave one colour for all the rest.
-pub fn most_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
-    let mut finite: Vec<f64> = values
+/// What a scale of colours spans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// The values at its ends.
+    pub range: [f64; 2],
+    /// Whether there are values below and above.
+    pub exceeded: [bool; 2],
+}
+
+/// The span of values on 96 % of the area to which they belong, each with its share, and zero where they come near it; nothing where
+/// there are none. At corners stresses have no bound, and would leave one colour for all the rest; by area it does not matter how fine
+/// the mesh is there.
+pub fn most_of(values: impl IntoIterator<Item = (f64, f64)>) -> Option<Span> {
+    let values: Vec<(f64, f64)> = values
         .into_iter()
-        .filter(|value| value.is_finite())
+        .filter(|(value, area)| value.is_finite() && *area > 0.0)
         .collect();
-    let last = finite.len().checked_sub(1)?;
-    let mut at = |share: f64| {
-        let place = (share * last as f64).round() as usize;
-        *finite.select_nth_unstable_by(place, f64::total_cmp).1
+    let all = range(values.iter().map(|(value, _)| *value))?;
+    let whole: f64 = values.iter().map(|(_, area)| area).sum();
+    let [low, _] = around(&values, all, 0.02 * whole);
+    let [_, high] = around(&values, all, 0.98 * whole);
+    let low = if low > 0.0 && low < 0.1 * high {
+        0.0
+    } else {
+        low
     };
-    let [low, high] = [0.02, 0.98].map(&mut at);
-    let near_zero = low > 0.0 && low < 0.1 * high;
-    Some([if near_zero { 0.0 } else { low }, high])
+    Some(Span {
+        range: [low, high],
+        exceeded: [all[0] < low, all[1] > high],
+    })
+}
+
+/// Bounds of the value up to which an area is reached when values are taken in ascending order: as near to it as a colour needs, in the
+/// time of a few sums. A frame has no time for sorting.
+fn around(values: &[(f64, f64)], [mut low, mut high]: [f64; 2], mut area: f64) -> [f64; 2] {
+    const BINS: usize = 256;
+    for _ in 0..3 {
+        let width = (high - low) / BINS as f64;
+        if width <= 0.0 {
+            break;
+        }
+        let mut bins = [0.0; BINS];
+        for (value, share) in values {
+            if (low..=high).contains(value) {
+                bins[(((value - low) / width) as usize).min(BINS - 1)] += share;
+            }
+        }
+        let mut bin = 0;
+        while bin < BINS - 1 && bins[bin] < area {
+            area -= bins[bin];
+            bin += 1;
+        }
+        low += bin as f64 * width;
+        if bin < BINS - 1 {
+            high = low + width;
+        }
+    }
+    [low, high]
 }
 
 #[cfg(test)]
@@ -75,16 +118,36 @@ mod tests {
     #[test]
     fn a_few_large_values_do_not_take_all_colours() {
         let values = (0..1000).map(|number| {
-            if number < 5 {
+            let value = if number < 5 {
                 1e6
             } else {
                 f64::from(number) + 500.0
-            }
+            };
+            (value, 1.0)
         });
-        let [low, high] = most_of(values).unwrap();
-        assert!(low > 500.0 && high < 1500.0, "{low} {high}");
-        assert_eq!(most_of([0.01, 1.0, 2.0, 3.0]), Some([0.0, 3.0]));
-        assert_eq!(most_of([f64::NAN]), None);
+        let span = most_of(values).unwrap();
+        let [low, high] = span.range;
+        assert!(low > 500.0 && high < 1500.0, "{span:?}");
+        assert_eq!(span.exceeded, [true, true]);
+        let even = [0.01, 1.0, 2.0, 3.0].map(|value| (value, 1.0));
+        let span = most_of(even).unwrap();
+        assert_eq!(span.range, [0.0, 3.0]);
+        assert_eq!(span.exceeded, [false, false]);
+        assert_eq!(most_of([(f64::NAN, 1.0)]), None);
+    }
+
+    #[test]
+    fn a_fine_mesh_in_a_corner_does_not_change_the_scale() {
+        let even = (0..1000).map(|number| (f64::from(number), 1.0));
+        let corner = (0..5000).map(|number| (1e4 + f64::from(number), 1e-3));
+        let coarse = most_of(even.clone()).unwrap();
+        let fine = most_of(even.chain(corner)).unwrap();
+        assert!(
+            (fine.range[1] / coarse.range[1] - 1.0).abs() < 0.01,
+            "{fine:?} {coarse:?}"
+        );
+        assert!((coarse.range[1] - 979.0).abs() < 1e-3, "{coarse:?}");
+        assert_eq!(fine.exceeded, [false, true]);
     }
 
     #[test]

@@ -169,15 +169,18 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
         ui.selectable_value(&mut look.layout, Layout::Beside, "side by side");
         ui.selectable_value(&mut look.layout, Layout::Over, "superimposed");
     });
-    ComboBox::from_label("colour")
+    // The name stands above: beside a box that is cut it has no room.
+    let label = ui.label("colour");
+    let chosen = ComboBox::from_id_salt("colour")
         .selected_text(look.colour.name())
-        .width(140.0)
+        .width(ui.available_width())
         .truncate()
         .show_ui(ui, |ui| {
             for colour in Colour::ALL {
                 ui.selectable_value(&mut look.colour, colour, colour.name());
             }
         });
+    chosen.response.labelled_by(label.id);
     ui.checkbox(&mut look.multipliers, "multipliers as arrows")
         .on_hover_text("where the springs violate equilibrium: the derivative of the smallest ½‖u − ū‖² with respect to the nodal forces");
     ui.checkbox(&mut look.cells, "cells");
@@ -187,7 +190,7 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
         ui.checkbox(&mut look.known.free_edges, "that the long edges are free");
     }
     ui.label(
-        RichText::new("Pull the bar at the right end, or its knob to turn it.")
+        RichText::new("Pull the bar at the right end, or its knob to turn it. The wheel zooms, the background is dragged, a double click shows the whole.")
             .small()
             .weak(),
     );

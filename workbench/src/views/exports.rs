@@ -3,9 +3,9 @@
 use gelbench::results::Drawing;
 use gelbench_report::results::LineChart;
 
-use super::files;
 use crate::logic::background::{Background, Wake};
-use crate::logic::outputs::{Format, Wanted, Writer};
+use crate::logic::engine::Fault;
+use crate::logic::outputs::{Format, Wanted, Writer, Written};
 
 /// An offer: its name, and what goes out.
 pub type Offer = (String, Wanted);
@@ -28,13 +28,9 @@ impl Exports {
         self.writer.ask(wanted);
     }
 
-    /// Saves what was written; says where it is.
-    pub fn receive(&mut self) -> Option<String> {
-        let written = self.writer.answers().pop()?;
-        Some(match written {
-            Ok(written) => files::give(&written.name, &written.files).unwrap_or_else(|fault| fault),
-            Err(fault) => format!("{}; {}", fault.message, fault.advice),
-        })
+    /// What was written.
+    pub fn receive(&mut self) -> Option<Result<Written, Fault>> {
+        self.writer.answers().pop()
     }
 
     /// Whether something is being written.

@@ -31,7 +31,6 @@ pub struct Fields {
     frame: usize,
     field: usize,
     residuals: bool,
-    told: String,
     /// What was asked last.
     done: Option<FieldQuestion>,
     asked: Asked,
@@ -50,7 +49,6 @@ impl Fields {
             frame: 0,
             field: 0,
             residuals: true,
-            told: String::new(),
             done: None,
             asked: None,
             view: None,
@@ -188,28 +186,31 @@ impl Fields {
         self.view
     }
 
-    /// Shows the view.
-    pub fn show(&mut self, ui: &mut Ui, table: &mut Table) {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    /// Shows the view; a file of the results that shall go out.
+    pub fn show(&mut self, ui: &mut Ui, table: &mut Table) -> Option<NamedFile> {
+        let scroll = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.files(ui);
             if self.question.files.is_empty() {
-                return;
+                return None;
             }
             let found = self.found.take();
             let answer = found.as_ref().and_then(|found| found.as_ref().ok());
             let corrected = answer.is_some_and(|answer| answer.corrected.is_some());
-            if corrected && ui.available_width() > WIDE {
+            let file = if corrected && ui.available_width() > WIDE {
                 ui.columns(2, |columns| {
                     self.question(&mut columns[0], table, found.as_ref());
                     let beside = Frame::new().inner_margin(controls::BESIDE);
-                    beside.show(&mut columns[1], |ui| self.results(ui, answer));
-                });
+                    let beside = beside.show(&mut columns[1], |ui| self.results(ui, answer));
+                    beside.inner
+                })
             } else {
                 self.question(ui, table, found.as_ref());
-                self.results(ui, answer);
-            }
+                self.results(ui, answer)
+            };
             self.found = found.or(self.found.take());
+            file
         });
+        scroll.inner
     }
 
     /// What is stated about the field, and what is seen of it.
@@ -229,11 +230,8 @@ impl Fields {
         }
     }
 
-    fn results(&mut self, ui: &mut Ui, answer: Option<&FieldAnswer>) {
-        let corrected = answer.and_then(|answer| answer.corrected.as_ref());
-        let Some((frames, found)) = corrected else {
-            return;
-        };
+    fn results(&mut self, ui: &mut Ui, answer: Option<&FieldAnswer>) -> Option<NamedFile> {
+        let (frames, found) = answer?.corrected.as_ref()?;
         if self.done.as_ref() != Some(&self.said_of_edges()) {
             let ink = ui.visuals().warn_fg_color;
             ui.colored_label(
@@ -242,10 +240,9 @@ impl Fields {
             );
         }
         self.frames(ui, frames);
-        if let Some(told) = study::outputs(ui, &found.files) {
-            self.told = told;
-        }
+        let file = study::outputs(ui, &found.files);
         ui.collapsing("report", |ui| report::show(ui, "field", found));
+        file
     }
 
     fn files(&mut self, ui: &mut Ui) {
@@ -320,9 +317,6 @@ impl Fields {
                 ui.label("computing; Escape stops it");
             }
         });
-        if !self.told.is_empty() {
-            ui.label(&self.told);
-        }
     }
 
     fn preview(&mut self, ui: &mut Ui, preview: &Preview) {

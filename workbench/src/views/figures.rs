@@ -2,13 +2,13 @@
 
 use eframe::egui::{Grid, RichText, Ui};
 
-use gelbench_report::results::{Axis, Line, LineChart, PALETTE, Stroke, from_rest};
+use gelbench_report::results::{Axis, Finding, Line, LineChart, PALETTE, Stroke, from_rest};
 
 use crate::logic::engine::Fault;
 use crate::logic::scene::Model;
 use crate::logic::table::Table;
 
-/// Force over stretch of all models that are shown.
+/// Force over stretch of all models that are shown: the points that were computed, and nothing between them.
 pub fn curve(table: &Table) -> LineChart {
     let shown = |model: &Model| table.scene().look.models[*model as usize];
     let line = |model: Model| {
@@ -23,7 +23,7 @@ pub fn curve(table: &Table) -> LineChart {
         if grip.displacement[1] == 0.0 && grip.angle == 0.0 && !points.is_empty() {
             points = from_rest(points);
         }
-        Line::new(model.name(), points, colour, Stroke::Marked)
+        Line::new(model.name(), points, colour, Stroke::Points)
     };
     let lines = Model::ALL.into_iter().filter(shown).map(line).collect();
     let x = Axis::linear("stretch [–]");
@@ -108,6 +108,18 @@ fn row(ui: &mut Ui, table: &Table, model: Model, moment: bool) {
 fn rounded(value: f64, decimals: i32) -> f64 {
     let unit = 10_f64.powi(decimals);
     (value * unit).round() / unit + 0.0
+}
+
+/// What a warning of the command is called on the sheet.
+pub fn headline(warning: &Finding) -> String {
+    match warning.rule {
+        "beyond-card" => "beyond the card's range".to_owned(),
+        "large-strains" => "strains too large for the law".to_owned(),
+        "lattice-poisson-ratio" => "springs have another Poisson's ratio".to_owned(),
+        "unstable-material" => "the material is not stable".to_owned(),
+        "wrinkling" => "may wrinkle or buckle".to_owned(),
+        rule => rule.replace('-', " "),
+    }
 }
 
 /// A fault in the library's words, with its remedy.

@@ -8,9 +8,9 @@ use gelbench::material::Card;
 use gelbench::material::registry::Law;
 use gelbench_calibration::calibration::KEYS;
 use gelbench_mechanics::material::registry::MARLOW_TABLE;
-use gelbench_report::results::material_chart;
+use gelbench_report::results::{LineChart, material_chart};
 
-use super::{chart, controls, exports, figures, files};
+use super::{chart, controls, exports, figures};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
 use crate::logic::material::{FitQuestion, Fitted, Fitter, Ranking, TestFile, stable_ranges};
@@ -24,7 +24,8 @@ pub struct Materials {
     fitter: Background<Fitter>,
     found: Option<Result<Ranking, Fault>>,
     chosen: usize,
-    told: String,
+    /// The points of the tests, as they were read last.
+    seen: Option<LineChart>,
     /// The card that the curves are of, as it was read last.
     read: Option<(CardFile, Result<Card, Fault>)>,
 }
@@ -37,7 +38,7 @@ impl Materials {
             fitter: Background::new(wake),
             found: None,
             chosen: 0,
-            told: String::new(),
+            seen: None,
             read: None,
         }
     }
@@ -46,15 +47,33 @@ impl Materials {
     pub fn put(&mut self, file: TestFile) {
         self.question.tests.retain(|known| known.name != file.name);
         self.question.tests.push(file);
+        self.look();
+    }
+
+    /// Has the tests read, so that their points can be seen.
+    fn look(&mut self) {
         (self.found, self.chosen) = (None, 0);
+        match self.question.tests.is_empty() {
+            true => self.seen = None,
+            false => self.ask(false),
+        }
+    }
+
+    fn ask(&mut self, fit: bool) {
+        self.fitter.ask(FitQuestion {
+            fit,
+            ..self.question.clone()
+        });
     }
 
     /// Takes what was fitted.
     pub fn receive(&mut self) {
-        if let Some(answer) = self.fitter.answers().pop() {
-            self.found = Some(answer);
-            self.chosen = 0;
-        }
+        let Some(answer) = self.fitter.answers().pop() else {
+            return;
+        };
+        self.seen = answer.as_ref().ok().map(|answer| answer.measured.clone());
+        self.found = answer.map(|answer| answer.ranking).transpose();
+        self.chosen = 0;
     }
 
     /// Whether something is being fitted.
@@ -70,7 +89,7 @@ impl Materials {
     /// Fits the tests that are there.
     pub fn fit(&mut self) {
         if !self.question.tests.is_empty() {
-            self.fitter.ask(self.question.clone());
+            self.ask(true);
         }
     }
 
@@ -97,25 +116,39 @@ impl Materials {
         offers
     }
 
-    /// Shows the view.
-    pub fn show(&mut self, ui: &mut Ui, table: &mut Table) {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    /// The points of the tests, once they were read.
+    pub fn seen(&self) -> Option<&LineChart> {
+        self.seen.as_ref()
+    }
+
+    /// Shows the view; whether the card shall be saved.
+    pub fn show(&mut self, ui: &mut Ui, table: &mut Table) -> bool {
+        let scroll = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let wide = ui.available_width() > 900.0;
             if wide {
                 ui.columns(2, |columns| {
-                    self.card(&mut columns[0], table);
+                    let saves = self.card(&mut columns[0], table);
                     let beside = Frame::new().inner_margin(controls::BESIDE);
                     beside.show(&mut columns[1], |ui| self.tests(ui, table));
-                });
-            } else {
-                self.card(ui, table);
+                    saves
+                })
+            } else if self.question.tests.is_empty() {
+                let saves = self.card(ui, table);
                 ui.separator();
                 self.tests(ui, table);
+                saves
+            } else {
+                // What was dropped is seen without scrolling.
+                self.tests(ui, table);
+                ui.separator();
+                self.card(ui, table)
             }
         });
+        scroll.inner
     }
 
-    fn card(&mut self, ui: &mut Ui, table: &mut Table) {
+    fn card(&mut self, ui: &mut Ui, table: &mut Table) -> bool {
+        let mut saves = false;
         ui.heading("Card");
         let file = table.scene().card.clone();
         ui.horizontal_wrapped(|ui| {
@@ -124,38 +157,17 @@ impl Materials {
             if chosen != file {
                 table.take_card(chosen, false);
             }
-            if ui.button("save card").clicked() {
-                self.told = save_card(&file);
-            }
+            saves = ui.button("save card").clicked();
         });
-        if !self.told.is_empty() {
-            ui.label(&self.told);
-        }
         if self.read.as_ref().is_none_or(|(known, _)| *known != file) {
             self.read = Some((file.clone(), file.read().map_err(Fault::from)));
         }
-        let Some((_, read)) = &self.read else { return };
-        let card = match read {
-            Ok(card) => card,
-            Err(fault) => {
-                figures::fault(ui, fault);
-                return;
-            }
-        };
-        ui.label(RichText::new(&card.title).strong());
-        ui.label(card.energy());
-        parameters(ui, &file, card, table);
-        for (name, [low, high]) in stable_ranges(card) {
-            ui.label(format!(
-                "stable (Drucker) in {name} tests for λ = {low:.3} … {high:.3}"
-            ));
+        match &self.read {
+            None => (),
+            Some((_, Err(fault))) => figures::fault(ui, fault),
+            Some((_, Ok(card))) => about(ui, &file, card, table),
         }
-        chart::show(ui, "curves of the card", &material_chart(card), 300.0);
-        ui.label(
-            RichText::new(format!("{} {}", card.citation, card.doi))
-                .small()
-                .weak(),
-        );
+        saves
     }
 
     fn tests(&mut self, ui: &mut Ui, table: &mut Table) {
@@ -174,20 +186,24 @@ impl Materials {
         }
         if let Some(number) = gone {
             self.question.tests.remove(number);
-            self.found = None;
+            self.look();
         }
         if self.question.tests.is_empty() {
             return;
         }
         self.reading(ui);
         self.law(ui);
-        match &self.found {
-            None => (),
-            Some(Err(fault)) => {
+        match (&self.found, &self.seen) {
+            (None, None) => (),
+            (None, Some(measured)) => {
+                ui.label(RichText::new(&measured.title).small());
+                chart::show(ui, "measured", measured, 260.0);
+            }
+            (Some(Err(fault)), _) => {
                 figures::fault(ui, fault);
                 ui.label("Anything the file does not state is stated above.");
             }
-            Some(Ok(ranking)) => {
+            (Some(Ok(ranking)), _) => {
                 ranked(ui, ranking, &mut self.chosen);
                 if let Some(fit) = ranking.fits.get(self.chosen) {
                     result(ui, fit, table);
@@ -197,6 +213,7 @@ impl Materials {
     }
 
     fn reading(&mut self, ui: &mut Ui) {
+        let mut stated = false;
         ui.collapsing("not stated in the files", |ui| {
             Grid::new("reading").num_columns(2).show(ui, |ui| {
                 for key in KEYS {
@@ -206,6 +223,7 @@ impl Materials {
                         .desired_width(140.0)
                         .hint_text(hint(key));
                     if ui.add(edit).labelled_by(label.id).changed() {
+                        stated = true;
                         self.question.reading.remove(key);
                         if !value.trim().is_empty() {
                             self.question.reading.insert(key.to_owned(), value);
@@ -215,6 +233,9 @@ impl Materials {
                 }
             });
         });
+        if stated {
+            self.look();
+        }
     }
 
     fn law(&mut self, ui: &mut Ui) {
@@ -233,7 +254,7 @@ impl Materials {
                 .add_enabled(!self.fitter.is_busy(), Button::new("fit"))
                 .clicked()
             {
-                self.fitter.ask(self.question.clone());
+                self.fit();
             }
             if self.fitter.is_busy() {
                 ui.spinner();
@@ -241,6 +262,24 @@ impl Materials {
             }
         });
     }
+}
+
+/// What a card is, with its parameters to be moved and its curves.
+fn about(ui: &mut Ui, file: &CardFile, card: &Card, table: &mut Table) {
+    ui.label(RichText::new(&card.title).strong());
+    ui.label(card.energy());
+    parameters(ui, file, card, table);
+    for (name, [low, high]) in stable_ranges(card) {
+        ui.label(format!(
+            "stable (Drucker) in {name} tests for λ = {low:.3} … {high:.3}"
+        ));
+    }
+    chart::show(ui, "curves of the card", &material_chart(card), 300.0);
+    ui.label(
+        RichText::new(format!("{} {}", card.citation, card.doi))
+            .small()
+            .weak(),
+    );
 }
 
 fn hint(key: &str) -> &'static str {
@@ -347,10 +386,4 @@ fn result(ui: &mut Ui, fit: &Fitted, table: &mut Table) {
         let height = if number == 0 { 260.0 } else { 150.0 };
         chart::show(ui, &format!("fit {number}"), drawn, height);
     }
-}
-
-/// Saves a card under its name; says where it is.
-pub fn save_card(card: &CardFile) -> String {
-    let name = format!("{}.toml", card.name.trim_end_matches(".toml"));
-    files::save(&name, card.text.as_bytes()).unwrap_or_else(|fault| fault)
 }

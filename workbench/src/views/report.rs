@@ -3,22 +3,23 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Color32, Grid, Label, Mesh as Triangles, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui,
-    vec2,
+    Align, Color32, Grid, Label, Mesh as Triangles, Rect, RichText, ScrollArea, Sense, Shape,
+    Stroke, Ui, vec2,
 };
 
 use gelbench::results::Drawing;
 use gelbench_report::results::{FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
 
-use super::colours::{colour, range};
+use super::chart;
+use super::colour_bar::colour_bar;
+use super::colours::{Span, colour, range};
 use super::surface::View;
-use super::{chart, sheet};
 use crate::logic::report::{Part, Report};
 
 /// Rows of a table that are shown.
 const ROWS: usize = 200;
 
-/// Shows a report; `name` tells its charts apart from those of others.
+/// Shows a report with its contents, whose entries lead to its headings; `name` tells its charts apart from those of others.
 pub fn show(ui: &mut Ui, name: &str, report: &Report) {
     ui.heading(&report.title);
     let (verdict, ink) = match report.passed {
@@ -32,9 +33,34 @@ pub fn show(ui: &mut Ui, name: &str, report: &Report) {
     for sentence in &report.told {
         ui.label(sentence);
     }
+    let chosen = contents(ui, &report.parts);
     for (number, part) in report.parts.iter().enumerate() {
+        if chosen == Some(number) {
+            ui.scroll_to_cursor(Some(Align::TOP));
+        }
         show_part(ui, &format!("{name} {number}"), part);
     }
+}
+
+/// The headings of a report; the number of the part that was chosen.
+fn contents(ui: &mut Ui, parts: &[Part]) -> Option<usize> {
+    let headings = parts
+        .iter()
+        .enumerate()
+        .filter_map(|(number, part)| match part {
+            Part::Heading(level, text) => Some((number, *level, text)),
+            _ => None,
+        });
+    let mut chosen = None;
+    for (number, level, text) in headings {
+        ui.horizontal(|ui| {
+            ui.add_space(12.0 * f32::from(level));
+            if ui.link(text).clicked() {
+                chosen = Some(number);
+            }
+        });
+    }
+    chosen
 }
 
 fn show_part(ui: &mut Ui, name: &str, part: &Part) {
@@ -133,7 +159,11 @@ pub fn panels(ui: &mut Ui, quantity: &str, scale: Scale, panels: &[Panel]) {
         Scale::Logarithmic => format!("log₁₀ {quantity}"),
         _ => quantity.to_owned(),
     };
-    sheet::colour_bar(ui, &name, range, bar);
+    let span = Span {
+        range,
+        exceeded: [false; 2],
+    };
+    colour_bar(ui, &name, span, bar);
 }
 
 fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> Color32) -> Triangles {

@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Align2, Color32, FontId, Mesh as Triangles, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui,
-    pos2, vec2,
+    Align2, Color32, FontId, Label, Margin, Mesh as Triangles, Painter, Pos2, Rect, RichText,
+    Sense, Shape, Stroke, Ui, UiBuilder, vec2,
 };
 
 use gelbench::mesh::Mesh;
 
-use super::colours::{colour, most_of};
+use super::closer::Closer;
+use super::colour_bar::colour_bar;
+use super::colours::{Span, colour, most_of};
+use super::figures::headline;
 use super::grip::{self, Held};
 use super::surface::{View, draw, triangles};
 use crate::logic::scene::{Layout, Model, Scene};
@@ -18,14 +21,27 @@ use crate::logic::table::{Drawn, Table};
 /// Multipliers that are drawn at most.
 const ARROWS: usize = 300;
 
+/// The heights of the scale of the colours, and of the row of warnings above it.
+const BAR: f32 = 34.0;
+const WARNINGS: f32 = 18.0;
+
+/// What is free around a sheet for its name and the knob of its grip.
+const AROUND: Margin = Margin {
+    left: 14,
+    right: 14,
+    top: 26,
+    bottom: 8,
+};
+
 /// What was drawn last: it is drawn again where nothing changed.
 #[derive(Default)]
 pub struct Sheets {
     drawn: [Option<Painted>; 3],
     triangles: [Option<(usize, Vec<u32>)>; 3],
-    range: Option<(u64, [f64; 2])>,
+    span: Option<(u64, Span)>,
     /// The largest stretch and motion across that the view has room for.
     room: [f64; 2],
+    closer: Closer,
 }
 
 /// Where and how one sheet is drawn.
@@ -50,35 +66,43 @@ impl Sheets {
     /// Draws what is on the table into all the room that there is; what was done to the grip, where there is one to be seen.
     pub fn show(&mut self, ui: &mut Ui, table: &Table) -> Option<Held> {
         let mut held: Option<Held> = None;
-        let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+        // Not by Tab: the grips are.
+        let sense = Sense::CLICK | Sense::DRAG;
+        let (area, background) = ui.allocate_exact_size(ui.available_size(), sense);
         let models: Vec<Model> = Model::ALL
             .into_iter()
             .filter(|model| table.scene().look.models[*model as usize])
             .collect();
-        let range = self.range(table, &models);
-        let bar = Rect::from_min_max(pos2(area.left(), area.bottom() - 34.0), area.max);
-        let sheets = Rect::from_min_max(area.min, pos2(area.right(), bar.top()));
+        let span = self.span(table, &models);
+        let range = span.range;
+        let (above, bar) = area.split_top_bottom_at_y(area.bottom() - BAR);
+        let (sheets, row) = above.split_top_bottom_at_y(above.bottom() - WARNINGS);
+        let over = table.scene().look.layout == Layout::Over;
+        let areas = rows(sheets, if over { 1 } else { models.len() });
+        let under = |row: &&Rect| background.hover_pos().is_some_and(|at| row.contains(at));
+        if let Some(row) = areas.iter().find(under).or(areas.first()) {
+            self.closer.follow(ui, &background, row.center());
+        }
         for (number, model) in models.iter().enumerate() {
-            let over = table.scene().look.layout == Layout::Over;
-            let count = if over { 1 } else { models.len() };
-            let height = sheets.height() / count as f32;
-            let top = sheets.top() + if over { 0.0 } else { number as f32 * height };
-            let own = Rect::from_min_size(pos2(sheets.left(), top), vec2(sheets.width(), height));
+            let own = areas[if over { 0 } else { number }];
             let line = if over { 15.0 * number as f32 } else { 0.0 };
             let place = Place {
                 ui,
                 painter: ui.painter().with_clip_rect(own),
                 table,
-                view: self.view(table.scene(), own.shrink2(vec2(14.0, 26.0))),
+                view: self.view(table.scene(), own - AROUND),
                 range,
                 outline_only: over && number > 0,
             };
             self.sheet(&place, *model);
             label(&place, *model, own.min + vec2(6.0, 4.0 + line));
-            if table.moving().is_some() {
-                held = Some(Held::nothing(place.view.at([table.scene().size[0], 0.0])));
+            let view = place.view;
+            if table.played().is_some() {
+                held = Some(Held::nothing(view.at([table.scene().size[0], 0.0])));
             } else if number == 0 || !over {
-                let own = grip::show(ui, table.scene(), place.view, model.name());
+                let mut inside = ui.new_child(UiBuilder::new().max_rect(own));
+                inside.shrink_clip_rect(own);
+                let own = grip::show(&inside, table.scene(), view, model.name());
                 if held.is_none() || own.to.is_some() || own.holding || own.released {
                     held = Some(own);
                 }
@@ -92,21 +116,25 @@ impl Sheets {
             ui.painter()
                 .text(place, Align2::LEFT_CENTER, "pull me", font, ink);
         }
-        colour_bar(ui, table.shown_colour().name(), range, bar);
+        warnings(ui, table, row);
+        colour_bar(ui, table.shown_colour().name(), span, bar);
         if !held.as_ref().is_some_and(|held| held.holding) {
             self.room = room(table.scene());
         }
         held
     }
 
-    /// The range of the colours of all models that are shown, as it was found when they last changed.
-    fn range(&mut self, table: &Table, models: &[Model]) -> [f64; 2] {
-        if let Some((_, range)) = self.range.filter(|(known, _)| *known == table.revision()) {
-            return range;
+    /// The span of the colours of all models that are shown, as it was found when they last changed.
+    fn span(&mut self, table: &Table, models: &[Model]) -> Span {
+        if let Some((_, span)) = self.span.filter(|(known, _)| *known == table.revision()) {
+            return span;
         }
-        let range = most_of(table.spanned(models)).unwrap_or([0.0, 1.0]);
-        self.range = Some((table.revision(), range));
-        range
+        let span = most_of(table.spanned(models)).unwrap_or(Span {
+            range: [0.0, 1.0],
+            exceeded: [false; 2],
+        });
+        self.span = Some((table.revision(), span));
+        span
     }
 
     /// The part of the plane that is seen: it grows while the grip is pulled, and does not move under it.
@@ -116,7 +144,8 @@ impl Sheets {
         let [length, width] = scene.size;
         let (axis, across) = (scene.axis(), 0.5 * width + self.room[1]);
         let right = length * (1.0 + self.room[0]);
-        View::fit([[0.0, axis - across], [right, axis + across]], screen)
+        let whole = View::fit([[0.0, axis - across], [right, axis + across]], screen);
+        self.closer.of(whole, screen.center())
     }
 
     fn sheet(&mut self, place: &Place, model: Model) {
@@ -146,7 +175,7 @@ impl Sheets {
         if table.scene().look.cells && !place.outline_only {
             lines.cells();
         }
-        if model == Model::Springs && table.scene().look.multipliers && table.moving().is_none() {
+        if model == Model::Springs && table.scene().look.multipliers && table.played().is_none() {
             lines.multipliers();
         }
     }
@@ -186,6 +215,16 @@ impl Sheets {
     }
 }
 
+/// An area in rows of the same height.
+fn rows(area: Rect, count: usize) -> Vec<Rect> {
+    let height = area.height() / count.max(1) as f32;
+    let row = |number: usize| {
+        let corner = area.min + vec2(0.0, number as f32 * height);
+        Rect::from_min_size(corner, vec2(area.width(), height))
+    };
+    (0..count).map(row).collect()
+}
+
 /// The stretch and the motion across that a scene needs room for, in lengths and in mm.
 fn room(scene: &Scene) -> [f64; 2] {
     let Scene { size, grip, .. } = scene;
@@ -223,6 +262,22 @@ fn label(place: &Place, model: Model, at: Pos2) {
     let text = format!("{}{follows}", model.name());
     let font = FontId::proportional(13.0);
     place.painter.text(at, Align2::LEFT_TOP, text, font, ink);
+}
+
+/// What the command would warn of, in a row that is there without warnings too, so that they move nothing; in full below the sheets
+/// and under the pointer.
+fn warnings(ui: &mut Ui, table: &Table, row: Rect) {
+    let warnings = table.warnings();
+    if warnings.is_empty() {
+        return;
+    }
+    let headlines: Vec<String> = warnings.iter().map(headline).collect();
+    let whole: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    let ink = ui.visuals().warn_fg_color;
+    let words = RichText::new(format!("warning: {}", headlines.join(" · "))).color(ink);
+    let mut row = ui.new_child(UiBuilder::new().max_rect(row.shrink2(vec2(6.0, 0.0))));
+    let label = row.add(Label::new(words).truncate());
+    label.on_hover_text(whole.join("\n\n"));
 }
 
 /// The lines on a deformed mesh.
@@ -293,50 +348,4 @@ impl Lines<'_> {
             }
         }
     }
-}
-
-/// Draws the scale of the colours with what it shows.
-pub fn colour_bar(ui: &Ui, name: &str, [low, high]: [f64; 2], area: Rect) {
-    let painter = ui.painter();
-    let bar = Rect::from_min_size(area.min + vec2(6.0, 4.0), vec2(area.width() - 12.0, 10.0));
-    let mut surface = Triangles::default();
-    const PARTS: u32 = 32;
-    for part in 0..=PARTS {
-        let share = part as f32 / PARTS as f32;
-        let x = bar.left() + share * bar.width();
-        let ink = colour(f64::from(share), [0.0, 1.0]);
-        surface.colored_vertex(pos2(x, bar.top()), ink);
-        surface.colored_vertex(pos2(x, bar.bottom()), ink);
-        if part > 0 {
-            let first = 2 * (part - 1);
-            surface.add_triangle(first, first + 1, first + 2);
-            surface.add_triangle(first + 1, first + 3, first + 2);
-        }
-    }
-    painter.add(Shape::mesh(surface));
-    let ink = ui.visuals().text_color();
-    let font = || FontId::proportional(12.0);
-    let below = bar.bottom() + 2.0;
-    let number = gelbench_base::units::number;
-    painter.text(
-        pos2(bar.left(), below),
-        Align2::LEFT_TOP,
-        number(low),
-        font(),
-        ink,
-    );
-    painter.text(
-        pos2(bar.center().x, below),
-        Align2::CENTER_TOP,
-        name,
-        font(),
-        ink,
-    );
-    painter.text(
-        pos2(bar.right(), below),
-        Align2::RIGHT_TOP,
-        number(high),
-        font(),
-        ink,
-    );
 }

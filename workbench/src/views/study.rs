@@ -1,12 +1,13 @@
 //! Studies of any kind: written here or dropped, run beside the drawing, their reports shown and given out.
 
-use eframe::egui::{Button, CollapsingHeader, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Align, Button, CollapsingHeader, RichText, ScrollArea, TextEdit, Ui};
 
 use gelbench::kinds::KINDS;
 use gelbench_studies::studies::plate;
 
 use super::exports::{self, Offer};
-use super::{figures, files, report};
+use super::files::plain;
+use super::{figures, report};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
 use crate::logic::outputs::Wanted;
@@ -20,7 +21,18 @@ pub struct Studies {
     files: Vec<NamedFile>,
     runner: Background<Runner>,
     found: Option<Result<Report, Fault>>,
-    told: String,
+    /// Whether the report has just come, and is scrolled to.
+    arrived: bool,
+    /// Whether the text is unfolded or folded in the next frame.
+    unfolds: Option<bool>,
+}
+
+/// What the view asks for.
+pub enum Asks {
+    /// Another study in the place of this one.
+    Example(String, &'static str),
+    /// A file of the results goes out.
+    File(NamedFile),
 }
 
 impl Studies {
@@ -32,13 +44,15 @@ impl Studies {
             files: Vec::new(),
             runner: Background::new(wake),
             found: None,
-            told: String::new(),
+            arrived: false,
+            unfolds: Some(true),
         }
     }
 
     /// Takes a study.
     pub fn put(&mut self, name: &str, text: String) {
         (self.name, self.text, self.found) = (plain(name), text, None);
+        self.unfolds = Some(true);
     }
 
     /// Takes a file that a study may name.
@@ -56,6 +70,7 @@ impl Studies {
     /// Takes what was computed.
     pub fn receive(&mut self) {
         if let Some(answer) = self.runner.answers().pop() {
+            (self.arrived, self.unfolds) = (answer.is_ok(), Some(answer.is_err()));
             self.found = Some(answer);
         }
     }
@@ -97,72 +112,68 @@ impl Studies {
         offers
     }
 
-    /// Shows the view.
-    pub fn show(&mut self, ui: &mut Ui) {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            self.text(ui);
-            match &self.found {
-                None => (),
-                Some(Err(fault)) => figures::fault(ui, fault),
-                Some(Ok(found)) => {
-                    self.told = outputs(ui, &found.files).unwrap_or(std::mem::take(&mut self.told));
-                    report::show(ui, "report", found);
-                }
-            }
-        });
+    /// The text as it is in the editor.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
-    fn text(&mut self, ui: &mut Ui) {
+    /// The study as a file.
+    pub fn file(&self) -> NamedFile {
+        (self.name.clone(), self.text.clone().into_bytes())
+    }
+
+    /// Shows the view; what it asks for.
+    pub fn show(&mut self, ui: &mut Ui) -> Option<Asks> {
+        let scroll = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let example = self.editor(ui);
+            let file = match &self.found {
+                None => None,
+                Some(Err(fault)) => {
+                    figures::fault(ui, fault);
+                    None
+                }
+                Some(Ok(found)) => {
+                    if std::mem::take(&mut self.arrived) {
+                        ui.scroll_to_cursor(Some(Align::TOP));
+                    }
+                    let file = outputs(ui, &found.files);
+                    report::show(ui, "report", found);
+                    file
+                }
+            };
+            example.or(file.map(Asks::File))
+        });
+        scroll.inner
+    }
+
+    fn editor(&mut self, ui: &mut Ui) -> Option<Asks> {
+        let mut asks = None;
         ui.horizontal_wrapped(|ui| {
             ui.heading(&self.name);
-            ui.menu_button("examples", |ui| {
-                if ui.button("plate").clicked() {
-                    self.put("plate.toml", plate::DEFAULT.to_owned());
-                }
-                for case in KINDS {
-                    let name = if case.slow {
-                        format!("{} (minutes)", case.name)
-                    } else {
-                        case.name.to_owned()
-                    };
-                    if ui.button(name).clicked() {
-                        self.put(&format!("{}.toml", case.name), case.study.to_owned());
-                    }
-                }
-            });
+            asks = ui.menu_button("examples", examples).inner.flatten();
             if ui
                 .add_enabled(!self.runner.is_busy(), Button::new("run"))
                 .clicked()
             {
                 self.run();
             }
-            if ui.button("save").clicked() {
-                self.told = self.save();
-            }
             if self.runner.is_busy() {
                 ui.spinner();
                 ui.label("computing; Escape stops it");
             }
         });
-        if !self.told.is_empty() {
-            ui.label(&self.told);
-        }
         if !self.files.is_empty() {
             let names: Vec<_> = self.files.iter().map(|(name, _)| name.as_str()).collect();
             ui.label(format!("files that a study can name: {}", names.join(", ")));
         }
-        let text = CollapsingHeader::new("text of the study").default_open(true);
+        let text = CollapsingHeader::new("text of the study").open(self.unfolds.take());
         text.show(ui, |ui| {
             let edit = TextEdit::multiline(&mut self.text)
                 .code_editor()
                 .desired_width(f32::INFINITY);
             ui.add(edit);
         });
-    }
-
-    /// Saves the text under its name; says where it is.
-    pub fn save(&self) -> String {
-        files::save(&self.name, self.text.as_bytes()).unwrap_or_else(|fault| fault)
+        asks
     }
 
     /// Runs the study.
@@ -174,7 +185,7 @@ impl Studies {
 
     fn question(&self) -> StudyQuestion {
         let study = self.name.clone();
-        let own = (study.clone(), self.text.clone().into_bytes());
+        let own = self.file();
         let others = self
             .files
             .iter()
@@ -185,11 +196,28 @@ impl Studies {
     }
 }
 
-/// Buttons that give files out; what came of the one that was pressed.
-pub fn outputs(ui: &mut Ui, all: &[NamedFile]) -> Option<String> {
-    let mut told = None;
+/// The studies that come along; the one that was chosen.
+fn examples(ui: &mut Ui) -> Option<Asks> {
+    let mut chosen = None;
+    let cases = KINDS.iter().map(|case| (case.name, case.study, case.slow));
+    for (name, study, slow) in [("plate", plate::DEFAULT, false)].into_iter().chain(cases) {
+        let label = if slow {
+            format!("{name} (minutes)")
+        } else {
+            name.to_owned()
+        };
+        if ui.button(label).clicked() {
+            chosen = Some(Asks::Example(format!("{name}.toml"), study));
+        }
+    }
+    chosen
+}
+
+/// Buttons that give files out; the file of the one that was pressed.
+pub fn outputs(ui: &mut Ui, all: &[NamedFile]) -> Option<NamedFile> {
+    let mut pressed = None;
     if all.is_empty() {
-        return told;
+        return pressed;
     }
     ui.collapsing(
         RichText::new(format!("{} files: tables and VTK", all.len())),
@@ -198,16 +226,11 @@ pub fn outputs(ui: &mut Ui, all: &[NamedFile]) -> Option<String> {
                 for (name, content) in all {
                     let plain = plain(name);
                     if ui.small_button(&plain).clicked() {
-                        told = Some(files::save(&plain, content).unwrap_or_else(|fault| fault));
+                        pressed = Some((plain, content.clone()));
                     }
                 }
             });
         },
     );
-    told
-}
-
-/// The name of a file without its folders.
-pub fn plain(name: &str) -> String {
-    name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
+    pressed
 }

@@ -1,6 +1,6 @@
 //! The triangles between the nodes of a mesh, and where they are on the screen.
 
-use eframe::egui::{Color32, Mesh as Triangles, Pos2, Rect, epaint::Vertex, pos2};
+use eframe::egui::{Color32, Mesh as Triangles, Pos2, Rect, Vec2, epaint::Vertex, pos2};
 
 use gelbench::mesh::Mesh;
 
@@ -53,6 +53,15 @@ impl View {
                 screen.center().y + scale * middle[1],
             ),
             scale,
+        }
+    }
+
+    /// The same, so many times larger about a place of the screen, then shifted.
+    #[must_use]
+    pub fn closer(self, about: Pos2, factor: f32, shift: Vec2) -> Self {
+        Self {
+            origin: about + factor * (self.origin - about) + shift,
+            scale: factor * self.scale,
         }
     }
 

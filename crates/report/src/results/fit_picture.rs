@@ -1,5 +1,7 @@
 //! Pictures of fits: measured and fitted stresses with the residuals below, over the stretch, over time, or row by row.
 
+mod tests_alone;
+
 use std::path::Path;
 
 use super::fit::{notes, title_case};
@@ -8,6 +10,8 @@ use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke};
 use crate::calibration::{Fit, Test, TestData, Times};
 use crate::material::curve::Mode;
 use crate::statistics::extremes;
+
+pub use tests_alone::tests_chart;
 
 const INK: [u8; 3] = [60, 60, 60];
 /// The colour of the part of a record that is not fitted.

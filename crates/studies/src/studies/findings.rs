@@ -62,6 +62,37 @@ pub fn findings(examined: Examined) -> Vec<Finding> {
         .collect()
 }
 
+/// What the states of one model show of a single equilibrium, which was found outside of a study: `at` is its load factor or stretch.
+pub fn findings_of_state(
+    specimen: &Specimen,
+    kind: ModelKind,
+    (mesh, displacement): (&Mesh, &[f64]),
+    at: f64,
+) -> Vec<Finding> {
+    let state = ModelState {
+        at,
+        displacement,
+        velocity: None,
+        past: Vec::new(),
+        viscous: None,
+        groups: &[],
+        expected: None,
+    };
+    let series = ModelSeries {
+        kind,
+        style: kind.style(),
+        mesh,
+        states: vec![state],
+    };
+    findings(Examined {
+        specimen,
+        series: &[series],
+        models: None,
+        has_springs: true,
+        is_motion: false,
+    })
+}
+
 /// A finding without a remedy.
 fn alone(message: String) -> Found {
     (message, String::new())

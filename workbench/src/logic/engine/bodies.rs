@@ -14,7 +14,9 @@ use gelbench::problem::{BoundaryProblem, ClampedPlate, Model as Problem, Support
 use gelbench_mechanics::material::softened_law::check_memory;
 use gelbench_mechanics::problem::sheet_energy::SheetEnergy;
 use gelbench_mechanics::solve::{Assembly, Remembering};
-use gelbench_studies::studies::specimen;
+use gelbench_report::results::Finding;
+use gelbench_studies::studies::specimen::{self, Along, Specimen};
+use gelbench_studies::studies::{ModelKind, findings_of_state};
 
 use super::path;
 use super::plate::Quick;
@@ -43,6 +45,7 @@ pub struct Bodies {
     /// The nodes of springs and corrected springs.
     pub lattice: Mesh,
     plate: Option<(ClampedPlate, [usize; 2])>,
+    specimen: Specimen,
     elements: Mesh,
     made: [Option<Body>; 3],
 }
@@ -69,6 +72,11 @@ pub struct Body {
 /// # Errors
 /// [`Error::Input`] with every fault of its measures.
 pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
+    Ok(meshes_of(&specimen(scene)?))
+}
+
+/// The specimen that a scene is, of any card.
+fn specimen(scene: &Scene) -> Result<Specimen, Error> {
     let file = Path::new("scene.toml");
     // Any stretch is as good as another: meshes do not depend on it.
     let grip = Grip {
@@ -76,13 +84,16 @@ pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
         angle: 0.0,
     };
     let text = scene.study_of(ANY_CARD, grip);
-    let outline = kinds::read_sheet(file, &text, Budget::USUAL)?.made.outline;
-    let elements = match &outline {
+    Ok(kinds::read_sheet(file, &text, Budget::USUAL)?.made)
+}
+
+fn meshes_of(Specimen { outline, .. }: &Specimen) -> [Mesh; 2] {
+    let elements = match outline {
         specimen::Outline::Grid(_) => outline.finest_mesh(),
         // Quadratic cells as many as the lattice has: twice as fine as its equations.
         _ => outline.reference_mesh(1),
     };
-    Ok([outline.lattice(), elements])
+    [outline.lattice(), elements]
 }
 
 /// The bodies of the last scene, made anew where its sheet is another one.
@@ -114,11 +125,12 @@ impl Bodies {
     /// # Errors
     /// [`Error::Input`] with every fault of its measures and of its card.
     pub fn of(scene: &Scene) -> Result<Self, Error> {
-        let [lattice, elements] = meshes(scene)?;
+        let specimen = specimen(scene)?;
+        let [lattice, elements] = meshes_of(&specimen);
         let card = Card::parse(&scene.card.name, &scene.card.reference(), &scene.card.text)?;
         check_memory(&*card.law, "the workbench")?;
         let sheet = Sheet {
-            law: card.law,
+            law: Arc::clone(&card.law),
             thickness: scene.thickness,
             length: scene.size[0],
             axis: scene.axis(),
@@ -134,6 +146,7 @@ impl Bodies {
             sheet,
             lattice,
             plate,
+            specimen: specimen.with_card(card),
             elements,
             made: [None, None, None],
         })
@@ -159,6 +172,17 @@ impl Bodies {
     /// A model that was made.
     pub fn made(&self, model: Model) -> &Body {
         self.made[model as usize].as_ref().expect("a body was made")
+    }
+
+    /// What the command would warn of in the last state of the finite elements: the range of the card, compression.
+    pub fn warnings(&self) -> Vec<Finding> {
+        let body = self.made(Model::Elements);
+        let at = match self.specimen.along {
+            Along::Stretch => body.grip.displacement[0] / self.sheet.length,
+            Along::LoadFactor => 1.0,
+        };
+        let state = (&body.mesh, &body.displacement[..]);
+        findings_of_state(&self.specimen, ModelKind::FiniteElement, state, at)
     }
 
     fn make(&self, model: Model) -> Result<Body, Error> {

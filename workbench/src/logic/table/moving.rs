@@ -1,6 +1,7 @@
 //! The sheet in motion, once its grip has let go.
 
 use super::Table;
+use super::compared::node_areas;
 use crate::logic::engine::Fault;
 use crate::logic::engine::motion::{self, MotionAnswer, MotionQuestion};
 use crate::logic::playing::Playing;
@@ -18,6 +19,11 @@ impl Table {
     /// The motion that is played.
     pub fn moving(&self) -> Option<&Playing> {
         self.moving.as_ref()
+    }
+
+    /// The same, once there is anything to be played: the picture of what was held stays until then.
+    pub fn played(&self) -> Option<&Playing> {
+        self.moving().filter(|moving| moving.has_begun())
     }
 
     /// The same, to be stopped, wound and played on.
@@ -99,8 +105,7 @@ impl Table {
 
     /// A model as it is drawn now: in motion, or held by its grip.
     pub fn drawn(&self, model: Model) -> Option<Drawn<'_>> {
-        if let Some((frame, follows)) = self.moving.as_ref().and_then(|moving| moving.frame(model))
-        {
+        if let Some((frame, follows)) = self.played().and_then(|moving| moving.frame(model)) {
             return Some(Drawn {
                 displacement: wide(&frame.displacement).into(),
                 follows,
@@ -109,39 +114,46 @@ impl Table {
         let shown = self.shown(model)?;
         Some(Drawn {
             displacement: (&shown.solved.displacement[..]).into(),
-            follows: self.moving.is_none() && shown.grip == self.scene().grip,
+            follows: self.played().is_none() && shown.grip == self.scene().grip,
         })
     }
 
     /// What colours the nodes of a model that is drawn; nothing where it is not known there.
     pub fn drawn_values(&self, model: Model) -> Option<Vec<f64>> {
-        match self.moving.as_ref().and_then(|moving| moving.frame(model)) {
+        let Some(moving) = self.played() else {
+            return self.values(model);
+        };
+        match moving.frame(model) {
             Some((frame, _)) => Some(wide(&frame.values)),
-            None => self.values(model),
+            // What was held has another colour where a motion has none of that kind.
+            None if self.shown_colour() == self.scene().look.colour => self.values(model),
+            None => None,
         }
     }
 
     /// What is shown by the colours now.
     pub fn shown_colour(&self) -> Colour {
         let scene = self.scene();
-        match self.moving {
+        match self.played() {
             Some(_) => motion::colour(scene),
             None => scene.look.colour,
         }
     }
 
-    /// The values that the colours of all shown models span: while they move, those where they were let go.
-    pub fn spanned(&self, models: &[Model]) -> Vec<f64> {
-        let first = |model: &Model| {
-            let frame = self.moving.as_ref()?.first(*model)?;
-            Some(wide(&frame.values))
+    /// The values that the colours of all shown models span, each with the area of its node: while they move, those where they were
+    /// let go.
+    pub fn spanned(&self, models: &[Model]) -> Vec<(f64, f64)> {
+        let values = |model: &Model| match self.played() {
+            Some(moving) => moving.first(*model).map(|frame| wide(&frame.values)),
+            None => self.values(*model),
         };
-        let held = |model: &Model| self.values(*model);
-        let values = models.iter().filter_map(|model| match self.moving {
-            Some(_) => first(model),
-            None => held(model),
+        let weighted = models.iter().filter_map(|model| {
+            let values = values(model)?;
+            let areas = &self.areas[usize::from(*model == Model::Elements)];
+            let areas = areas.get_or_init(|| self.mesh(*model).map_or_else(Vec::new, node_areas));
+            Some(values.into_iter().zip(areas.iter().copied()))
         });
-        values.flatten().collect()
+        weighted.flatten().collect()
     }
 }
 

@@ -4,17 +4,27 @@ use std::sync::{Arc, Mutex};
 
 use eframe::egui;
 
-/// Files that were dropped and read: name and content.
-pub type Inbox = Arc<Mutex<Vec<(String, Vec<u8>)>>>;
+use crate::logic::studies::NamedFile;
+
+/// Files that were dropped and read: name and content, or why they cannot be read.
+pub type Inbox = Arc<Mutex<Vec<Result<NamedFile, String>>>>;
+
+fn put<E: std::fmt::Display>(inbox: &Inbox, name: String, content: Result<Vec<u8>, E>) {
+    let read = match content {
+        Ok(content) => Ok((name, content)),
+        Err(cause) => Err(format!("cannot read {name}: {cause}")),
+    };
+    if let Ok(mut files) = inbox.lock() {
+        files.push(read);
+    }
+}
 
 /// Reads a dropped file into the inbox.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn read(file: &egui::DroppedFileHandle, inbox: &Inbox, _: &egui::Context) {
     // The whole path: what a study names stands beside it.
     let name = file.path().display().to_string();
-    if let (Ok(content), Ok(mut files)) = (file.bytes(), inbox.lock()) {
-        files.push((name, content));
-    }
+    put(inbox, name, file.bytes());
 }
 
 /// Reads a dropped file into the inbox, as soon as the browser gives it.
@@ -23,9 +33,7 @@ pub fn read(file: &egui::DroppedFileHandle, inbox: &Inbox, context: &egui::Conte
     let (file, inbox, context) = (Arc::clone(file), Arc::clone(inbox), context.clone());
     wasm_bindgen_futures::spawn_local(async move {
         let name = file.path().display().to_string();
-        if let (Ok(content), Ok(mut files)) = (file.bytes_async().await, inbox.lock()) {
-            files.push((name, content));
-        }
+        put(&inbox, name, file.bytes_async().await);
         context.request_repaint();
     });
 }

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Slider, Ui};
 
 use super::Workbench;
+use crate::logic::playing::Playing;
 use crate::logic::scene::Model;
 use crate::logic::table::Action;
 use crate::views::figures;
@@ -79,7 +80,8 @@ impl Workbench {
 
     /// What is played, above the sheets.
     pub(super) fn player(&mut self, ui: &mut Ui) {
-        let Some(moving) = self.table.moving() else {
+        let worth = |moving: &&Playing| moving.has_begun() || moving.is_complete();
+        let Some(moving) = self.table.moving().filter(worth) else {
             return;
         };
         let (mut running, mut slowness) = (moving.running, moving.slowness);

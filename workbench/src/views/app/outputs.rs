@@ -6,31 +6,9 @@ use super::{Tab, Workbench};
 use crate::logic::outputs::{Format, ShownField, Wanted};
 use crate::logic::scene::Model;
 use crate::views::exports::{self, Offer};
-use crate::views::{figures, files, material};
+use crate::views::figures;
 
 impl Workbench {
-    /// Saves what is shown.
-    pub(super) fn save(&mut self) {
-        self.told = match self.tab() {
-            Tab::Sheet => self.save_sheet(),
-            Tab::Material => material::save_card(&self.table.scene().card),
-            Tab::Field => "`export` saves the corrected field".to_owned(),
-            Tab::Study => self.studies.save(),
-        };
-    }
-
-    /// Saves the sheet as a study, and its card where it is the user's own.
-    fn save_sheet(&self) -> String {
-        let scene = self.table.scene();
-        let study = files::save("workbench.toml", scene.study().as_bytes());
-        let card = (!scene.card.is_shipped())
-            .then(|| files::save(&scene.card.reference(), scene.card.text.as_bytes()));
-        let told = [Some(study), card].into_iter().flatten();
-        told.map(|told| told.unwrap_or_else(|fault| fault))
-            .collect::<Vec<_>>()
-            .join("; ")
-    }
-
     /// What may go out of the view that is shown, to choose from.
     pub(super) fn offered(&mut self, ui: &mut Ui) {
         #[cfg(target_arch = "wasm32")]
@@ -50,7 +28,13 @@ impl Workbench {
             ui.label("There is nothing to export yet.");
         }
         for (name, wanted) in offers {
-            let response = ui.button(&name);
+            // In the browser nothing is asked: downloads begin at once.
+            let asks = if cfg!(target_arch = "wasm32") {
+                ""
+            } else {
+                " …"
+            };
+            let response = ui.button(format!("{name}{asks}"));
             self.places.insert(name, response.rect.center());
             if response.clicked() {
                 self.told = "writing …".to_owned();

@@ -2,10 +2,13 @@
 
 use eframe::egui::{self, CentralPanel, Panel, RichText, ScrollArea, Theme, Ui};
 
+use super::documents::Then;
 use super::{Tab, Workbench};
+use crate::logic::outputs::Written;
 use crate::logic::scene::{Model, Scene};
 use crate::logic::table::Action;
 use crate::views::guide::{SCENES, Shows};
+use crate::views::study::Asks;
 use crate::views::{chart, controls, figures, guide};
 
 /// Text sizes that are offered, as factors.
@@ -19,6 +22,9 @@ const TEXT_SIZES: [(&str, f32); 4] = [
 /// The width below which the panel of the controls is folded at first.
 const NARROW: f32 = 640.0;
 
+/// The height below which the sheets have most of it.
+const LOW: f32 = 560.0;
+
 /// The width that a chart beside the figures has at least.
 const CHART: f32 = 260.0;
 
@@ -30,7 +36,9 @@ impl Workbench {
                 ScrollArea::vertical().show(ui, |ui| self.controls(ui));
             });
         }
-        let height = (0.38 * ui.available_height()).min(260.0);
+        let room = ui.available_height();
+        let share = if room < LOW { 0.2 } else { 0.38 };
+        let height = (share * room).min(260.0);
         Panel::bottom("figures")
             .default_size(height)
             .resizable(true)
@@ -75,10 +83,7 @@ impl Workbench {
             {
                 self.table.act(Action::Redo);
             }
-            let hint = "Ctrl+S: saves what is shown: the study for `gelbench run`, with its card if it is your own, or the card";
-            if ui.button("save study").on_hover_text(hint).clicked() {
-                self.save();
-            }
+            self.file_menu(ui);
             let export = ui.menu_button("export", |ui| self.offered(ui)).response;
             self.places
                 .insert("export".to_owned(), export.rect.center());
@@ -113,6 +118,69 @@ impl Workbench {
                 }
             }
         });
+    }
+
+    /// The recent files are a part of the menu: a menu in a menu closes under slow hands.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn file_menu(&mut self, ui: &mut Ui) {
+        let menu = ui.menu_button("file", |ui| {
+            let entry = |name: &str, keys: &str| egui::Button::new(name).shortcut_text(keys);
+            if ui.add(entry("open …", "Ctrl+O")).clicked() {
+                self.files.open();
+            }
+            let hint = "the study for `gelbench run`, with its card if it is your own, or the card";
+            if ui
+                .add(entry("save", "Ctrl+S"))
+                .on_hover_text(hint)
+                .clicked()
+            {
+                self.save(self.tab, false);
+            }
+            if ui.add(entry("save as …", "Ctrl+Shift+S")).clicked() {
+                self.save(self.tab, true);
+            }
+            ui.separator();
+            let recent = self
+                .recent
+                .paths()
+                .iter()
+                .map(|path| path.display().to_string());
+            let recent: Vec<String> = recent.collect();
+            let heading = if recent.is_empty() {
+                "no recent files"
+            } else {
+                "recent files"
+            };
+            ui.label(RichText::new(heading).small().weak());
+            let chosen = recent.iter().find(|path| {
+                let name = crate::views::files::plain(path);
+                ui.button(name).on_hover_text(*path).clicked()
+            });
+            if let Some(path) = chosen {
+                self.open_path(std::path::Path::new(path));
+            }
+        });
+        let at = menu.response.rect.center();
+        self.places.insert("file".to_owned(), at);
+    }
+
+    /// What is dropped is opened, and what is saved is downloaded.
+    #[cfg(target_arch = "wasm32")]
+    fn file_menu(&mut self, ui: &mut Ui) {
+        let hint =
+            "Ctrl+S: the study for `gelbench run`, with its card if it is your own, or the card";
+        if ui.button("save study").on_hover_text(hint).clicked() {
+            self.save(self.tab, false);
+        }
+    }
+
+    pub(super) fn study_tab(&mut self, ui: &mut Ui) {
+        let shown = CentralPanel::default().show(ui, |ui| self.studies.show(ui));
+        match shown.inner {
+            None => (),
+            Some(Asks::File(file)) => self.give(Written::file(file)),
+            Some(Asks::Example(name, text)) => self.leave(Then::PutStudy(name, text.to_owned())),
+        }
     }
 
     pub(super) fn guide(&mut self, ui: &mut Ui) {
@@ -205,6 +273,9 @@ impl Workbench {
     fn figures(&mut self, ui: &mut Ui) {
         if let Some(message) = self.table.message() {
             figures::fault(ui, message);
+        }
+        for warning in self.table.warnings() {
+            ui.colored_label(ui.visuals().warn_fg_color, warning.to_string());
         }
         for model in Model::ALL {
             if let Some(found) = self.table.fault(model) {

@@ -1,0 +1,31 @@
+//! Tests without a fit.
+
+use super::{Course, STRETCH, chart, deformation};
+use crate::calibration::TestData;
+use crate::results::{LineChart, Scale};
+
+/// Tests alone, as they were read, before any law is fitted to them.
+pub fn tests_chart(tests: &[TestData]) -> LineChart {
+    let stresses = |data: &TestData| data.observations.iter().map(|one| one.stress).collect();
+    let stresses: Vec<Vec<f64>> = tests.iter().map(stresses).collect();
+    let named = tests.iter().zip(&stresses);
+    let named = named.map(|(data, own)| (data.clone(), &own[..], data.test.name().to_owned()));
+    let named: Vec<_> = named.collect();
+    let courses = Course::all(&named);
+    let points = courses
+        .iter()
+        .map(|course| course.measured(STRETCH, Scale::Linear));
+    let largest = tests.iter().map(|test| test.largest_stress);
+    let measure = tests.first().map_or("", |test| test.stress_measure.title());
+    let (title, stress) = (
+        "The tests as they were read".to_owned(),
+        format!("{measure} stress"),
+    );
+    chart(
+        title,
+        deformation(tests),
+        &stress,
+        largest.fold(0.0, f64::max),
+        points.collect(),
+    )
+}

@@ -1,0 +1,52 @@
+//! How closely sheets are looked at: the wheel, two fingers and a pulled background.
+
+use eframe::egui::{InputState, Pos2, Response, Ui, Vec2};
+
+use super::surface::View;
+
+/// How much closer than the whole a sheet is looked at, and how far its middle is shifted, in points.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Closer {
+    factor: f32,
+    shift: Vec2,
+}
+
+impl Default for Closer {
+    fn default() -> Self {
+        Self {
+            factor: 1.0,
+            shift: Vec2::ZERO,
+        }
+    }
+}
+
+/// The factors within which a sheet is looked at, and the points of a wheel that make e of one.
+const FACTORS: [f32; 2] = [0.5, 50.0];
+const WHEEL: f32 = 250.0;
+
+impl Closer {
+    /// A view of the whole from there; `middle` is that of the sheet.
+    pub fn of(self, whole: View, middle: Pos2) -> View {
+        whole.closer(middle, self.factor, self.shift)
+    }
+
+    /// Follows the wheel, two fingers, and the pointer that pulls the background; a double click shows the whole again.
+    pub fn follow(&mut self, ui: &Ui, background: &Response, middle: Pos2) {
+        if background.double_clicked() {
+            *self = Self::default();
+        }
+        self.shift += background.drag_delta();
+        let pointer = background.hover_pos();
+        let Some(pointer) = pointer.filter(|_| background.contains_pointer()) else {
+            return;
+        };
+        let wheel = ui.input(|input| input.smooth_scroll_delta().y);
+        let factor = ui.input(InputState::zoom_delta) * (wheel / WHEEL).exp();
+        let [least, most] = FACTORS.map(|factor| factor / self.factor);
+        let factor = factor.clamp(least, most);
+        self.factor *= factor;
+        // What lies under the pointer stays there.
+        let from_middle = pointer - middle;
+        self.shift = from_middle - factor * (from_middle - self.shift);
+    }
+}

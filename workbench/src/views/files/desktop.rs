@@ -1,0 +1,325 @@
+//! Files that go out on the desktop: a dialogue says where, and no file is replaced unasked that the workbench has not written itself.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::future::Future;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{self, Poll, Waker};
+use std::time::{Duration, Instant};
+
+use eframe::egui::Context;
+use rfd::AsyncFileDialog;
+
+use super::{Event, Outgoing};
+use crate::logic::background::Wake;
+use crate::views::question;
+
+/// What a dialogue asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// A file to be opened.
+    Open,
+    /// A file to be written, with a name for it.
+    Save(String),
+    /// A folder in which a folder of a name is written.
+    Folder(String),
+}
+
+/// What was chosen; nothing where the user cancelled.
+type Chosen = Pin<Box<dyn Future<Output = Option<PathBuf>>>>;
+
+/// Shows a dialogue that begins in a folder.
+pub type Choose = Box<dyn Fn(&Choice, Option<&Path>) -> Chosen>;
+
+/// A dialogue that is open.
+struct Dialogue {
+    /// What goes out; nothing where a file is to be opened.
+    outgoing: Option<Outgoing>,
+    chosen: Chosen,
+    begun: Instant,
+}
+
+/// A dialogue that ends sooner was never seen.
+const SEEN: Duration = Duration::from_millis(200);
+
+/// Files with the places where they are to be written.
+struct Placed {
+    files: Vec<(PathBuf, Vec<u8>)>,
+    outgoing: Outgoing,
+}
+
+/// Files on the desktop.
+pub struct Files {
+    choose: Choose,
+    wake: Wake,
+    dialogue: Option<Dialogue>,
+    /// What is written where the user agrees that files of others are replaced.
+    asked: Option<Placed>,
+    /// What the workbench has written itself.
+    written: BTreeMap<PathBuf, Vec<u8>>,
+    folder: Option<PathBuf>,
+    events: Vec<Event>,
+}
+
+impl Files {
+    /// With the dialogues of the system.
+    pub fn new(wake: Wake) -> Self {
+        Self {
+            choose: Box::new(by_system),
+            wake,
+            dialogue: None,
+            asked: None,
+            written: BTreeMap::new(),
+            folder: None,
+            events: Vec::new(),
+        }
+    }
+
+    /// Takes other dialogues than those of the system.
+    pub fn choose_by(&mut self, choose: Choose) {
+        self.choose = choose;
+    }
+
+    /// Asks for a file to be opened.
+    pub fn open(&mut self) {
+        self.show(&Choice::Open, None);
+    }
+
+    /// Gives files to the user: one where a dialogue says, several in a folder of their own in the one that is chosen.
+    pub fn give(&mut self, outgoing: Outgoing) {
+        let choice = outgoing.choice();
+        self.show(&choice, Some(outgoing));
+    }
+
+    /// Writes a document to a path that it was saved to before, or opened from; what stands beside it, beside that.
+    pub fn save(&mut self, path: &Path, outgoing: Outgoing) {
+        let placed = Placed::at(path, outgoing);
+        self.write_unless_others(placed, None);
+    }
+
+    fn show(&mut self, choice: &Choice, outgoing: Option<Outgoing>) {
+        self.dialogue = Some(Dialogue {
+            outgoing,
+            chosen: (self.choose)(choice, self.folder.as_deref()),
+            begun: Instant::now(),
+        });
+    }
+
+    /// What came of files since it was asked last.
+    pub fn events(&mut self) -> Vec<Event> {
+        if let Some(mut dialogue) = self.dialogue.take() {
+            let waker = Waker::from(Arc::new(Woken(Arc::clone(&self.wake))));
+            let mut context = task::Context::from_waker(&waker);
+            match dialogue.chosen.as_mut().poll(&mut context) {
+                Poll::Pending => self.dialogue = Some(dialogue),
+                Poll::Ready(None) => self.events.push(dialogue.without_choice()),
+                Poll::Ready(Some(path)) => self.take(path, dialogue.outgoing),
+            }
+        }
+        std::mem::take(&mut self.events)
+    }
+
+    fn take(&mut self, path: PathBuf, outgoing: Option<Outgoing>) {
+        let Some(outgoing) = outgoing else {
+            self.folder = path.parent().map(Path::to_owned);
+            self.events.push(Event::Chosen(path));
+            return;
+        };
+        let Choice::Save(name) = outgoing.choice() else {
+            let placed = Placed::within(&path, outgoing);
+            self.folder = Some(path);
+            return self.write_unless_others(placed, None);
+        };
+        self.folder = path.parent().map(Path::to_owned);
+        // The dialogue has asked about the file that it returns, not about one with an ending more.
+        match (path.extension(), Path::new(&name).extension()) {
+            (None, Some(ending)) => {
+                let placed = Placed::at(&path.with_extension(ending), outgoing);
+                self.write_unless_others(placed, None);
+            }
+            _ => self.write_unless_others(Placed::at(&path, outgoing), Some(&path)),
+        }
+    }
+
+    /// Writes files, or asks first where that replaces others than the one that the user has agreed to.
+    fn write_unless_others(&mut self, placed: Placed, agreed: Option<&Path>) {
+        let others = placed
+            .files
+            .iter()
+            .any(|(path, content)| agreed != Some(path) && self.is_of_others(path, content));
+        match others {
+            true => self.asked = Some(placed),
+            false => self.write(placed),
+        }
+    }
+
+    /// Whether a file is there with other contents than those that shall be written, and than the workbench has written.
+    fn is_of_others(&self, path: &Path, content: &[u8]) -> bool {
+        match fs::read(path) {
+            Ok(there) => there != content && self.written.get(path) != Some(&there),
+            Err(fault) => fault.kind() != io::ErrorKind::NotFound,
+        }
+    }
+
+    fn write(&mut self, placed: Placed) {
+        let Placed { files, outgoing } = placed;
+        let said = placed_in_words(&files, &outgoing);
+        let first = files.first().map(|(path, _)| path.clone());
+        for (path, content) in files {
+            let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
+            if let Err(cause) = folder.and_then(|()| fs::write(&path, &content)) {
+                let fault = format!(
+                    "cannot write {}: {cause}; `save as …` and `export` choose another folder",
+                    path.display()
+                );
+                self.events.push(Event::Failed(fault));
+                return;
+            }
+            self.written.insert(path, content);
+        }
+        self.events.push(Event::Saved {
+            document: outgoing.document.map(|tab| (tab, first)),
+            said,
+        });
+    }
+
+    /// Asks what must be answered; whether anything must.
+    pub fn ask(&mut self, context: &Context) -> bool {
+        let Some(placed) = self.asked.take() else {
+            return false;
+        };
+        let others = placed.files.iter();
+        let others = others.filter(|(path, content)| self.is_of_others(path, content));
+        let names: Vec<String> = others.map(|(path, _)| path.display().to_string()).collect();
+        let text = match &names[..] {
+            [name] => format!(
+                "{name} is there already, and this workbench has not written it as it is. Replace it?"
+            ),
+            _ => format!(
+                "{} files are there already, and this workbench has not written them as they are, such as {}. Replace them?",
+                names.len(),
+                names.first().map_or("", String::as_str)
+            ),
+        };
+        match question::ask(context, &text, &["replace", "save as …", "cancel"]) {
+            None => self.asked = Some(placed),
+            Some(0) => self.write(placed),
+            Some(1) => self.give(placed.outgoing),
+            Some(_) => self
+                .events
+                .push(Event::Failed("nothing was saved".to_owned())),
+        }
+        true
+    }
+}
+
+impl Outgoing {
+    /// A document has a name of its own, whatever stands beside it, and so has a file by itself.
+    fn choice(&self) -> Choice {
+        match &self.written.files[..] {
+            [(name, _), others @ ..] if self.document.is_some() || others.is_empty() => {
+                Choice::Save(name.clone())
+            }
+            _ => Choice::Folder(self.written.name.clone()),
+        }
+    }
+}
+
+impl Dialogue {
+    fn without_choice(&self) -> Event {
+        let said = match self.begun.elapsed() < SEEN {
+            true => {
+                "the system shows no dialogue for files: xdg-desktop-portal or zenity is missing. Files can be dropped on the window"
+            }
+            false if self.outgoing.is_some() => "nothing was saved",
+            false => "nothing was opened",
+        };
+        Event::Failed(said.to_owned())
+    }
+}
+
+impl Placed {
+    /// The first file at a path, the others beside it.
+    fn at(path: &Path, outgoing: Outgoing) -> Self {
+        let others = outgoing.written.files.iter().enumerate();
+        let place = |(number, (name, content)): (usize, &(String, Vec<u8>))| match number {
+            0 => (path.to_owned(), content.clone()),
+            _ => (path.with_file_name(name), content.clone()),
+        };
+        Self {
+            files: others.map(place).collect(),
+            outgoing,
+        }
+    }
+
+    /// All files in a folder of their own within another one.
+    fn within(folder: &Path, outgoing: Outgoing) -> Self {
+        let folder = folder.join(&outgoing.written.name);
+        let files = outgoing.written.files.iter();
+        let files = files.map(|(name, content)| (folder.join(name), content.clone()));
+        Self {
+            files: files.collect(),
+            outgoing,
+        }
+    }
+}
+
+/// Where files are.
+fn placed_in_words(files: &[(PathBuf, Vec<u8>)], outgoing: &Outgoing) -> String {
+    match files {
+        [(path, _)] => format!("saved as {}", path.display()),
+        [(path, _), others @ ..] if outgoing.document.is_some() => {
+            let others = others.iter().map(|(path, _)| path.display().to_string());
+            format!(
+                "saved as {}, with {} beside it",
+                path.display(),
+                others.collect::<Vec<_>>().join(", ")
+            )
+        }
+        _ => {
+            let folder = files.first().and_then(|(path, _)| path.parent());
+            let folder = folder.map_or_else(String::new, |folder| folder.display().to_string());
+            format!("{} files in {folder}", files.len())
+        }
+    }
+}
+
+/// The system's own dialogues.
+fn by_system(choice: &Choice, folder: Option<&Path>) -> Chosen {
+    let mut dialogue = AsyncFileDialog::new();
+    if let Some(folder) = folder {
+        dialogue = dialogue.set_directory(folder);
+    }
+    match choice {
+        Choice::Open => {
+            let file = dialogue
+                .set_title("Open a study, a card, a test or a measured field")
+                .pick_file();
+            Box::pin(async { Some(file.await?.path().to_owned()) })
+        }
+        Choice::Save(name) => {
+            let file = dialogue
+                .set_title("Save as")
+                .set_file_name(name)
+                .save_file();
+            Box::pin(async { Some(file.await?.path().to_owned()) })
+        }
+        Choice::Folder(name) => {
+            let title = format!("Export into a folder, as {name}");
+            let folder = dialogue.set_title(title).pick_folder();
+            Box::pin(async { Some(folder.await?.path().to_owned()) })
+        }
+    }
+}
+
+/// Draws a frame when a dialogue ends.
+struct Woken(Wake);
+
+impl task::Wake for Woken {
+    fn wake(self: Arc<Self>) {
+        (self.0)();
+    }
+}
