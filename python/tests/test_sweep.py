@@ -210,7 +210,9 @@ def test_other_threads_go_on_meanwhile(study, counted_meanwhile):
 
 
 PROGRAM = """
-    import sys, gelbench as gb
+    import signal, gelbench as gb
+    # A job in the background is started with interrupts ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     print("begun", flush=True)
     try:
         gb.sweep("s.toml", {"material.c10": "0.05..0.1 MPa", "plate.width": ["45 mm", "50 mm"]}, samples=12,

@@ -311,3 +311,73 @@ fn pictures_show_the_fields_models_range_and_title_that_a_study_wants() {
         assert!(fault.contains(message), "{pictures}: {fault}");
     }
 }
+
+#[test]
+fn a_measured_curve_is_drawn_over_that_of_the_models() {
+    let folder = folder_with("");
+    let path = folder.path().join("sheet.toml");
+    let read = |text: String| read_given(&path, text, Budget::USUAL);
+    let clip = "[[extensometer]]\nname = \"clip\"\nfrom = [\"5 mm\", \"0 mm\"]\nto = [\"25 mm\", \"0 mm\"]\n";
+    for (columns, scale, more) in [
+        ("Kraft [kN];Standardweg [mm]", 0.01, ""),
+        ("force [N],displacement [cm]", 1.0, ""),
+        ("force [N],stretch", 1.0, "extensometer = \"clip\"\n"),
+        ("load [N],strain [%]", 1.0, "extensometer = \"clip\"\n"),
+    ] {
+        let between = if columns.contains(';') { ";" } else { "," };
+        let rows: String = (0..4)
+            .map(|row| format!("{}{between}{row}\n", scale * f64::from(row)))
+            .collect();
+        std::fs::write(folder.path().join("test.csv"), format!("{columns}\n{rows}")).unwrap();
+        let text = format!("{STRIP}{clip}[measured]\nfile = \"test.csv\"\n{more}");
+        let results = read(text).unwrap_or_else(|fault| panic!("{columns}: {fault}"));
+        let results = results.compute(Progress::silent()).unwrap();
+        let mut figures = results.outcome.figures.iter();
+        let figure = figures
+            .find(|figure| figure.name == "sheet_measured.png")
+            .unwrap();
+        let Drawing::Charts(charts) = &figure.drawing else {
+            panic!("a chart");
+        };
+        let lines = &charts[0].0.lines;
+        assert_eq!((lines.len(), &*lines[0].label), (4, "measured"));
+        // The third row has 2 N or 20 N, and 2 mm, 2 cm, a stretch of 2, or 2 %.
+        let [moved, force] = lines[0].points[2];
+        let expected = [
+            ("Standardweg", 2.0),
+            ("cm", 20.0),
+            ("stretch", 100.0),
+            ("strain", 2.0),
+        ];
+        let expected = expected
+            .iter()
+            .find(|(name, _)| columns.contains(name))
+            .unwrap()
+            .1;
+        assert!((moved - expected).abs() < 1e-12, "{columns}: {moved}");
+        assert!(
+            (force - 2.0 * scale * if between == ";" { 1e3 } else { 1.0 }).abs() < 1e-12,
+            "{force}"
+        );
+        // The grip of 3 mm by 0.3, or what the extensometer has of it.
+        assert!(
+            lines[1].points.len() == 3 && lines[1].points[2][0] > 5.0,
+            "{:?}",
+            lines[1]
+        );
+    }
+    for (more, message) in [
+        ("[measured]\nfile = \"none.csv\"\n", "none.csv"),
+        ("[measured]\nfile = \"test.csv\"\n", "no length"),
+        (
+            "[measured]\nfile = \"test.csv\"\nextensometer = \"clap\"\n",
+            "clap",
+        ),
+    ] {
+        let fault = read(format!("{STRIP}{clip}{more}"))
+            .err()
+            .unwrap()
+            .to_string();
+        assert!(fault.contains(message), "{fault}");
+    }
+}

@@ -19,6 +19,7 @@ mod files;
 pub(super) mod forces;
 mod headline;
 mod history;
+mod measured_curve;
 mod measured_fields;
 mod measurements;
 mod outcome;
@@ -29,6 +30,7 @@ mod statement;
 mod work;
 
 pub use along::Along;
+pub(crate) use measured_curve::{check_extensometer, read_measured_curve};
 pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };

@@ -19,7 +19,8 @@ use crate::studies::sections::{
     read_models, read_newton, read_plate, refuse_memory,
 };
 use crate::studies::specimen::{
-    Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen, read_measurements,
+    Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen, check_extensometer,
+    read_measured_curve, read_measurements,
 };
 use crate::units::Dimension;
 
@@ -66,23 +67,14 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
     let section = root.section("pictures");
     let pictures = Pictures::read(&section, "factors", Dimension::Ratio, &problem.stretches);
     let models = read_models(root);
-    let grids = correction
-        .zip(elements)
-        .map(|(correction, elements)| PlateGrids {
-            size: problem.size,
-            cells,
-            lattice,
-            correction,
-            elements,
-        });
-    // What cannot be read is NaN.
-    let has_size = problem.size.iter().all(|size| *size > 0.0);
-    let outline = grids.filter(|_| has_size).map(Outline::Grid);
+    let outline = outline(problem.size, cells, lattice, correction.zip(elements));
     let measurements = read_measurements(root, outline.as_ref());
+    let measured_curve = read_measured_curve(root, folder, Some(problem.size[0]));
     let (card, outline) = (card?, outline?);
     warn_of_own_reference(root, &outline);
-    Some(Specimen {
+    let specimen = Specimen {
         measurements,
+        measured_curve,
         name: "plate".into(),
         problem: problem.boundary_problem(),
         card,
@@ -99,7 +91,27 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
         linear_solver: linear_solver?,
         outline,
         pictures,
-    })
+    };
+    check_extensometer(root, &specimen);
+    Some(specimen)
+}
+
+/// The outline of a plate; `None` where a part of it could not be read.
+fn outline(
+    size: [f64; 2],
+    cells: [usize; 2],
+    lattice: LatticeSettings,
+    grids: Option<(GridCorrection, GridElements)>,
+) -> Option<Outline> {
+    // What cannot be read is NaN.
+    let (correction, elements) = grids.filter(|_| size.iter().all(|side| *side > 0.0))?;
+    Some(Outline::Grid(PlateGrids {
+        size,
+        cells,
+        lattice,
+        correction,
+        elements,
+    }))
 }
 
 /// Warns of finite elements that are the corrected field once more.

@@ -2,6 +2,7 @@
 
 use super::forces;
 use super::history;
+use super::measured_curve;
 use super::measured_fields::MeasuredFields;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
@@ -65,6 +66,7 @@ pub fn figures(
     for (what, chart) in charts {
         figures.extend(chart.map(|(caption, drawing)| figure(what, caption, drawing)));
     }
+    figures.extend(measured_curve::figure(specimen, models));
     figures.extend(measured.figures(&steps));
     let lattice = &models.on_lattice.springs.mesh;
     let cells = mesh_outlines("Lattice", lattice);

@@ -63,3 +63,25 @@ impl Extensometer {
         [apart, now].map(|[x, y]| x.hypot(y))
     }
 }
+
+/// A measured curve: the force of the measured group over what moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredCurve {
+    /// The file, as the study names it.
+    pub file: String,
+    /// What the force is over.
+    pub over: Over,
+    /// Displacement in mm or stretch λ − 1, and force in N.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// What a force is over.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Over {
+    /// The displacement of the measured group in mm.
+    Displacement,
+    /// The stretch of an extensometer, by its name.
+    Extensometer(String),
+    /// The stretch of a length in mm by the displacement of the measured group.
+    Length(f64),
+}

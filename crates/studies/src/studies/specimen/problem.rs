@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::along::Along;
-use super::measurements::Measurements;
+use super::measurements::{MeasuredCurve, Measurements};
 use crate::error::Error;
 use crate::mass_spring::MassSpring;
 use crate::material::Card;
@@ -107,6 +107,8 @@ pub struct Specimen {
     pub pictures: Pictures,
     /// What is measured within the sheet.
     pub measurements: Measurements,
+    /// A measured curve of force that is drawn beside the models; `None` where there is none.
+    pub measured_curve: Option<MeasuredCurve>,
 }
 
 impl Specimen {
@@ -181,6 +183,7 @@ impl Specimen {
             linear_solver: LinearSolver::Automatic,
             pictures: Pictures::default(),
             measurements: Measurements::default(),
+            measured_curve: None,
             outline,
         }
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::measured_curve::{check_extensometer, read_measured_curve};
 use super::problem::{Method, Outline, Refinement, Specimen};
 use crate::document::{Bound, Section};
 use crate::material::Card;
@@ -71,10 +72,12 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let specimen = sheet.specimen(root, materials, (&path, &group), states);
     let outline = specimen.as_ref().map(|own| &own.outline);
     let measurements = read_measurements(root, outline);
+    let measured_curve = read_measured_curve(root, folder, None);
     let specimen = specimen?;
     let specimen = Specimen {
         factors,
         measurements,
+        measured_curve,
         models,
         tolerances,
         refinement,
@@ -86,6 +89,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let mesh = specimen.outline.coarse();
     check_refinement(root, &specimen, &mesh);
     check_nested(root, &specimen);
+    check_extensometer(root, &specimen);
     Some(specimen)
 }
 

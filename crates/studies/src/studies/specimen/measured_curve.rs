@@ -1,0 +1,208 @@
+//! A measured curve of force, drawn over those of the models.
+
+use std::path::Path;
+
+use super::measurements::{MeasuredCurve, Over};
+use super::problem::Specimen;
+use super::results::models::Models;
+use crate::document::{ColumnNames, MACHINE_DISPLACEMENTS, MACHINE_FORCES, Section, Table};
+use crate::error::{Error, suggestion};
+use crate::results::{Axis, Figure, Line, LineChart, Stroke, from_rest};
+use crate::studies::series::{ModelSeries, ModelState};
+use crate::units::{self, Dimension};
+
+/// What a column has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Signal {
+    Displacement,
+    Stretch,
+    Strain,
+    Force,
+}
+
+const NAMES: &ColumnNames<Signal> = &[
+    (Signal::Displacement, "displacement extension"),
+    (Signal::Displacement, MACHINE_DISPLACEMENTS),
+    (Signal::Stretch, "stretch lambda λ"),
+    (Signal::Strain, "strain dehnung"),
+    (Signal::Force, "force load"),
+    (Signal::Force, MACHINE_FORCES),
+];
+
+const HINT: &str = "a measured curve has a column `force [N]`, and `displacement [mm]`, `stretch [-]` or `strain [%]`";
+
+/// Reads `[measured]` of a study in a folder; `length` is that of a plate, which stretches are of where no extensometer is named.
+pub(crate) fn read_measured_curve(
+    root: &Section,
+    folder: &Path,
+    length: Option<f64>,
+) -> Option<MeasuredCurve> {
+    if !root.has("measured") {
+        return None;
+    }
+    let section = root.section("measured");
+    let file = section.text("file");
+    let extensometer = section
+        .has("extensometer")
+        .then(|| section.text("extensometer"));
+    section.unknown_keys();
+    let table = Table::read(&folder.join(&file), HINT).and_then(|table| curve(&table));
+    let (signal, points) = match table {
+        Ok(curve) => curve,
+        Err(Error::Input(faults)) => {
+            faults.into_iter().for_each(|fault| section.add(fault));
+            return None;
+        }
+        Err(fault) => {
+            section.fault("file", &fault.to_string(), HINT);
+            return None;
+        }
+    };
+    let over = match (signal, extensometer, length) {
+        (Signal::Displacement, ..) => Over::Displacement,
+        (_, Some(name), _) => Over::Extensometer(name),
+        (_, None, Some(length)) => Over::Length(length),
+        (_, None, None) => {
+            let hint = "name the [[extensometer]] that measured it with extensometer = \"…\"";
+            section.fault(
+                "file",
+                "has stretches, and no length that they are of",
+                hint,
+            );
+            return None;
+        }
+    };
+    Some(MeasuredCurve { file, over, points })
+}
+
+/// What the force is over, and the points in internal units, stretches as λ − 1.
+fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
+    let column = |signal: Signal| {
+        let names = NAMES.iter().filter(|(known, _)| *known == signal);
+        let mut names = names.flat_map(|(_, names)| names.split(' '));
+        names.find_map(|name| table.column(name))
+    };
+    let mut motions = [Signal::Displacement, Signal::Stretch, Signal::Strain].into_iter();
+    let motion = motions.find_map(|signal| Some((signal, column(signal)?)));
+    let (Some((signal, moved)), Some(force)) = (motion, column(Signal::Force)) else {
+        let message = "the force, or what it is over, is missing";
+        return Err(table.refuse_columns(message, HINT));
+    };
+    table.check_numbers([moved, force], "every row needs a number in these columns")?;
+    let dimension = match signal {
+        Signal::Displacement => Dimension::Length,
+        _ => Dimension::Ratio,
+    };
+    let factors = [(moved, dimension), (force, Dimension::Force)].map(|(index, dimension)| {
+        let column = &table.columns[index];
+        match (column.unit.as_deref(), dimension) {
+            (None, Dimension::Ratio) => Ok(1.0),
+            (unit, _) => units::factor(unit.unwrap_or_default(), dimension).map_err(|fault| {
+                table.refuse_columns(format!("the column `{}` {fault}", column.head()), HINT)
+            }),
+        }
+    });
+    let [scale, newtons] = factors;
+    let (scale, newtons) = (scale?, newtons?);
+    let rest = f64::from(u8::from(signal == Signal::Stretch));
+    let rows = table.rows.iter();
+    let points = rows.map(|(row, _)| [scale * row[moved] - rest, newtons * row[force]]);
+    Ok((signal, points.collect()))
+}
+
+/// Records an extensometer that the study does not have.
+pub(crate) fn check_extensometer(root: &Section, specimen: &Specimen) {
+    let Some(Over::Extensometer(name)) = specimen.measured_curve.as_ref().map(|own| &own.over)
+    else {
+        return;
+    };
+    let all = specimen.measurements.extensometers.iter();
+    let known: Vec<&str> = all.map(|own| &*own.name).collect();
+    if !known.contains(&&**name) {
+        let hint = suggestion(name, &known, "the study has");
+        let message = format!("the study has no extensometer `{name}`");
+        root.section("measured")
+            .fault("extensometer", &message, &hint);
+    }
+}
+
+/// The measured curve over those of the models; `None` where the study names none.
+pub fn figure(specimen: &Specimen, models: &Models) -> Option<Figure> {
+    let measured = specimen.measured_curve.as_ref()?;
+    let group = specimen
+        .groups()
+        .iter()
+        .position(|name| *name == specimen.group)?;
+    let axis = models.reference.measured.axis;
+    let percent = if measured.over == Over::Displacement {
+        1.0
+    } else {
+        100.0
+    };
+    let strokes = [Stroke::Marked, Stroke::Ringed, Stroke::Marked];
+    let lines = models
+        .all_series()
+        .into_iter()
+        .zip(strokes)
+        .map(|(model, stroke)| {
+            let points = model.states.iter().map(|state| {
+                let moved = moved(specimen, measured, &model, state, (group, axis));
+                [percent * moved, state.groups[group].force[axis]]
+            });
+            Line::new(
+                model.style.name,
+                from_rest(points),
+                model.style.colour,
+                stroke,
+            )
+        });
+    let points = measured
+        .points
+        .iter()
+        .map(|[moved, force]| [percent * moved, *force]);
+    let own = Line::new("measured", points, [120; 3], Stroke::Points);
+    let lines = [own]
+        .into_iter()
+        .chain(lines.filter(|line| line.points.len() > 1));
+    let along = ["x", "y"][axis];
+    let x = match &measured.over {
+        Over::Displacement => format!("displacement of {} along {along} [mm]", specimen.group),
+        Over::Extensometer(name) => format!("stretch of {name} [%]"),
+        Over::Length(_) => "stretch [%]".to_owned(),
+    };
+    let y = Axis::linear(&format!("force along {along} [N]"));
+    let title = format!("Measured and computed force of {}", specimen.group);
+    let chart = LineChart::new(title, Axis::linear(&x), y, lines.collect());
+    let caption = format!(
+        "The measured curve of {} over those of the models.",
+        measured.file
+    );
+    Some(Figure::new(
+        format!("{}_measured.png", specimen.name),
+        caption,
+        chart,
+    ))
+}
+
+/// How far a model has moved in a state, as the measured curve has it.
+fn moved(
+    specimen: &Specimen,
+    measured: &MeasuredCurve,
+    model: &ModelSeries,
+    state: &ModelState,
+    (group, axis): (usize, usize),
+) -> f64 {
+    let displacement = state.groups[group].displacement[axis];
+    match &measured.over {
+        Over::Displacement => displacement,
+        Over::Length(length) => displacement / length,
+        Over::Extensometer(name) => {
+            let mut all = specimen.measurements.extensometers.iter();
+            let own = all.find(|own| own.name == *name);
+            own.map_or(f64::NAN, |own| {
+                let [rest, now] = own.lengths(model.mesh, state.displacement);
+                now / rest - 1.0
+            })
+        }
+    }
+}
