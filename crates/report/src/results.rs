@@ -65,6 +65,7 @@ pub use json::object;
 pub use material::Material;
 pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
 pub use report::{claims, pictures};
+pub use sampled::{Position, positions};
 pub use series::{Series, csv};
 pub use sheet::Sheet;
 pub use sheet_figures::{Deformed, SheetField, ShownFields, sheet_figures};

@@ -2,37 +2,44 @@
 
 use super::nodal_sheet::NodalSheet;
 use super::{Deformed, SheetField};
-use crate::mesh::NodalField;
+use crate::mesh::{Mesh, NodalField};
 use crate::problem::SheetLaws;
 
-/// How far a point may lie outside of its nearest cell, in sizes of the cell: curved sides of a lattice lie inside of the outline.
-const BEYOND: f64 = 0.1;
+/// A cell and natural coordinates in it; `None` of a point that is not on the sheet.
+pub type Position = Option<(usize, [f64; 2])>;
+
+/// Where points at rest are in a mesh; a point may lie so far outside of its nearest cell, in sizes of the cell.
+pub fn positions(mesh: &Mesh, points: &[[f64; 2]], beyond: f64) -> Vec<Position> {
+    let position = |point: &[f64; 2]| {
+        let (cell, local) = mesh.locate(*point);
+        let shape = mesh.shape(cell);
+        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
+        (shape.outside(local) <= beyond * size).then_some((cell, local))
+    };
+    points.iter().map(position).collect()
+}
 
 impl Deformed<'_> {
-    /// All fields, in the order of [`SheetField::NAMES`], at points at rest in mm; `None` for a point that is not on the sheet.
+    /// All fields, in the order of [`SheetField::NAMES`], at positions in its mesh.
     ///
     /// Values at the nodes are means over the adjacent cells, and are interpolated by the shape functions.
     pub fn sampled(
         &self,
         laws: SheetLaws,
-        points: &[[f64; 2]],
+        positions: &[Position],
     ) -> Vec<Option<[f64; SheetField::NAMES.len()]>> {
         let sheet = NodalSheet::new(laws, self.mesh, &self.fields, self.viscous);
         let displacement: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
-        let sample = |point: &[f64; 2]| {
-            let mesh = &sheet.mesh;
-            if mesh.outside(*point) > BEYOND {
-                return None;
-            }
-            let (cell, local) = mesh.locate(*point);
-            let weights = mesh.shape(cell).values(local);
-            let nodes = || mesh.cell(cell).iter().zip(&weights);
+        let sample = |position: &Position| {
+            let (cell, local) = (*position)?;
+            let weights = sheet.mesh.shape(cell).values(local);
+            let nodes = || sheet.mesh.cell(cell).iter().zip(&weights);
             Some(SheetField::NAMES.map(|(_, field)| {
                 let value = |node: usize| field.value(&sheet.states[node], displacement[node]);
                 nodes().map(|(node, weight)| weight * value(*node)).sum()
             }))
         };
-        points.iter().map(sample).collect()
+        positions.iter().map(sample).collect()
     }
 }
 
@@ -62,7 +69,8 @@ mod tests {
             let [low, high] = mesh.bounding_box();
             let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
             let points = [[low[0] + 2.3, low[1] + 1.7], high, middle];
-            let sampled = sheet.sampled((&law).into(), &points);
+            let positions = positions(&mesh, &points, 0.1);
+            let sampled = sheet.sampled((&law).into(), &positions);
             assert!(sampled[2].is_none(), "{name}: a value in the hole");
             let stress = along * along - 1.0 / along;
             for (point, values) in points.iter().zip(&sampled[..2]) {

@@ -5,8 +5,8 @@ use super::problem::Specimen;
 use super::results::models::Models;
 use crate::document::write_records;
 use crate::results::{
-    Axis, Content, Deformed, Drawing, Figure, Line, LineChart, PALETTE, SheetField, Stroke,
-    from_rest,
+    Axis, Content, Deformed, Drawing, Figure, Line, LineChart, PALETTE, Position, SheetField,
+    Stroke, from_rest, positions,
 };
 use crate::studies::file_stem;
 use crate::studies::series::ModelSeries;
@@ -40,9 +40,14 @@ impl<'a> MeasuredFields<'a> {
         let wanted = &specimen.measurements;
         let is_empty = *wanted == super::measurements::Measurements::default();
         let count = |model: &ModelSeries| if is_empty { 0 } else { model.states.len() };
-        let steps = series.iter().enumerate();
-        let steps = steps.flat_map(|(index, model)| (0..count(model)).map(move |at| (index, at)));
-        let states = steps.map(|(index, step)| measure(specimen, &series[index], index, step));
+        let of_model = |(index, model): (usize, &ModelSeries)| {
+            let count = count(model);
+            let positions = (count > 0).then(|| positions_in(specimen, model));
+            let positions = positions.unwrap_or_default();
+            let states = (0..count).map(|step| measure(specimen, model, (index, step), &positions));
+            states.collect::<Vec<_>>()
+        };
+        let states = series.iter().enumerate().flat_map(of_model);
         Self {
             specimen,
             states: states.flatten().collect(),
@@ -266,19 +271,31 @@ impl<'a> MeasuredFields<'a> {
     }
 }
 
-/// What is measured in a state; `None` where the model has not reached it.
-fn measure(specimen: &Specimen, model: &ModelSeries, index: usize, step: usize) -> Option<State> {
+/// How far outside of its nearest cell a probe may lie, in sizes of the cell: curved sides of a lattice lie inside of the outline. A line
+/// ends where the sheet does.
+const BEYOND: [f64; 2] = [0.1, 1e-9];
+
+/// The positions of the probes and of the points of the lines in the mesh of a model.
+fn positions_in(specimen: &Specimen, model: &ModelSeries) -> Vec<Position> {
+    let wanted = &specimen.measurements;
+    let probes: Vec<[f64; 2]> = wanted.probes.iter().map(|probe| probe.at).collect();
+    let lines: Vec<[f64; 2]> = wanted.lines.iter().flat_map(LineCut::points).collect();
+    let all = [probes, lines].into_iter().zip(BEYOND);
+    all.flat_map(|(points, beyond)| positions(model.mesh, &points, beyond))
+        .collect()
+}
+
+/// What is measured in a state of a model by its number; `None` where the model has not reached it.
+fn measure(
+    specimen: &Specimen,
+    model: &ModelSeries,
+    (index, step): (usize, usize),
+    positions: &[Position],
+) -> Option<State> {
     let wanted = &specimen.measurements;
     let deformed: Deformed = model.deformed(step)?;
-    let lines: Vec<Vec<[f64; 2]>> = wanted.lines.iter().map(LineCut::points).collect();
-    let probes = wanted.probes.iter().map(|probe| probe.at);
-    let points: Vec<[f64; 2]> = probes.chain(lines.concat()).collect();
-    let mut samples = deformed.sampled(specimen.problem.laws(), &points);
+    let mut samples = deformed.sampled(specimen.problem.laws(), positions);
     without_rounding(&mut samples);
-    // A line ends where the sheet does.
-    for (sample, point) in samples.iter_mut().zip(&points).skip(wanted.probes.len()) {
-        *sample = sample.filter(|_| model.mesh.outside(*point) < ON_THE_EDGE);
-    }
     let mut samples = samples.into_iter();
     let u = model.states[step].displacement;
     let lengths = wanted
@@ -289,16 +306,14 @@ fn measure(specimen: &Specimen, model: &ModelSeries, index: usize, step: usize) 
         model: index,
         step,
         probes: samples.by_ref().take(wanted.probes.len()).collect(),
-        lines: lines
+        lines: wanted
+            .lines
             .iter()
-            .map(|line| samples.by_ref().take(line.len()).collect())
+            .map(|line| samples.by_ref().take(line.count).collect())
             .collect(),
         lengths: lengths.collect(),
     })
 }
-
-/// How far outside of its nearest cell a point counts as on the edge, in sizes of the cell.
-const ON_THE_EDGE: f64 = 1e-9;
 
 /// Values that are rounding beside others of their dimension are none.
 fn without_rounding(samples: &mut [Sample]) {
