@@ -28,6 +28,9 @@ use sheets::{STRIP_WITH_HOLE, held, named};
 /// Standard deviation of the markers' displacements in mm.
 const NOISE: f64 = 0.003;
 
+/// The number of frames.
+const FRAMES: usize = 10;
+
 /// Radius of the hole in mm.
 const RADIUS: f64 = 8.0;
 
@@ -72,10 +75,10 @@ const COMMANDS: [[&str; 2]; 13] = [
     ],
 ];
 
-/// The strip with a hole in equilibrium.
+/// The strip with a hole in equilibrium, on its way to the last load factor.
 struct Truth {
     mesh: Mesh,
-    displacement: Vec<f64>,
+    displacements: Vec<Vec<f64>>,
     force: f64,
 }
 
@@ -91,19 +94,23 @@ impl Truth {
         let mesh = STRIP_WITH_HOLE.mesh(32, CellShape::Quad9);
         let energy = problem.finite_elements(&mesh);
         let model = problem.on(&mesh, &energy).expect("a problem");
-        let states = model.solve(&[0.5, 1.0], NewtonSettings::default(), &|_| ());
-        let last = states.expect("an equilibrium").remove(1);
-        let force = model.reaction(&last, "right")[0];
-        let displacement = last.displacement;
+        let factors: Vec<f64> = (1..=FRAMES)
+            .map(|frame| frame as f64 / FRAMES as f64)
+            .collect();
+        let states = model.solve(&factors, NewtonSettings::default(), &|_| ());
+        let states = states.expect("equilibria");
+        let force = model.reaction(&states[FRAMES - 1], "right")[0];
+        let displacements = states.into_iter().map(|state| state.displacement);
+        let displacements = displacements.collect();
         drop(model);
         Self {
-            displacement,
+            displacements,
             force,
             mesh,
         }
     }
 
-    /// So many markers in so many frames, some of them with gross errors.
+    /// So many markers in so many frames, the last ones, some of the markers with gross errors.
     fn write(&self, file: &Path, count: usize, frames: usize, gross: usize) {
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
         let mut out = BufWriter::new(File::create(file).expect("a file"));
@@ -113,7 +120,7 @@ impl Truth {
         let lines = [0, 1].map(|axis| ((high[axis] - low[axis]) / spacing) as usize);
         let middle = [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0);
         for frame in 1..=frames {
-            let share = frame as f64 / frames as f64;
+            let displacement = &self.displacements[FRAMES - frames + frame - 1];
             for number in 0..lines[0] * lines[1] {
                 let at = [number / lines[1], number % lines[1]];
                 let place = [0, 1].map(|axis| low[axis] + spacing * (at[axis] as f64 + 0.5));
@@ -125,10 +132,10 @@ impl Truth {
                 } else {
                     0.0
                 };
-                let u = self.mesh.displacement_at(&self.displacement, place);
+                let u = self.mesh.displacement_at(displacement, place);
                 let u = u.map(|u| {
                     let noise: f64 = StandardNormal.sample(&mut random);
-                    share * u + NOISE * noise + wrong
+                    u + NOISE * noise + wrong
                 });
                 let ([x, y], [ux, uy]) = (place, u);
                 writeln!(out, "{frame},{x:.5},{y:.5},{ux:.6},{uy:.6}").expect("written");
@@ -183,7 +190,7 @@ fn main() {
         ("630.csv", 630, 1, 0),
         ("1441.csv", 1_441, 1, 0),
         ("gross.csv", 3_400, 1, 60),
-        ("frames.csv", 5_000, 10, 0),
+        ("frames.csv", 5_000, FRAMES, 0),
         ("100000.csv", 100_000, 1, 0),
     ] {
         truth.write(&at(name), count, frames, gross);
