@@ -72,6 +72,14 @@ class StudyInMemory:
             return
         super().__setattr__(name, value)
 
+    def _unit_of(self, key: str) -> str:
+        """The unit that a plain number of a key is in; empty where it needs none, or where it is not known."""
+        section, _, name = key.partition(".")
+        if section == "material" and name in self.material.parameters:
+            return self.material.parameters[name].unit.strip("–")
+        is_dimension = section == self._section and isinstance(self._dimensions().get(name), str) and name not in TEXTS
+        return _unit(name) if is_dimension else ""
+
     def _dimensions(self) -> dict[str, Any]:
         sections: dict[str, Any] = self.__dict__.get("_sections", {})
         found: dict[str, Any] = sections.get(self._section, {})

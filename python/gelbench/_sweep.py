@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -34,11 +34,19 @@ Points: TypeAlias = "Mapping[str, ArrayLike] | pandas.DataFrame"
 Drawing: TypeAlias = Literal["sobol", "random"]
 
 
-def _word(value: Any, key: str) -> str:
-    """One value as a text, as in a study."""
+UnitOf: TypeAlias = "Callable[[str], str]"
+"""The unit that plain numbers of a key are in; empty where they need none, or where it is not known."""
+
+
+def _no_unit(_: str) -> str:
+    return ""
+
+
+def _word(value: Any, key: str, unit: str = "") -> str:
+    """One value as a text, as in a study; a plain number is in the unit."""
     text = scalar(value)
     if text is not None:
-        return text
+        return f"{text} {unit}".rstrip()
     if isinstance(value, SupportsUnits):
         return f"{float(value.magnitude)!r} {_unit(value)}".rstrip()
     if isinstance(value, (str, os.PathLike)):
@@ -59,19 +67,19 @@ def _refuse_masked(values: Any, key: str) -> None:
     refuse_masked(values.magnitude if isinstance(values, SupportsUnits) else values, key)
 
 
-def _varied(parameters: Mapping[str, Values] | None) -> list[tuple[str, str | list[str]]]:
+def _varied(parameters: Mapping[str, Values] | None, unit_of: UnitOf = _no_unit) -> list[tuple[str, str | list[str]]]:
     def of(key: str, values: Any) -> str | list[str]:
         if isinstance(values, str):
             return values
         if _is_single(values):
-            return [_word(values, key)]
+            return [_word(values, key, unit_of(key))]
         _refuse_masked(values, f"parameters.{key}")
-        return [_word(value, key) for value in values]
+        return [_word(value, key, unit_of(key)) for value in values]
 
     return [(key, of(key, values)) for key, values in (parameters or {}).items()]
 
 
-def _columns(points: Points | None) -> list[tuple[str, list[str]]] | None:
+def _columns(points: Points | None, unit_of: UnitOf) -> list[tuple[str, list[str]]] | None:
     if points is None:
         return None
     found: list[tuple[str, list[str]]] = []
@@ -84,6 +92,8 @@ def _columns(points: Points | None) -> list[tuple[str, list[str]]] | None:
                 name = f"{name} [{unit}]" if unit else name
             own = converted(own, name.rpartition("[")[2].rstrip("]") if name.endswith("]") else "", f"points.{name}")
         values: Iterable[Any] = np.asarray(own).ravel().tolist()
+        if unit_of(name) and all(isinstance(value, (int, float)) for value in values):
+            name = f"{name} [{unit_of(name)}]"
         found.append((name, [_word(value, name) for value in values]))
     return found
 
@@ -159,8 +169,10 @@ class SweepPlan:
     ) -> None:
         files: dict[str, bytes] = {}
         read: list[str] = []
+        unit_of: UnitOf = _no_unit
         if isinstance(study, (Plate, Specimen)):
             path, text, files = study._in_memory(factors)
+            unit_of = study._unit_of
         else:
             if factors is not None:
                 raise fault("factors", "a study file states its own", "vary its keys, such as load.stretches.0")
@@ -174,7 +186,7 @@ class SweepPlan:
             name = os.path.abspath(os.fspath(fit))
             fitted = (name, _core.text_of_file(name))
             read.append(name)
-        varied, columns = _varied(parameters), _columns(points)
+        varied, columns = _varied(parameters, unit_of), _columns(points, unit_of)
         samples = None if samples is None else whole(samples, "samples", 1)
         seed = whole(seed, "seed")
         self._inputs = read
@@ -269,7 +281,8 @@ def sweep(
         Values by keys, whose parts have dots between them: ``plate.thickness``, ``material.c10``, ``load.stretches.0``. A text is
         what stands behind ``--vary KEY=``: ``"0.04..0.06 MPa:20"`` a grid, ``"1 mm,2 mm"`` values, ``"45..55 mm"`` a uniform and
         ``"0.05+-0.002 MPa"`` a normal distribution. A list or an array has the values themselves, with units where the study has
-        them: ``["1 mm", "2 mm"]``, or quantities of pint. Every combination is run.
+        them: ``["1 mm", "2 mm"]``, or quantities of pint; plain numbers for a plate or a specimen are in mm, rad and the units of its
+        material's parameters. Every combination is run.
     points : mapping or DataFrame, optional
         Points of one's own, such as those of SALib, in place of drawn ones: columns by keys with their units,
         ``{"plate.width [mm]": widths}``.

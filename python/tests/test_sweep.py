@@ -181,6 +181,14 @@ def test_what_is_amiss_is_told(study, arguments, expected):
         gb.sweep(study, **arguments)
 
 
+def test_plain_numbers_are_in_the_units_of_the_sheet():
+    plate = small_plate("neo-hooke")
+    plain = gb.SweepPlan(plate, {"plate.width": [45, 50], "material.c10": [0.05]})
+    assert list(plain.settings) == ["plate.width [mm]", "material.c10 [MPa]"]
+    points = gb.SweepPlan(plate, points={"plate.width": [45.0, 50.0], "material.c10": [0.05, 0.06]})
+    assert list(points.settings) == ["plate.width [mm]", "material.c10 [MPa]"] and len(points) == 2
+
+
 def test_quantities_of_pint_are_values(study):
     units = pytest.importorskip("pint").UnitRegistry()
     plan = gb.SweepPlan(study, {"plate.width": [45 * units.mm, 50 * units.mm], "material.c10": [0.05 * units.MPa]})
