@@ -2,10 +2,29 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 __all__ = ["Fault", "InputError", "SolveError", "WriteError"]
+
+
+OPTION = re.compile(r"--([a-z][a-z-]*)(?:[ =](\"[^\"]*\"|[^\s,;)`]+))?")
+PROSE = ("and", "as", "for", "if", "in", "is", "of", "or", "to", "where", "with")
+
+
+def _argument(option: re.Match[str]) -> str:
+    name, value = option[1].replace("-", "_"), option[2]
+    if value is None or value in PROSE:
+        return f"{name}=" + (f" {value}" if value else "")
+    return f"{name}={value}" if re.fullmatch(r'".*"|[-+.\de]+', value) else f'{name}="{value}"'
+
+
+def in_python(text: str) -> str:
+    """A message with arguments in place of the command's options; commands, which stand in backticks, are left as they are."""
+    parts = text.split("`")
+    parts[::2] = [OPTION.sub(_argument, part) for part in parts[::2]]
+    return "`".join(parts)
 
 
 class Fault(NamedTuple):
@@ -42,8 +61,11 @@ class InputError(ValueError):
     faults: tuple[Fault, ...]
 
     def __init__(self, message: str, faults: Sequence[Fault] = ()) -> None:
-        super().__init__(message)
-        self.faults = tuple(faults) or (Fault(message, text=message),)
+        super().__init__(in_python(message))
+        translated = (
+            one._replace(message=in_python(one.message), hint=one.hint and in_python(one.hint), text=in_python(one.text)) for one in faults
+        )
+        self.faults = tuple(translated) or (Fault(str(self), text=str(self)),)
 
 
 class SolveError(RuntimeError):

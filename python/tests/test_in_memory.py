@@ -256,3 +256,13 @@ def test_what_a_state_has_a_solution_has_too():
     own = {name for name in vars(gb.State) if not name.startswith("_")} - {"factor", "solution"}
     assert own <= {name for name in vars(gb.Solution)}
     assert solution.energy == solution.last.energy and set(solution.groups) == {"left", "right"}
+
+
+def test_messages_name_arguments_where_the_command_names_options():
+    stretch = np.linspace(1.0, 2.0, 12)
+    with pytest.raises(gb.InputError) as caught:
+        gb.fit({"force [N]": stretch, "displacement [mm]": stretch}, "yeoh", test="uniaxial")
+    assert 'give length="2 mm"' in str(caught.value) and "--" not in str(caught.value)
+    assert all("--" not in f"{fault} {fault.hint}" for fault in caught.value.faults)
+    with pytest.raises(gb.InputError, match='give test="uniaxial"'):
+        gb.fit({"stretch": stretch, "nominal stress [MPa]": stretch}, "yeoh")
