@@ -301,3 +301,14 @@ def test_images_become_stress():
 def test_images_and_lines_that_are_none_are_refused(call, words):
     with pytest.raises(gb.InputError, match=words):
         call(_pattern())
+
+
+def test_the_edge_of_a_mask_is_that_of_the_specimen(root):
+    images = [root / "examples/gel_0.png", root / "examples/gel_1.png"]
+    known = dict(images=images, unit="0.05 mm", material="pva-10", thickness=2, free=["top", "bottom"])
+    # 420 × 240 pixels, y up from the centre of the lower left one; the edge of examples/gel_edge.csv.
+    y, x = 0.05 * np.mgrid[239:-1:-1, 0:420]
+    mask = (x > 1.0) & (x < 16.0) & (y > 1.95) & (y < 9.95)
+    outlined = gb.correct(outline=root / "examples/gel_edge.csv", **known)
+    masked = gb.correct(mask=mask, **known)
+    assert masked.explained and masked.forces["right"][0].value == pytest.approx(outlined.forces["right"][0].value, rel=1e-3)

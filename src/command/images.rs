@@ -30,7 +30,7 @@ pub struct ImageOptions {
     /// The displacement in a subset: with its gradient, or with its second derivatives too
     #[arg(long, value_parser = one_of(&Order::NAMES), default_value = "affine")]
     subset_shape: Order,
-    /// An image of the specimen's region, white on black
+    /// An image of the specimen's region, white on black; without an outline or a mesh its edge is that of the specimen
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
 }

@@ -98,7 +98,7 @@ fn the_models_of_two_strips_in_parallel_carry_the_sum_of_their_forces() {
             "{model}"
         );
     }
-    assert!(folder.path().join("out/mesh_material.png").exists());
+    assert!(folder.path().join("out/small_material.png").exists());
 }
 
 #[test]

@@ -18,6 +18,7 @@
 //! (2009) for the order in which points are followed.
 
 mod defects;
+mod edge;
 mod filter;
 mod gradient;
 mod grey;

@@ -6,6 +6,7 @@ use super::edge_place::{EdgePlace, GIVE_EDGE, is_beside_grid, no_mesh};
 use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
+use crate::images::{ImageFile, Region};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, import};
 use crate::units::decimals;
@@ -87,21 +88,57 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
             whole(mesh, "of the field")?;
             Ok(of_field(mesh))
         }
-        (MeshSource::Data, None) => of_markers(request, field),
+        (MeshSource::Data, None) => match &request.images.mask {
+            Some(mask) => in_mask(request, mask, field),
+            None => of_markers(request, field),
+        },
     }
 }
 
 /// A mesh inside the lines of a table.
 fn in_outline(request: &Request, path: &Path, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
     let lines = read_lines(path, request.reading.unit)?;
-    let outline = Outline::of_lines(lines).map_err(|reason| {
-        let hint = "give the corners of each closed line in order, in columns x [mm], y [mm], line";
-        Error::input(format!("{}: {reason}", path.display()), hint)
-    })?;
+    let hint = "give the corners of each closed line in order, in columns x [mm], y [mm], line";
+    inside(request, lines, ("outline of", path, hint), field)
+}
+
+/// A mesh inside the edge of a mask.
+fn in_mask(
+    request: &Request,
+    mask: &ImageFile,
+    field: &MarkerFiles,
+) -> Result<SpecimenMesh, Error> {
+    let image = mask.read()?;
+    let lines = Region::of_mask(&image, image.size())?.edge();
+    let pixel = request.reading.unit.unwrap_or(f64::NAN);
+    let up = (image.size()[1] - 1) as f64;
+    let in_mm = |line: Vec<[f64; 2]>| {
+        let places = line.into_iter();
+        places.map(|[x, y]| [pixel * x, pixel * (up - y)]).collect()
+    };
+    let lines = lines.into_iter().map(in_mm).collect();
+    let hint = "draw one specimen white on black, with an edge that does not touch itself";
+    inside(
+        request,
+        lines,
+        ("edge of the mask", &mask.path, hint),
+        field,
+    )
+}
+
+/// A mesh inside closed lines in mm of a file, with what it has and a remedy.
+fn inside(
+    request: &Request,
+    lines: Vec<Vec<[f64; 2]>>,
+    (what, path, hint): (&str, &Path, &str),
+    field: &MarkerFiles,
+) -> Result<SpecimenMesh, Error> {
+    let outline = Outline::of_lines(lines)
+        .map_err(|reason| Error::input(format!("{}: {reason}", path.display()), hint))?;
     let markers = field.series.places().len() as f64;
     let spacing = (outline.area() / markers).sqrt();
     let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
-    let origin = format!("made inside the outline of {}", path.display());
+    let origin = format!("made inside the {what} {}", path.display());
     Ok(SpecimenMesh {
         cell_size: Some(size),
         ..SpecimenMesh::known(mesh, origin)
