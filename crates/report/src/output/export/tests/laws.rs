@@ -59,7 +59,7 @@ fn deviation(card: &Card, energy: &dyn Fn(&Sheet) -> f64) -> f64 {
 }
 
 /// The words of Abaqus, CalculiX and FEBio for every law of the registry; `None` where the code lacks it.
-const WORDS: [(&str, [Option<&str>; 3]); 29] = [
+const WORDS: [(&str, [Option<&str>; 3]); 30] = [
     (
         "neo-hooke",
         [Some("NEO HOOKE"), Some("NEO HOOKE"), Some("Mooney-Rivlin")],
@@ -110,6 +110,7 @@ const WORDS: [(&str, [Option<&str>; 3]); 29] = [
     ("fung-demiray", [Some("MARLOW"), None, None]),
     ("veronda-westmann", [None, None, Some("Veronda-Westmann")]),
     ("marlow-exponential", [Some("MARLOW"), None, None]),
+    ("energy", [None; 3]),
     ("marlow-table", [Some("MARLOW"), None, None]),
     (
         "holzapfel-gasser-ogden",
