@@ -42,7 +42,7 @@ mod written;
 
 pub use chosen::{
     ChosenColumns, ColumnNames, ColumnRole, FoundColumns, MACHINE_DISPLACEMENTS, MACHINE_FORCES,
-    TIMES, column_named, meaning,
+    TIMES, column_meaning, column_named, meaning,
 };
 pub use columns::{Column, is_pixel, plain_name};
 pub use comments::comments;

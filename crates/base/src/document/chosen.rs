@@ -20,6 +20,17 @@ pub fn meaning<R: Copy>(names: &ColumnNames<R>, name: &str) -> Option<R> {
     names.iter().find(is_among).map(|(meaning, _)| *meaning)
 }
 
+/// The first column of a table whose name has a meaning, by the order of the names.
+pub fn column_meaning<R: Copy + PartialEq>(
+    names: &ColumnNames<R>,
+    meaning: R,
+    table: &Table,
+) -> Option<usize> {
+    let names = names.iter().filter(|(known, _)| *known == meaning);
+    let mut names = names.flat_map(|(_, names)| names.split(' '));
+    names.find_map(|name| table.column(name))
+}
+
 /// Names that people and testing machines give to the time.
 pub const TIMES: &str =
     "time t step_time elapsed_time total_time test_time running_time prüfzeit zeit temps 时间";

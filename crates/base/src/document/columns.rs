@@ -2,7 +2,7 @@
 
 use super::decimals::is_number;
 use super::lines::is_name;
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, QuantityFault};
 
 /// A column's name and unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -60,6 +60,18 @@ impl Column {
         if self.unit.is_none() {
             self.head = format!("{} [{unit}]", self.head);
             self.unit = Some(spelled(unit));
+        }
+    }
+
+    /// The factor from its unit to the internal one; a ratio needs no unit.
+    ///
+    /// # Errors
+    /// [`QuantityFault`] where the unit is missing or none of the dimension.
+    pub fn factor(&self, dimension: Dimension) -> Result<f64, QuantityFault> {
+        match (self.unit.as_deref(), dimension) {
+            (None, Dimension::Ratio) => Ok(1.0),
+            (None, _) => Err(QuantityFault::MissingUnit),
+            (Some(unit), _) => units::factor(unit, dimension),
         }
     }
 

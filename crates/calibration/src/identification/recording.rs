@@ -5,10 +5,11 @@ use std::path::Path;
 
 use crate::document::{
     ColumnNames, Faulty, Head, MACHINE_DISPLACEMENTS, MACHINE_FORCES, Statements, TIMES, Table,
+    column_meaning,
 };
 use crate::error::{Diagnostic, Error};
 use crate::statistics::median;
-use crate::units::{self, Dimension, QuantityFault};
+use crate::units::{Dimension, QuantityFault};
 
 /// Force and motion at increasing instants.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,9 +69,7 @@ impl Signal {
 
     /// Its column in a table.
     fn column(self, table: &Table) -> Option<usize> {
-        let names = NAMES.iter().filter(|(signal, _)| *signal == self);
-        let mut names = names.flat_map(|(_, names)| names.split(' '));
-        names.find_map(|name| table.column(name))
+        column_meaning(NAMES, self, table)
     }
 }
 
@@ -193,12 +192,7 @@ impl Reader<'_> {
         if let Err(Error::Input(faults)) = self.table.check_numbers([index], hint) {
             self.faults.extend(faults);
         }
-        let factor = match (self.table.columns[index].unit.as_deref(), dimension) {
-            (None, Dimension::Ratio) => Ok(1.0),
-            (None, _) => Err(QuantityFault::MissingUnit),
-            (Some(unit), _) => units::factor(unit, dimension),
-        };
-        match factor {
+        match self.table.columns[index].factor(dimension) {
             Ok(factor) => {
                 let rows = self.table.rows.iter();
                 rows.map(|(row, _)| factor * row[index]).collect()

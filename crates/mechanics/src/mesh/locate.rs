@@ -34,7 +34,16 @@ impl Mesh {
 
     /// How far a point lies outside of the mesh, in sizes of its nearest cell; zero inside.
     pub fn outside(&self, point: [f64; 2]) -> f64 {
-        let (cell, local) = self.locate(point);
+        self.outside_of_cell(self.locate(point))
+    }
+
+    /// The same as [`Self::locate`]; `None` where the point lies farther outside than so many sizes of its nearest cell.
+    pub fn locate_within(&self, point: [f64; 2], most: f64) -> Option<(usize, [f64; 2])> {
+        let nearest = self.locate(point);
+        (self.outside_of_cell(nearest) <= most).then_some(nearest)
+    }
+
+    fn outside_of_cell(&self, (cell, local): (usize, [f64; 2])) -> f64 {
         let shape = self.shape(cell);
         let size = if shape.is_triangle() { 1.0 } else { 2.0 };
         shape.outside(local) / size

@@ -138,11 +138,8 @@ impl DeformedSheet {
     }
 
     fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<Place, PointFault> {
-        if self.mesh.outside(point) <= ON_THE_EDGE {
-            Ok(self.mesh.locate(point))
-        } else {
-            Err(PointFault::Outside { x, y })
-        }
+        let located = self.mesh.locate_within(point, ON_THE_EDGE);
+        located.ok_or(PointFault::Outside { x, y })
     }
 }
 

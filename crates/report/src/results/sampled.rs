@@ -10,13 +10,10 @@ pub type Position = Option<(usize, [f64; 2])>;
 
 /// Where points at rest are in a mesh; a point may lie so far outside of its nearest cell, in sizes of the cell.
 pub fn positions(mesh: &Mesh, points: &[[f64; 2]], beyond: f64) -> Vec<Position> {
-    let position = |point: &[f64; 2]| {
-        let (cell, local) = mesh.locate(*point);
-        let shape = mesh.shape(cell);
-        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
-        (shape.outside(local) <= beyond * size).then_some((cell, local))
-    };
-    points.iter().map(position).collect()
+    let points = points.iter();
+    points
+        .map(|point| mesh.locate_within(*point, beyond))
+        .collect()
 }
 
 impl Deformed<'_> {
@@ -28,6 +25,9 @@ impl Deformed<'_> {
         laws: SheetLaws,
         positions: &[Position],
     ) -> Vec<Option<[f64; SheetField::NAMES.len()]>> {
+        if positions.is_empty() {
+            return Vec::new();
+        }
         let sheet = NodalSheet::new(laws, self.mesh, &self.fields, self.viscous);
         let displacement: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
         let sample = |position: &Position| {

@@ -7,10 +7,17 @@ use crate::mesh::{Mesh, Shape};
 use crate::problem::{GroupState, Solution};
 use crate::results::models::ModelStyle;
 use crate::results::{
-    Array, Block, Deformed, Figure, Gauge, Grid, Headline, LoadedSheet, Panel, Sheet,
+    Array, Block, Deformed, Figure, Gauge, Grid, Headline, LoadedSheet, Panel, Sheet, Stroke,
     ViscousStress, sheet_figures,
 };
 use crate::solve::State;
+
+/// The models in the order in which their lines are drawn, and how: the corrected field last, as rings around the others' markers.
+pub const DRAWN: [(ModelKind, Stroke); 3] = [
+    (ModelKind::FiniteElement, Stroke::Marked),
+    (ModelKind::MassSpring, Stroke::Marked),
+    (ModelKind::Corrected, Stroke::Ringed),
+];
 
 /// The states of one model.
 pub struct ModelSeries<'a> {

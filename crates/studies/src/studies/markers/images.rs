@@ -3,14 +3,14 @@
 use super::request::{MeshSource, Request};
 use crate::error::Error;
 use crate::markers::{MarkerFiles, read};
-use crate::studies::images::{ImageRequest, TrackedImages, are_images};
+use crate::studies::images::{ImageRequest, TrackedImages};
 
 /// The markers of files, or those of images that are followed, and these.
 ///
 /// # Errors
 /// As of [`read`] and [`ImageRequest::follow`].
 pub fn read_field(request: &Request) -> Result<(MarkerFiles, Option<TrackedImages>), Error> {
-    if request.images.in_memory.is_empty() && !are_images(&request.files) {
+    if !request.has_images() {
         return Ok((read(&request.files, &request.reading)?, None));
     }
     let images = ImageRequest {

@@ -7,7 +7,7 @@ use super::specimen_file::SpecimenFile;
 use crate::budget::Budget;
 use crate::markers::ReadSettings;
 use crate::mesh::{CellShape, MeshReading};
-use crate::studies::images::ImageSettings;
+use crate::studies::images::{ImageSettings, are_images};
 
 /// Where the mesh comes from.
 #[derive(Clone, Debug)]
@@ -47,6 +47,13 @@ pub struct Request {
     pub forces: Option<PathBuf>,
     /// What it may ask for.
     pub budget: Budget,
+}
+
+impl Request {
+    /// Whether the field is measured in images.
+    pub(super) fn has_images(&self) -> bool {
+        !self.images.in_memory.is_empty() || are_images(&self.files)
+    }
 }
 
 impl SpecimenFile {

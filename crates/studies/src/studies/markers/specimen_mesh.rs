@@ -89,8 +89,8 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
             Ok(of_field(mesh))
         }
         (MeshSource::Data, None) => match &request.images.mask {
-            Some(mask) => in_mask(request, mask, field),
-            None => of_markers(request, field),
+            Some(mask) if request.has_images() => in_mask(request, mask, field),
+            _ => of_markers(request, field),
         },
     }
 }

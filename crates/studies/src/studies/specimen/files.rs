@@ -2,7 +2,6 @@
 
 use super::forces;
 use super::history;
-use super::measured_curve;
 use super::measured_fields::MeasuredFields;
 use super::problem::Specimen;
 use super::results::measured::Quantity;
@@ -14,7 +13,7 @@ use crate::results::{
     SheetField, Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
 };
 use crate::studies::pictures::Shown;
-use crate::studies::series::{ModelSeries, stress_figures};
+use crate::studies::series::{DRAWN, ModelSeries, stress_figures};
 use crate::studies::{ModelKind, SPRINGS_TABLE};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
@@ -66,7 +65,7 @@ pub fn figures(
     for (what, chart) in charts {
         figures.extend(chart.map(|(caption, drawing)| figure(what, caption, drawing)));
     }
-    figures.extend(measured_curve::figure(specimen, models));
+    figures.extend(measured.curve());
     figures.extend(measured.figures(&steps));
     let lattice = &models.on_lattice.springs.mesh;
     let cells = mesh_outlines("Lattice", lattice);
@@ -178,17 +177,12 @@ fn chart_over_factors(
     y: &str,
     value: impl Fn(&[GroupState]) -> f64,
 ) -> LineChart {
-    let order = [
-        (ModelKind::FiniteElement, Stroke::Marked),
-        (ModelKind::MassSpring, Stroke::Marked),
-        (ModelKind::Corrected, Stroke::Ringed),
-    ];
     let line = |(kind, stroke): (ModelKind, Stroke)| {
         let model = models.series(kind);
         let points = over_factors(specimen, &model, &value);
         (points.len() > 1).then(|| Line::new(model.style.name, points, model.style.colour, stroke))
     };
-    let lines = order.into_iter().filter_map(line).collect();
+    let lines = DRAWN.into_iter().filter_map(line).collect();
     let x = Axis::linear(specimen.along.head());
     LineChart::new(title, x, Axis::linear(y), lines)
 }

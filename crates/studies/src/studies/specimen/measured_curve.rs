@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use super::measured_fields::{MeasuredFields, State};
 use super::measurements::{MeasuredCurve, Over};
 use super::problem::Specimen;
-use super::results::models::Models;
-use crate::document::{ColumnNames, MACHINE_DISPLACEMENTS, MACHINE_FORCES, Section, Table};
+use crate::document::{
+    ColumnNames, MACHINE_DISPLACEMENTS, MACHINE_FORCES, Section, Table, column_meaning,
+};
 use crate::error::{Error, suggestion};
-use crate::results::{Axis, Figure, Line, LineChart, Stroke, from_rest};
-use crate::studies::series::{ModelSeries, ModelState};
-use crate::units::{self, Dimension};
+use crate::results::{Axis, Figure, Line, LineChart, Stroke};
+use crate::units::Dimension;
 
 /// What a column has.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -77,11 +78,7 @@ pub(crate) fn read_measured_curve(
 
 /// What the force is over, and the points in internal units, stretches as λ − 1.
 fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
-    let column = |signal: Signal| {
-        let names = NAMES.iter().filter(|(known, _)| *known == signal);
-        let mut names = names.flat_map(|(_, names)| names.split(' '));
-        names.find_map(|name| table.column(name))
-    };
+    let column = |signal| column_meaning(NAMES, signal, table);
     let mut motions = [Signal::Displacement, Signal::Stretch, Signal::Strain].into_iter();
     let motion = motions.find_map(|signal| Some((signal, column(signal)?)));
     let (Some((signal, moved)), Some(force)) = (motion, column(Signal::Force)) else {
@@ -95,12 +92,9 @@ fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
     };
     let factors = [(moved, dimension), (force, Dimension::Force)].map(|(index, dimension)| {
         let column = &table.columns[index];
-        match (column.unit.as_deref(), dimension) {
-            (None, Dimension::Ratio) => Ok(1.0),
-            (unit, _) => units::factor(unit.unwrap_or_default(), dimension).map_err(|fault| {
-                table.refuse_columns(format!("the column `{}` {fault}", column.head()), HINT)
-            }),
-        }
+        column.factor(dimension).map_err(|fault| {
+            table.refuse_columns(format!("the column `{}` {fault}", column.head()), HINT)
+        })
     });
     let [scale, newtons] = factors;
     let (scale, newtons) = (scale?, newtons?);
@@ -126,83 +120,46 @@ pub(crate) fn check_extensometer(root: &Section, specimen: &Specimen) {
     }
 }
 
-/// The measured curve over those of the models; `None` where the study names none.
-pub fn figure(specimen: &Specimen, models: &Models) -> Option<Figure> {
-    let measured = specimen.measured_curve.as_ref()?;
-    let group = specimen
-        .groups()
-        .iter()
-        .position(|name| *name == specimen.group)?;
-    let axis = models.reference.measured.axis;
-    let percent = if measured.over == Over::Displacement {
-        1.0
-    } else {
-        100.0
-    };
-    let strokes = [Stroke::Marked, Stroke::Ringed, Stroke::Marked];
-    let lines = models
-        .all_series()
-        .into_iter()
-        .zip(strokes)
-        .map(|(model, stroke)| {
-            let points = model.states.iter().map(|state| {
-                let moved = moved(specimen, measured, &model, state, (group, axis));
-                [percent * moved, state.groups[group].force[axis]]
-            });
-            Line::new(
-                model.style.name,
-                from_rest(points),
-                model.style.colour,
-                stroke,
-            )
-        });
-    let points = measured
-        .points
-        .iter()
-        .map(|[moved, force]| [percent * moved, *force]);
-    let own = Line::new("measured", points, [120; 3], Stroke::Points);
-    let lines = [own]
-        .into_iter()
-        .chain(lines.filter(|line| line.points.len() > 1));
-    let along = ["x", "y"][axis];
-    let x = match &measured.over {
-        Over::Displacement => format!("displacement of {} along {along} [mm]", specimen.group),
-        Over::Extensometer(name) => format!("stretch of {name} [%]"),
-        Over::Length(_) => "stretch [%]".to_owned(),
-    };
-    let y = Axis::linear(&format!("force along {along} [N]"));
-    let title = format!("Measured and computed force of {}", specimen.group);
-    let chart = LineChart::new(title, Axis::linear(&x), y, lines.collect());
-    let caption = format!(
-        "The measured curve of {} over those of the models.",
-        measured.file
-    );
-    Some(Figure::new(
-        format!("{}_measured.png", specimen.name),
-        caption,
-        chart,
-    ))
-}
+impl MeasuredFields<'_> {
+    /// The measured curve over those of the models; `None` where the study names none.
+    pub(super) fn curve(&self) -> Option<Figure> {
+        let specimen = self.specimen;
+        let measured = specimen.measured_curve.as_ref()?;
+        let axis = self.force_axis();
+        let along = ["x", "y"][axis];
+        let (x, percent) = match &measured.over {
+            Over::Displacement => {
+                let group = &specimen.group;
+                (format!("displacement of {group} along {along} [mm]"), 1.0)
+            }
+            Over::Extensometer(name) => (format!("stretch of {name} [%]"), 100.0),
+            Over::Length(_) => ("stretch [%]".to_owned(), 100.0),
+        };
+        let points = measured.points.iter();
+        let points = points.map(|[moved, force]| [percent * moved, *force]);
+        let mut lines = vec![Line::new("measured", points, [120; 3], Stroke::Points)];
+        lines.extend(self.lines(|state| percent * self.moved(state, &measured.over, axis)));
+        let y = Axis::linear(&format!("force along {along} [N]"));
+        let title = format!("Measured and computed force of {}", specimen.group);
+        let chart = LineChart::new(title, Axis::linear(&x), y, lines);
+        let file = &measured.file;
+        let caption = format!("The measured curve of {file} over those of the models.");
+        let name = format!("{}_measured.png", specimen.name);
+        Some(Figure::new(name, caption, chart))
+    }
 
-/// How far a model has moved in a state, as the measured curve has it.
-fn moved(
-    specimen: &Specimen,
-    measured: &MeasuredCurve,
-    model: &ModelSeries,
-    state: &ModelState,
-    (group, axis): (usize, usize),
-) -> f64 {
-    let displacement = state.groups[group].displacement[axis];
-    match &measured.over {
-        Over::Displacement => displacement,
-        Over::Length(length) => displacement / length,
-        Over::Extensometer(name) => {
-            let mut all = specimen.measurements.extensometers.iter();
-            let own = all.find(|own| own.name == *name);
-            own.map_or(f64::NAN, |own| {
-                let [rest, now] = own.lengths(model.mesh, state.displacement);
-                now / rest - 1.0
-            })
+    /// How far a model has moved in a state, as the measured curve has it.
+    fn moved(&self, state: &State, over: &Over, axis: usize) -> f64 {
+        let displacement = self.group_state(state).displacement[axis];
+        match over {
+            Over::Displacement => displacement,
+            Over::Length(length) => displacement / length,
+            Over::Extensometer(name) => {
+                let mut all = self.specimen.measurements.extensometers.iter();
+                let index = all.position(|extensometer| extensometer.name == *name);
+                let lengths = index.and_then(|index| state.lengths.get(index));
+                lengths.map_or(f64::NAN, |[rest, now]| now / rest - 1.0)
+            }
         }
     }
 }

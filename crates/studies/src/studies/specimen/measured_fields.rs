@@ -1,34 +1,35 @@
 //! Tables and pictures of what a study measures within its sheet.
 
-use super::measurements::{Extensometer, LineCut};
+use super::measurements::{Extensometer, LineCut, Measurements};
 use super::problem::Specimen;
 use super::results::models::Models;
 use crate::document::write_records;
+use crate::problem::GroupState;
 use crate::results::{
     Axis, Content, Deformed, Drawing, Figure, Line, LineChart, PALETTE, Position, SheetField,
     Stroke, from_rest, positions,
 };
 use crate::studies::file_stem;
-use crate::studies::series::ModelSeries;
+use crate::studies::series::{DRAWN, ModelSeries};
 use crate::units::Dimension;
 
 /// The values of all fields at a point, in the order of [`SheetField::NAMES`].
 type Sample = Option<[f64; SheetField::NAMES.len()]>;
 
 /// What is measured in one state of a model.
-struct State {
+pub(super) struct State {
     /// Which of the models it is.
     model: usize,
     step: usize,
     probes: Vec<Sample>,
     lines: Vec<Vec<Sample>>,
     /// The lengths of the extensometers at rest and now, in mm.
-    lengths: Vec<[f64; 2]>,
+    pub lengths: Vec<[f64; 2]>,
 }
 
 /// All measurements, with the models whose sheet they are taken from.
 pub struct MeasuredFields<'a> {
-    specimen: &'a Specimen,
+    pub(super) specimen: &'a Specimen,
     models: Vec<ModelSeries<'a>>,
     states: Vec<State>,
 }
@@ -38,7 +39,7 @@ impl<'a> MeasuredFields<'a> {
     pub fn of(specimen: &'a Specimen, models: &'a Models) -> Self {
         let series = Vec::from(models.all_series());
         let wanted = &specimen.measurements;
-        let is_empty = *wanted == super::measurements::Measurements::default();
+        let is_empty = *wanted == Measurements::default() && specimen.measured_curve.is_none();
         let count = |model: &ModelSeries| if is_empty { 0 } else { model.states.len() };
         let of_model = |(index, model): (usize, &ModelSeries)| {
             let count = count(model);
@@ -131,7 +132,7 @@ impl<'a> MeasuredFields<'a> {
     }
 
     /// The axis of the larger force of the measured group.
-    fn force_axis(&self) -> usize {
+    pub(super) fn force_axis(&self) -> usize {
         let group = self.group();
         let last = self.models.iter().filter_map(|model| model.states.last());
         let [x, y] = last.fold([0.0_f64; 2], |most, state| {
@@ -147,11 +148,26 @@ impl<'a> MeasuredFields<'a> {
         measured.unwrap_or(0)
     }
 
+    /// What happens at the measured group.
+    pub(super) fn group_state(&self, state: &State) -> &GroupState {
+        &self.models[state.model].states[state.step].groups[self.group()]
+    }
+
     /// The force of the measured group in N.
     fn force(&self, state: &State) -> f64 {
-        let groups = self.models[state.model].states[state.step].groups;
-        let group = groups.get(self.group());
-        group.map_or(f64::NAN, |own| own.force[self.force_axis()])
+        self.group_state(state).force[self.force_axis()]
+    }
+
+    /// The force of the measured group over something, of the models that are drawn.
+    pub(super) fn lines(&self, over: impl Fn(&State) -> f64) -> Vec<Line> {
+        let line = |(model, stroke): (usize, Stroke)| {
+            let states = self.states.iter().filter(|state| state.model == model);
+            let points = states.map(|state| [over(state), self.force(state)]);
+            let style = self.models[model].style;
+            Line::new(style.name, from_rest(points), style.colour, stroke)
+        };
+        let lines = self.shown().map(line);
+        lines.filter(|line| line.points.len() > 1).collect()
     }
 
     /// Curves of the fields that are drawn: at the probes over the path, along the lines at the steps that are shown; of the
@@ -221,13 +237,12 @@ impl<'a> MeasuredFields<'a> {
     /// The models that are drawn, by their numbers, the corrected field last.
     fn shown(&self) -> impl Iterator<Item = (usize, Stroke)> {
         let shown = &self.specimen.pictures.models;
-        let order = [
-            (2, Stroke::Marked),
-            (0, Stroke::Marked),
-            (1, Stroke::Ringed),
-        ];
-        let order = order.into_iter();
-        order.filter(|(model, _)| shown.contains(&self.models[*model].kind))
+        let order = DRAWN.into_iter();
+        let order = order.filter(|(kind, _)| shown.contains(kind));
+        order.filter_map(|(kind, stroke)| {
+            let model = self.models.iter().position(|model| model.kind == kind);
+            Some((model?, stroke))
+        })
     }
 
     fn line_chart(&self, index: usize, column: usize, step: usize) -> LineChart {
@@ -253,21 +268,18 @@ impl<'a> MeasuredFields<'a> {
         LineChart::new(title, x, Axis::linear(field.quantity()), lines)
     }
 
-    fn extensometer_chart(&self, index: usize, own: &Extensometer) -> LineChart {
-        let line = |(model, stroke): (usize, Stroke)| {
-            let states = self.states.iter().filter(|state| state.model == model);
-            let points = states.map(|state| {
-                let [rest, now] = state.lengths[index];
-                [100.0 * (now / rest - 1.0), self.force(state)]
-            });
-            let style = self.models[model].style;
-            Line::new(style.name, from_rest(points), style.colour, stroke)
-        };
-        let lines = self.shown().map(line).filter(|line| line.points.len() > 1);
-        let title = format!("Force of {} over {}", self.specimen.group, own.name);
+    fn extensometer_chart(&self, index: usize, extensometer: &Extensometer) -> LineChart {
+        let lines = self.lines(|state| {
+            let [rest, now] = state.lengths[index];
+            100.0 * (now / rest - 1.0)
+        });
+        let title = format!(
+            "Force of {} over {}",
+            self.specimen.group, extensometer.name
+        );
         let y = format!("force along {} [N]", ["x", "y"][self.force_axis()]);
         let x = Axis::linear("stretch of the extensometer [%]");
-        LineChart::new(title, x, Axis::linear(&y), lines.collect())
+        LineChart::new(title, x, Axis::linear(&y), lines)
     }
 }
 
