@@ -195,31 +195,35 @@ impl<L: BodyLaw> BodySheet<L> {
         std::array::from_fn(|lane| self.law.shape(area_change[lane], z[lane]))
     }
 
-    /// H₂₂ of a strip with free edges in plane stress, where λ₂ = λ₃ leave W_b = 0 alone: Newton's method for ln λ₂. `None` where it ends
-    /// elsewhere.
-    fn lateral(&self, strain: f64) -> Option<f64> {
+    /// The tension of a strip with free edges in plane stress, where λ₂ = λ₃ leave W_b = 0 alone: Newton's method for ln λ₂. `None` where it
+    /// ends elsewhere.
+    fn strip(&self, strain: f64) -> Option<TensionResponse> {
         const STEPS: usize = 30;
-        const LAST_STEP: f64 = 1e-12;
+        const LAST_STEP: f64 = 1e-9;
+        if self.plane == PlaneState::Strain {
+            return None;
+        }
         let along = strain.ln_1p();
         let mut across = -0.5 * along;
         for _ in 0..STEPS {
-            let area_change = (along + across).exp_m1();
-            // cosh x − 1 = 2 sinh² x/2
-            let z = 2.0 * (0.5 * (along - across)).sinh().powi(2);
+            let gradient = PlaneTensor::new(strain, 0.0, 0.0, across.exp_m1());
+            let kinematics = Kinematics::new(&gradient).ok()?;
+            let measures = Measures::new(&kinematics);
             let w = self.law.evaluate(BodyStretches {
-                area_change,
-                shape: self.law.shape(area_change, z),
+                area_change: kinematics.area_change,
+                shape: self.law.shape(kinematics.area_change, measures.z),
                 volume_root_change: ((along + 2.0 * across) / 3.0).exp_m1(),
             });
             let slope = w.ab + w.bb - w.zb * (along - across).sinh();
             let step = w.b / slope;
-            if self.plane == PlaneState::Strain || !step.is_finite() || slope <= 0.0 {
+            if !step.is_finite() || slope <= 0.0 || w.bb <= 0.0 {
                 return None;
             }
-            across -= step.clamp(-0.5, 0.5);
             if step.abs() <= LAST_STEP * across.abs() {
-                return Some(across.exp_m1());
+                let response = measures.response(&self.condensed(&w));
+                return curve::free_of_lateral_stress(&response);
             }
+            across -= step.clamp(-0.5, 0.5);
         }
         None
     }
@@ -276,8 +280,8 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
     }
 
     fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {
-        let lateral = self.lateral(strain);
-        curve::tension_near(&|kinematics| self.response(kinematics), strain, lateral)
+        let asymmetric = || curve::tension(&|kinematics| self.response(kinematics), strain);
+        self.strip(strain).unwrap_or_else(asymmetric)
     }
 
     fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {

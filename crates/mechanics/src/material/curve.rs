@@ -105,10 +105,8 @@ pub fn free_edges(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
     strain: f64,
 ) -> Option<PlaneTensor> {
-    // λ^−½ − 1
-    let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt());
-    let of = |scale: Scale| free_edges_by(response, [strain, lateral], scale);
-    of(Scale::Stretch).or_else(|| of(Scale::Logarithm))
+    let by = |scale: Scale| free_edges_by(response, strain, scale);
+    by(Scale::Stretch).or_else(|| by(Scale::Logarithm))
 }
 
 /// What Newton's method looks for across a strip.
@@ -149,66 +147,67 @@ impl Scale {
     }
 }
 
+/// A Newton step of this size relative to the strains is the last one: after it the error is of the order of its square.
+const LAST_STEP: f64 = 1e-9;
+
 fn free_edges_by(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
-    [strain, lateral]: [f64; 2],
+    strain: f64,
     scale: Scale,
 ) -> Option<PlaneTensor> {
+    // λ^−½ − 1
+    let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt());
     let mut h = Vector4::new(strain, 0.0, 0.0, lateral);
     let at = |h: &PlaneTensor| Some(response(&Kinematics::new(h).ok()?));
     let mut state = at(&h)?;
     for _ in 0..60 {
         let (residual, block) = scale.linearised(&h, &state);
         let step = block.try_inverse()? * residual;
-        if step.norm() <= 1e-15 * h.norm() {
-            return Some(h);
-        }
-        let shorter = |length: f64| {
+        let after = |length: f64| {
             let mut moved = h;
             moved[1] -= length * step[0];
             moved[3] = scale.moved(h[3], length * step[1]);
+            moved
+        };
+        if step.norm() <= LAST_STEP * h.norm() {
+            let last = after(1.0);
+            return Some(if last[3] > -1.0 { last } else { h });
+        }
+        let shorter = |length: f64| {
+            let moved = after(length);
             let tried = at(&moved)?;
             let smaller = scale.linearised(&moved, &tried).0.norm() < residual.norm();
             smaller.then_some((moved, tried))
         };
-        match (0..30).find_map(|halvings| shorter(0.5_f64.powi(halvings))) {
-            Some(moved) => (h, state) = moved,
-            // Only rounding is left, or the iteration cannot go on.
-            None => return (step.norm() <= 1e-9 * h.norm()).then_some(h),
-        }
+        (h, state) = (0..30).find_map(|halvings| shorter(0.5_f64.powi(halvings)))?;
     }
     None
 }
 
-/// The tension curve of a strip with free edges along the first axis, from the sheet's response: the slope is
-/// condensed over H₁₂ and H₂₂. NaN where the strip has no equilibrium.
+/// The tension curve of a strip with free edges along the first axis, from the sheet's response. NaN where the strip has no equilibrium.
 pub fn tension(response: &dyn Fn(&Kinematics) -> SheetResponse, strain: f64) -> TensionResponse {
-    tension_near(response, strain, None)
-}
-
-/// The same where H₂₂ of the strip may be known beforehand.
-pub fn tension_near(
-    response: &dyn Fn(&Kinematics) -> SheetResponse,
-    strain: f64,
-    lateral: Option<f64>,
-) -> TensionResponse {
-    let near = || free_edges_by(response, [strain, lateral?], Scale::Stretch);
     let condensed = || {
-        let free = near().or_else(|| free_edges(response, strain))?;
-        let state = response(&Kinematics::new(&free).ok()?);
-        let a = &state.tangent;
-        let block = Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]);
-        let coupling = Vector2::new(a[(1, 0)], a[(3, 0)]);
-        Some(TensionResponse {
-            energy: state.energy,
-            nominal_stress: state.first_piola_kirchhoff_stress[0],
-            slope: a[(0, 0)] - coupling.dot(&(block.try_inverse()? * coupling)),
-        })
+        let free = free_edges(response, strain)?;
+        free_of_lateral_stress(&response(&Kinematics::new(&free).ok()?))
     };
     condensed().unwrap_or(TensionResponse {
         energy: f64::NAN,
         nominal_stress: f64::NAN,
         slope: f64::NAN,
+    })
+}
+
+/// The tension response of a sheet near P₁₂ = P₂₂ = 0, condensed over H₁₂ and H₂₂: to the second order of these stresses, that at the
+/// state without them. `None` where it does not resist H₁₂ and H₂₂.
+pub fn free_of_lateral_stress(state: &SheetResponse) -> Option<TensionResponse> {
+    let (stress, a) = (&state.first_piola_kirchhoff_stress, &state.tangent);
+    let block = Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]);
+    let coupling = Vector2::new(a[(1, 0)], a[(3, 0)]);
+    let condensed = block.try_inverse()? * coupling;
+    Some(TensionResponse {
+        energy: state.energy,
+        nominal_stress: stress[0] - condensed.dot(&Vector2::new(stress[1], stress[3])),
+        slope: a[(0, 0)] - coupling.dot(&condensed),
     })
 }
 

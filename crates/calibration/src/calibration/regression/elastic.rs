@@ -223,12 +223,16 @@ impl Response for Elastic<'_> {
 
     fn stresses(&self, values: &[f64]) -> Vec<f64> {
         let law = self.law(values);
+        let mut stresses = vec![f64::NAN; self.points.len()];
         let pairs = self.points.iter().zip(&self.observations);
-        let stress = |(row, one): (&Row, &Observation)| {
+        for (stress, (row, one)) in stresses.iter_mut().zip(pairs) {
             let data = &self.tests[row.test];
-            data.stress_of(&*law, &self.moved(values, row.test, one))
-        };
-        let mut stresses: Vec<f64> = pairs.map(stress).collect();
+            *stress = data.stress_of(&*law, &self.moved(values, row.test, one));
+            if !stress.is_finite() {
+                // Values that are impossible at one observation are impossible.
+                break;
+            }
+        }
         if let Some(linear) = &self.linear {
             for (row, stress) in stresses.iter_mut().enumerate() {
                 *stress += linear.at(row, values);

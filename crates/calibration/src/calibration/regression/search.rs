@@ -65,7 +65,7 @@ impl Search<'_> {
         let minima = improved(&thinned, starts, self.bounds);
         let refined: Vec<Vec<f64>> = self
             .apart(&minima)
-            .into_iter()
+            .into_par_iter()
             .filter_map(|rough| self.refine(rough))
             .collect();
         let sum = |values: &Vec<f64>| sum_of_squares(self.misfit, values);
