@@ -117,6 +117,14 @@ impl<'a> Equations<'a> {
         self.energy.laws().of(cell)
     }
 
+    /// The number of all parameters.
+    pub fn parameter_count(&self) -> usize {
+        let law = self.task.knowledge.law.as_ref();
+        let law = law.map_or(0, |law| law.parameters().len());
+        let body = self.body.as_ref().map_or(0, |body| body.columns().len());
+        self.motion.parameters() + law + body
+    }
+
     /// A smooth field near the data, in equilibrium, and its trust of the markers.
     pub fn start(&mut self) -> Result<(SearchState, Vec<f64>), Error> {
         let points = self.task.observations.points();
@@ -135,8 +143,7 @@ impl<'a> Equations<'a> {
             if let Some(regressed) = &self.task.knowledge.law {
                 parameters.extend(regressed.start());
             }
-            let body = self.body.as_ref().map_or(0, |body| body.columns().len());
-            parameters.resize(parameters.len() + body, 0.0);
+            parameters.resize(self.parameter_count(), 0.0);
             let mut place = SearchState { parameters, field };
             match self.settle(&mut place, ON_THE_WAY) {
                 Ok(_) => {

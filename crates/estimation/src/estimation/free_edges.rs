@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::equations::Equations;
-use super::input::{Edge, EdgeCondition, Task, singular_corners};
+use super::input::{Edge, EdgeCondition, Knowledge, Physics, Task, singular_corners};
 use super::outcome::EdgeForce;
 use super::regression::weighted_square;
 use super::search::{MOST_STEPS, NearestField};
@@ -31,8 +31,24 @@ pub fn search<'a>(
     }
 }
 
+/// Where the physics is weighted, the search begins at the field in exact equilibrium: forces on the interior that are estimated far from
+/// the data stand for the way there.
 fn nearest<'a>(task: &Task<'a>, edges: &[Edge], most: usize) -> Result<NearestField<'a>, Error> {
-    Equations::new(task, edges)?.run(most)
+    let equations = Equations::new(task, edges)?;
+    if task.knowledge.physics == Physics::Weighted {
+        let knowledge = Knowledge {
+            physics: Physics::Exact,
+            ..task.knowledge.clone()
+        };
+        let exact = Task {
+            knowledge: &knowledge,
+            ..task.clone()
+        };
+        if let Ok(found) = Equations::new(&exact, edges)?.run(most) {
+            return equations.run_near(&found, most);
+        }
+    }
+    equations.run(most)
 }
 
 /// The same from a field with other edges, and anew where that leads to none.

@@ -129,6 +129,7 @@ impl<'a> Equations<'a> {
         let mut parameters = self.nearest_parameters(&found.field);
         let others = &found.parameters[found.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
+        parameters.resize(self.parameter_count(), 0.0);
         let mut place = SearchState {
             parameters,
             field: found.field.clone(),
