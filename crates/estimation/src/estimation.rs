@@ -105,6 +105,14 @@ fn estimate_with(
             knowledge,
         };
         let (nearest, edges) = free_edges::search(&task, edges.clone())?;
+        if nearest.ends_at_gross_errors() {
+            let markers = nearest.markers();
+            let ended = FieldEstimate {
+                markers,
+                ..FieldEstimate::default()
+            };
+            return Ok((ended, noise::OtherNoise::default()));
+        }
         let other = nearest.other_noise(&nearest.markers(), &edges);
         if other.is_none() {
             Ok((nearest.into_estimate(&edges)?, other))

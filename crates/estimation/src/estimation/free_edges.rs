@@ -26,6 +26,7 @@ pub fn search<'a>(
     edges: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     match nearest(task, &edges, MOST_STEPS) {
+        Ok(found) if found.ends_at_gross_errors() => Ok((found, edges)),
         Ok(found) => from_loaded(task, found, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }

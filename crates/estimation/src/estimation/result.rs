@@ -228,6 +228,14 @@ impl NearestField<'_> {
         })
     }
 
+    /// Whether gross errors make up the noise of markers that all have their weight, and the estimate is to end there.
+    pub(super) fn ends_at_gross_errors(&self) -> bool {
+        let knowledge = self.equations.task.knowledge;
+        knowledge.ends_at_gross_errors
+            && knowledge.robust == Robust::No
+            && MarkerEstimate::scatter_by_median(&self.markers()) < MarkerEstimate::GROSS_ERRORS
+    }
+
     pub(super) fn markers(&self) -> Vec<Option<MarkerEstimate>> {
         let observations = self.observations();
         let limit = chi_squared_limit(2.0, FALSE_ALARMS);

@@ -36,6 +36,9 @@ pub struct Knowledge {
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
+    /// Whether an estimate that gives all markers their weight ends where gross errors make up their noise, with nothing but the markers'
+    /// residuals: another weight is needed first.
+    pub ends_at_gross_errors: bool,
     /// Whether equilibrium is exact.
     pub physics: Physics,
     /// How far outside of the mesh free edges may lie, in mm, where only markers show the specimen's edge: the errors

@@ -9,7 +9,7 @@ use crate::estimation::input::{EdgeCondition, MeasuredForce};
 use crate::estimation::regression::Robust;
 use crate::estimation::uncertainty::ScaleChange;
 use crate::mesh::Mesh;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, robust_deviation};
 
 /// The field nearest to the markers.
 ///
@@ -198,6 +198,17 @@ pub struct MarkerEstimate {
     pub trust: f64,
     /// Whether normal noise would leave so large a residual at less than one marker in a thousand.
     pub outlier: bool,
+}
+
+impl MarkerEstimate {
+    /// The scatter by the median over that by squares below which gross errors make up the noise: 1 of normal noise, 0.8 of Laplace's.
+    pub const GROSS_ERRORS: f64 = 0.5;
+
+    /// The scatter of the standardised residuals by their median, over that of noise.
+    pub fn scatter_by_median(markers: &[Option<Self>]) -> f64 {
+        let markers = markers.iter().flatten();
+        robust_deviation(markers.map(|marker| marker.standardised_residual))
+    }
 }
 
 /// The smoothness of an edge along an axis.

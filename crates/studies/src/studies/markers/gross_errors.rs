@@ -12,17 +12,16 @@
 use super::MarkerStudy;
 use super::quantities::{outliers, rounding, used};
 use crate::error::Error;
-use crate::estimation::{Answer, FieldEstimate, Knowledge, Reason, Robust};
+use crate::estimation::{Answer, FieldEstimate, Knowledge, MarkerEstimate, Reason, Robust};
 use crate::markers::Marker;
-use crate::statistics::{nearest, robust_deviation};
+use crate::statistics::nearest;
 
 /// The largest share of gross errors among markers, wherever they lie; and where they are scattered.
 const MOST: f64 = 0.1;
 const MOST_SCATTERED: f64 = 0.45;
 
-/// The scatter by the median over that by squares below which many markers may be gross errors, and are: 1 of normal noise, 0.8 of Laplace's.
+/// The scatter by the median over that by squares below which many markers may be gross errors.
 const IN_DOUBT: f64 = 0.75;
-const HIDDEN: f64 = 0.5;
 
 /// Neighbours of a marker among which others like it are counted.
 const AROUND: usize = 4;
@@ -39,9 +38,15 @@ impl MarkerStudy {
         knowledge: Knowledge,
         solve: &dyn Fn(&Knowledge) -> Result<FieldEstimate, Error>,
     ) -> Result<FieldEstimate, Error> {
-        let found = solve(&knowledge);
+        let found = solve(&Knowledge {
+            ends_at_gross_errors: self.conditions.robust.is_none(),
+            ..knowledge.clone()
+        });
         let in_doubt = match &found {
-            Ok(found) => has_gross_errors(found) || scatter_by_median(found) < IN_DOUBT,
+            Ok(found) => {
+                has_gross_errors(found)
+                    || MarkerEstimate::scatter_by_median(&found.markers) < IN_DOUBT
+            }
             Err(fault) => matches!(fault, Error::Solve { .. }),
         };
         if self.conditions.robust.is_some() || !in_doubt {
@@ -49,11 +54,18 @@ impl MarkerStudy {
         }
         let robust = Knowledge {
             robust: Robust::Tukey,
-            ..knowledge
+            ..knowledge.clone()
         };
         match solve(&robust).ok().filter(has_gross_errors) {
             Some(without) if !has_many(&without) || are_scattered(markers, &without) => Ok(without),
-            without => found.map(|found| judged_beside(found, without)),
+            without => {
+                let has_ended = |found: &FieldEstimate| found.displacement.is_empty();
+                let complete = match found {
+                    Ok(found) if has_ended(&found) => solve(&knowledge),
+                    found => found,
+                };
+                complete.map(|found| judged_beside(found, without))
+            }
         }
     }
 }
@@ -84,12 +96,6 @@ fn has_gross_errors(estimate: &FieldEstimate) -> bool {
     used(estimate) as f64 * (-0.5 * largest * largest).exp() < CHANCE
 }
 
-/// The scatter of the standardised residuals by their median, over that of noise.
-fn scatter_by_median(estimate: &FieldEstimate) -> f64 {
-    let markers = estimate.markers.iter().flatten();
-    robust_deviation(markers.map(|marker| marker.standardised_residual))
-}
-
 /// Fewer degrees of freedom tell nothing of the shape of noise.
 const FEWEST: f64 = 20.0;
 
@@ -98,7 +104,7 @@ fn has_hidden(estimate: &FieldEstimate) -> bool {
     estimate.robust == Robust::No
         && estimate.degrees_of_freedom >= FEWEST
         && estimate.noise > rounding(estimate)
-        && scatter_by_median(estimate) < HIDDEN
+        && MarkerEstimate::scatter_by_median(&estimate.markers) < MarkerEstimate::GROSS_ERRORS
 }
 
 /// Whether outliers lie among the others as by chance: of the neighbours of one as many are outliers as of all markers, within three
@@ -131,7 +137,7 @@ pub(super) fn has_many(estimate: &FieldEstimate) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimation::{MarkerEstimate, Verdict};
+    use crate::estimation::Verdict;
 
     /// An estimate with an answer and markers of which a tenth is so many times as far off as the others.
     fn estimated(answer: Answer, far: f64) -> FieldEstimate {
