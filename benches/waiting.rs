@@ -123,8 +123,8 @@ impl Truth {
             let displacement = &self.displacements[FRAMES - frames + frame - 1];
             for number in 0..lines[0] * lines[1] {
                 let at = [number / lines[1], number % lines[1]];
-                let place = [0, 1].map(|axis| low[axis] + spacing * (at[axis] as f64 + 0.5));
-                if (place[0] - middle[0]).hypot(place[1] - middle[1]) < 1.02 * RADIUS {
+                let position = [0, 1].map(|axis| low[axis] + spacing * (at[axis] as f64 + 0.5));
+                if (position[0] - middle[0]).hypot(position[1] - middle[1]) < 1.02 * RADIUS {
                     continue;
                 }
                 let wrong = if number < gross {
@@ -132,12 +132,12 @@ impl Truth {
                 } else {
                     0.0
                 };
-                let u = self.mesh.displacement_at(displacement, place);
+                let u = self.mesh.displacement_at(displacement, position);
                 let u = u.map(|u| {
                     let noise: f64 = StandardNormal.sample(&mut random);
                     u + NOISE * noise + wrong
                 });
-                let ([x, y], [ux, uy]) = (place, u);
+                let ([x, y], [ux, uy]) = (position, u);
                 writeln!(out, "{frame},{x:.5},{y:.5},{ux:.6},{uy:.6}").expect("written");
             }
         }

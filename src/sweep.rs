@@ -101,8 +101,8 @@ impl Sweep {
             }
         }
         if let Some(points) = &self.points {
-            for (place, key) in points.keys().enumerate() {
-                let texts = points.rows().iter().map(|row| &row[place]);
+            for (position, key) in points.keys().enumerate() {
+                let texts = points.rows().iter().map(|row| &row[position]);
                 let texts = texts.filter(|value| value.value().is_none());
                 let mut known = HashSet::new();
                 let new = texts.filter(|value| known.insert(value.words()));
@@ -181,7 +181,7 @@ impl Sweep {
                 // Line numbers of a run's study differ from those of the file.
                 let named = |fault: Diagnostic| Diagnostic {
                     message: format!("run {}: {}", run.number, fault.message),
-                    place: None,
+                    position: None,
                     ..fault
                 };
                 Error::Input(faults.into_iter().map(named).collect())

@@ -68,9 +68,9 @@ pub fn relative_percent(grid: &Grid, field: &Field, expected: &Field, stretch: f
     let (mut distance, mut departure) = (0.0, 0.0);
     for (line, (x, length)) in grid.coordinates[0].iter().zip(&along).enumerate() {
         for (node, width) in across.iter().enumerate() {
-            let place = line * across.len() + node;
+            let position = line * across.len() + node;
             for (axis, affine) in [stretch * x, 0.0].into_iter().enumerate() {
-                let [u, v] = [field, expected].map(|field| field.components[axis][place]);
+                let [u, v] = [field, expected].map(|field| field.components[axis][position]);
                 distance += length * width * (u - v).powi(2);
                 departure += length * width * (v - affine).powi(2);
             }

@@ -45,7 +45,7 @@ impl Layout {
     pub fn grid(self, size: [f64; 2], side: usize) -> Grid {
         let elements = self.cells.map(|n| n / side);
         let boundaries = Grid::graded(size, elements, self.grading).coordinates;
-        Grid::new(boundaries.each_ref().map(|places| &places[..]), side)
+        Grid::new(boundaries.each_ref().map(|positions| &positions[..]), side)
     }
 }
 

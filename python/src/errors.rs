@@ -26,7 +26,7 @@ fn made(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             said.set_item("model", model)?;
             said.set_item("step", step)?;
             said.set_item("cause", fault.to_string())?;
-            said.set_item("cell", place(fault))?;
+            said.set_item("cell", position(fault))?;
             said.set_item("advice", fault.advice())?;
             let class = module.getattr("SolveError")?;
             class.call((error.to_string(),), Some(&said))?
@@ -37,28 +37,28 @@ fn made(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
 }
 
 fn described<'py>(class: &Bound<'py, PyAny>, fault: &Diagnostic) -> PyResult<Bound<'py, PyAny>> {
-    let place = fault.place.as_ref();
+    let position = fault.position.as_ref();
     class.call1((
         fault.message.as_str(),
         fault.key.as_str(),
         fault.hint.as_deref(),
-        place.map(|(source, _)| source.name.as_str()),
-        place.map(|(source, span)| source.line(span.start)),
+        position.map(|(source, _)| source.name.as_str()),
+        position.map(|(source, span)| source.line(span.start)),
         fault.severity == Severity::Warning,
         fault.to_string(),
     ))
 }
 
 /// Where a solver failed, in words.
-fn place(fault: &SolveFault) -> Option<&str> {
+fn position(fault: &SolveFault) -> Option<&str> {
     match fault {
-        SolveFault::OfMeasured(fault) => place(fault),
+        SolveFault::OfMeasured(fault) => position(fault),
         SolveFault::Inverted { element } | SolveFault::MaterialUnstable { element, .. } => {
             Some(element)
         }
-        SolveFault::LoadMaximum { place, .. }
-        | SolveFault::Buckling { place }
-        | SolveFault::UnstableAtRest { place } => Some(place),
+        SolveFault::LoadMaximum { position, .. }
+        | SolveFault::Buckling { position }
+        | SolveFault::UnstableAtRest { position } => Some(position),
         _ => None,
     }
 }

@@ -148,7 +148,7 @@ impl GivenMesh {
             }
         };
         let mut data = MeshData {
-            places: places
+            positions: places
                 .as_slice()?
                 .chunks_exact(3)
                 .map(|place| [place[0], place[1], place[2]])

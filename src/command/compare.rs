@@ -206,7 +206,7 @@ fn table(compared: &Comparison, differences: &[Difference], with_mesh: bool) -> 
             format!("{:.5}", own.largest)
         })
         .column("at (x, y) [mm]", |(_, own)| {
-            format!("({:.3}, {:.3})", own.place[0], own.place[1])
+            format!("({:.3}, {:.3})", own.position[0], own.position[1])
         })
         .block()
 }
@@ -240,7 +240,7 @@ fn write(
             }
             ExternalField::AtPoints(points) => {
                 let own = compared.sites.at(field);
-                let grid = Grid::scattered(&points.places, &own);
+                let grid = Grid::scattered(&points.positions, &own);
                 grid.with(Array::imported(&own, &points.displacement))
             }
         };
@@ -271,7 +271,7 @@ fn json(
             "mesh": field.mesh.describe(),
             "displacement_percent": difference.percent,
             "largest_difference_mm": difference.largest,
-            "at_mm": difference.place,
+            "at_mm": difference.position,
         })
     };
     let models = compared.models.fields.iter().zip(differences).map(model);

@@ -19,22 +19,22 @@ pub fn contained(work: impl FnOnce() -> u8) -> u8 {
 }
 
 fn tell(fault: &PanicHookInfo) {
-    let place = fault.location();
-    if place.is_some_and(|place| CAUGHT.iter().any(|part| place.file().contains(part))) {
+    let position = fault.location();
+    if position.is_some_and(|position| CAUGHT.iter().any(|part| position.file().contains(part))) {
         return;
     }
-    let place = place.map_or_else(String::new, |place| format!(" ({place})"));
-    let _ = write!(std::io::stderr(), "{}", message(fault.payload(), &place));
+    let position = position.map_or_else(String::new, |position| format!(" ({position})"));
+    let _ = write!(std::io::stderr(), "{}", message(fault.payload(), &position));
 }
 
-fn message(payload: &dyn Any, place: &str) -> String {
+fn message(payload: &dyn Any, position: &str) -> String {
     let texts = [
         payload.downcast_ref::<&str>().copied(),
         payload.downcast_ref::<String>().map(String::as_str),
     ];
     let what = texts.into_iter().flatten().next().unwrap_or("no reason");
     format!(
-        "error: gelbench met a fault of its own: {what}{place}\n  nothing of this run was written; results of earlier runs are unchanged\n  please \
+        "error: gelbench met a fault of its own: {what}{position}\n  nothing of this run was written; results of earlier runs are unchanged\n  please \
          report it with the command, its input files and the version: gelbench {}\n",
         env!("CARGO_PKG_VERSION")
     )

@@ -105,15 +105,15 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     let name = arguments
         .name
         .unwrap_or_else(|| usual_name(&arguments.data[0], &fit));
-    let place = arguments.output.join(&name);
-    let Some(stem) = Path::new(&name).file_name().and(place.file_name()) else {
+    let position = arguments.output.join(&name);
+    let Some(stem) = Path::new(&name).file_name().and(position.file_name()) else {
         return Err(Error::input(
             format!("--name \"{name}\" names no file"),
             "such as --name my-gel",
         ));
     };
     let stem = stem.to_string_lossy();
-    let folder = place.parent().unwrap_or(Path::new("."));
+    let folder = position.parent().unwrap_or(Path::new("."));
     let written = Written {
         fit: &fit,
         tests: &tests,

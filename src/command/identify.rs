@@ -248,7 +248,7 @@ fn curve(function: &Function, argument: &str) -> String {
         let _ = write!(text, "  {:>10}  95 % pointwise; band", "std error");
     }
     text.push('\n');
-    for x in function.places(PLACES) {
+    for x in function.positions(PLACES) {
         let estimate = function.at(x);
         let _ = write!(
             text,

@@ -29,7 +29,7 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) 
     if let Some(hint) = &finding.hint {
         report = report.with_help(hint.clone());
     }
-    let report = match &finding.place {
+    let report = match &finding.position {
         None => Report::new(report),
         // The key is not in the file: there is no line to show.
         Some((source, span)) if span.is_empty() => {

@@ -116,7 +116,7 @@ pub fn run(options: Options) -> Outcome {
     };
     let rows = folder.rows(&ended, &|| ())?;
     drop(progress);
-    let place = folder.results().path().to_owned();
+    let position = folder.results().path().to_owned();
     let (files, warnings) = folder.finish(&rows)?;
     warn(&warnings);
     warn_words(sweep::cautions(&rows));
@@ -134,8 +134,8 @@ pub fn run(options: Options) -> Outcome {
         "{} runs; {failures}{} files in {}\n{}",
         rows.len(),
         files.len(),
-        place.display(),
-        open_page(&place)
+        position.display(),
+        open_page(&position)
     ))?;
     Ok(u8::from(failed > 0))
 }

@@ -104,10 +104,10 @@ impl BaseStudy {
         }
         let mut file = None;
         if let Some(card) = card.filter(|card| card.is_varied) {
-            let name = NewValue::Text(card.place.to_string_lossy().into_owned());
+            let name = NewValue::Text(card.position.to_string_lossy().into_owned());
             let named = study.set(&["material", "card"], &name);
             named.map_err(|reason| no_place("material.card", reason))?;
-            let path = folder.join(&card.place);
+            let path = folder.join(&card.position);
             let plain = path.strip_prefix(".").unwrap_or(&path).to_owned();
             file = Some((plain, card.document.text().into_bytes()));
         }
@@ -125,7 +125,7 @@ fn no_place(key: &str, reason: String) -> Error {
 /// A card whose parameters are set.
 struct VariedCard {
     /// Relative to the study.
-    place: PathBuf,
+    position: PathBuf,
     card: Card,
     document: EditedDocument,
     is_varied: bool,
@@ -147,7 +147,7 @@ impl VariedCard {
             )
         })?;
         Ok(Self {
-            place: Path::new(name).with_file_name(CARD),
+            position: Path::new(name).with_file_name(CARD),
             card,
             document,
             is_varied: false,
@@ -173,7 +173,7 @@ impl VariedCard {
             _ => None,
         };
         let index = index.map(|index| index.to_string());
-        let place: &[&str] = match (parameter, &index) {
+        let position: &[&str] = match (parameter, &index) {
             ([key @ ("poisson_ratio" | "bulk_modulus")], _) => &["volume", key],
             ([key], _) => &["parameters", key],
             (["softening", key], _) => &["softening", key],
@@ -182,9 +182,9 @@ impl VariedCard {
         };
         let is_known = match *parameter {
             [key] => self.card.parameter(key).is_some(),
-            _ => self.document.holds(place),
+            _ => self.document.holds(position),
         };
-        let is_set = is_known && self.document.set(place, value).is_ok();
+        let is_set = is_known && self.document.set(position, value).is_ok();
         if is_set {
             // How it was fitted holds no longer.
             self.document.remove("fit");

@@ -106,9 +106,12 @@ impl<'a> SweepFolder<'a> {
     pub fn replaces(&self) -> Option<Diagnostic> {
         let other_study = self.results.replaces();
         other_study.or_else(|| {
-            let place = self.results.path();
-            has_another(self.sweep, &self.runs, place).then(|| {
-                let message = format!("{} contains another sweep: it is replaced", place.display());
+            let position = self.results.path();
+            has_another(self.sweep, &self.runs, position).then(|| {
+                let message = format!(
+                    "{} contains another sweep: it is replaced",
+                    position.display()
+                );
                 Diagnostic::warning("", message).hint(ANOTHER_FOLDER)
             })
         })

@@ -63,9 +63,9 @@ impl Points {
             named(fault.hint(Points::HINT))
         })?;
         let (head, lines) = (&records[0], &records[1..]);
-        let column = |place: usize| {
-            let values = lines.iter().map(|line| line[place].trim().to_owned());
-            (head[place].trim().to_owned(), values.collect())
+        let column = |position: usize| {
+            let values = lines.iter().map(|line| line[position].trim().to_owned());
+            (head[position].trim().to_owned(), values.collect())
         };
         let columns: Vec<_> = (0..head.len()).map(column).collect();
         Self::of_columns(&columns).map_err(named)

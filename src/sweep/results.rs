@@ -37,15 +37,15 @@ pub struct Statistics {
 /// All figures over all runs.
 pub fn statistics(rows: &[Row]) -> Vec<Statistics> {
     let names = names(rows);
-    let places: HashMap<&str, usize> = names
+    let positions: HashMap<&str, usize> = names
         .iter()
         .enumerate()
-        .map(|(place, name)| (*name, place))
+        .map(|(position, name)| (*name, position))
         .collect();
     let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); names.len()];
     for (index, row) in rows.iter().enumerate() {
         for (name, value) in &row.figures {
-            columns[places[name.as_str()]].push((index, *value));
+            columns[positions[name.as_str()]].push((index, *value));
         }
     }
     let pairs = names.iter().zip(&columns);

@@ -82,8 +82,10 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
         .collect();
     let row = |line: &Vec<String>| {
         let settings = line[1..].iter().zip(&units);
-        let own = figures.clone().filter(|place| !line[*place].is_empty());
-        let own = own.map(|place| Some((head[place].clone(), line[place].parse().ok()?)));
+        let own = figures
+            .clone()
+            .filter(|position| !line[*position].is_empty());
+        let own = own.map(|position| Some((head[position].clone(), line[position].parse().ok()?)));
         Some(Row {
             number: line[0].parse().ok()?,
             settings: settings.map(|(text, unit)| setting(text, unit)).collect(),

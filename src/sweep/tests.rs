@@ -358,8 +358,8 @@ fn every_run_is_in_one_part_and_parts_of_others_are_refused() {
 
 #[test]
 fn a_sweep_over_other_keys_or_values_goes_beside_the_one_that_is_there() {
-    let place = tempfile::TempDir::new().unwrap();
-    let output = place.path().join("out");
+    let position = tempfile::TempDir::new().unwrap();
+    let output = position.path().join("out");
     let open = |sweep: &Sweep, then: &dyn Fn(SweepFolder)| {
         then(SweepFolder::open(sweep, Share::Whole, &output, &[], None).unwrap());
     };
@@ -400,8 +400,8 @@ fn values_are_each_one_and_without_the_noise_of_their_last_digits() {
 #[test]
 fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
     use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-    let place = tempfile::TempDir::new().unwrap();
-    let output = place.path().join("out");
+    let position = tempfile::TempDir::new().unwrap();
+    let output = position.path().join("out");
     let sweep = sweep(&["plate.width=40..60 mm:6"], None);
     let told = std::sync::Mutex::new(Vec::new());
     let open = || SweepFolder::open(&sweep, Share::Whole, &output, &[], None).unwrap();

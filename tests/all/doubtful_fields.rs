@@ -249,7 +249,7 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let kept: Vec<bool> = (0..341).map(|_| random.random::<f64>() < 0.5).collect();
     let index = |[x, y]: [f64; 2]| 11 * (x / 5.0).round() as usize + (y / 5.0).round() as usize;
-    let half = second_frame(|place| kept[index(place)]);
+    let half = second_frame(|position| kept[index(position)]);
     // The outline cuts corners of the specimen there: its sides are not free.
     let (printed, found) = corrected(&half, &[], NOT_EXPLAINED);
     assert!(
@@ -282,7 +282,7 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
 #[test]
 fn a_gap_is_a_hole_whether_its_points_have_rows_or_not() {
     let in_gap = |[x, y]: [f64; 2]| (x - 75.0).abs() < 12.5 && (y - 25.0).abs() < 12.5;
-    let without_rows = second_frame(|place| !in_gap(place));
+    let without_rows = second_frame(|position| !in_gap(position));
     let emptied = |row: &str| match row.split(',').collect::<Vec<_>>()[..] {
         [x, y, ..] if in_gap([x, y].map(|at| at.parse().unwrap_or(f64::NAN))) => {
             format!("{x},{y},NaN,NaN\n")

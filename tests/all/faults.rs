@@ -55,8 +55,8 @@ fn goes_on(child: &mut Child, short: bool) -> bool {
 
 #[test]
 fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("o"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("o"));
     let sets = ["b", "a"].map(|study| {
         run(folder, &format!("run {study}.toml --output o"));
         (study, results(output))
@@ -93,8 +93,8 @@ fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
 /// A fit on a disk that takes the card, but not the picture.
 #[test]
 fn a_fit_is_written_as_a_whole_or_not_at_all() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("f"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("f"));
     let data = crate::common::root().join("materials/data/pva_10_uniaxial.csv");
     let data = data.display();
     let fit = |law: &str| format!("materials fit {data} --law {law} --name gel --output f");
@@ -118,8 +118,8 @@ fn a_fit_is_written_as_a_whole_or_not_at_all() {
 
 #[test]
 fn an_interrupt_ends_with_130_and_leaves_nothing_of_the_run() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("o"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("o"));
     let interrupted = |arguments: &str, ready: &dyn Fn() -> bool| {
         let child = start(folder, arguments);
         wait_for(ready);
@@ -139,8 +139,8 @@ fn an_interrupt_ends_with_130_and_leaves_nothing_of_the_run() {
 
 #[test]
 fn a_full_disk_leaves_the_results_before_it() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("o"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("o"));
     run(folder, "run a.toml --output o");
     let before = files(output);
     // Files end at 4 blocks, by a signal or, where it is ignored, by a fault of writing.
@@ -167,8 +167,8 @@ fn a_full_disk_leaves_the_results_before_it() {
 
 #[test]
 fn closed_outputs_are_no_reason_to_lose_results() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("o"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("o"));
     run(folder, "run a.toml --output whole");
     let whole = results(&folder.join("whole"));
     for closed in [">&- 2>&-", "| true", "2>/dev/full"] {
@@ -183,8 +183,8 @@ fn closed_outputs_are_no_reason_to_lose_results() {
 
 #[test]
 fn places_that_take_no_files_are_told_before_anything_is_computed() {
-    let place = workplace();
-    let folder = place.path();
+    let position = workplace();
+    let folder = position.path();
     let ended = run(folder, "run a.toml --output /proc/gelbench");
     assert_ends(&ended, 4, "cannot write /proc/gelbench");
     let closed = folder.join("closed");
@@ -200,8 +200,8 @@ fn places_that_take_no_files_are_told_before_anything_is_computed() {
 
 #[test]
 fn a_second_run_into_a_folder_is_refused_and_the_first_is_whole() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("o"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("o"));
     let first = start(folder, "run b.toml --output o");
     wait_for(|| partial(output));
     let second = run(folder, "run a.toml --output o");
@@ -213,8 +213,8 @@ fn a_second_run_into_a_folder_is_refused_and_the_first_is_whole() {
 
 #[test]
 fn a_folder_taken_away_during_a_run_is_told_or_made_anew() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("o"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("o"));
     let child = start(folder, "run b.toml --output o");
     wait_for(|| partial(output));
     let _ = fs::remove_dir_all(output);
@@ -231,8 +231,8 @@ fn a_folder_taken_away_during_a_run_is_told_or_made_anew() {
 /// A study on a mesh of an earlier run's results, and a `.pvd` whose parts would be replaced.
 #[test]
 fn no_command_writes_over_a_file_that_it_has_read() {
-    let place = workplace();
-    let folder = place.path();
+    let position = workplace();
+    let folder = position.path();
     run(folder, "run a.toml --output o");
     let own = "kind = \"specimen\"\ntitle = \"own\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"mesh\"\n\
         file = \"o/vtk/finite_element_001.vtu\"\nfile_unit = \"mm\"\nthickness = \"2 mm\"\n[path]\nfactors = [0.1]\n\

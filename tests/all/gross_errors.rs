@@ -60,9 +60,9 @@ fn gross_errors_that_keep_an_estimate_from_being_found_have_no_say() {
     // Without the rows along the edges, and with nothing said of any edge.
     let text = markers();
     let is_inside = |line: &&str| {
-        let place: Vec<&str> = line.split(',').collect();
+        let position: Vec<&str> = line.split(',').collect();
         !line.starts_with(|first: char| first.is_ascii_digit())
-            || (!["0", "150"].contains(&place[1]) && !["0", "50"].contains(&place[2]))
+            || (!["0", "150"].contains(&position[1]) && !["0", "50"].contains(&position[2]))
     };
     let inside: Vec<&str> = text.lines().filter(is_inside).collect();
     let (_, found) = corrected(&inside.join("\n"), &[]);

@@ -193,14 +193,14 @@ fn reports_and_terminals_begin_with_the_headline_of_every_kind_of_sheet() {
         };
         assert!(heads[0].starts_with("at ") && heads.len() == 4, "{heads:?}");
         let printed = results.summary();
-        let place = |words: &str| {
+        let position = |words: &str| {
             printed
                 .find(words)
                 .unwrap_or_else(|| panic!("{words}: {printed}"))
         };
         assert!(
-            place("force along x") < place("von Mises stress")
-                && place("von Mises stress") < place("checks passed")
+            position("force along x") < position("von Mises stress")
+                && position("von Mises stress") < position("checks passed")
         );
     }
 }

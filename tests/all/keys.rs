@@ -125,7 +125,7 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
     }
     let strip = fs::read_to_string(root().join(files[1].1)).unwrap();
     let schema = &schemas["specimen"];
-    for (from, to, place) in [
+    for (from, to, position) in [
         ("thickness =", "thicknes =", ".specimen.thicknes"),
         ("\"clamp\"", "\"clap\"", ".support[0].kind"),
         ("cells = 24", "cells = 24000", ".specimen.cells"),
@@ -137,7 +137,7 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
     ] {
         let found = wrong(schema, &strip.replacen(from, to, 1));
         assert!(
-            found.iter().any(|fault| fault.starts_with(place)),
+            found.iter().any(|fault| fault.starts_with(position)),
             "{to}: {found:?}"
         );
     }

@@ -68,12 +68,12 @@ fn a_squeezed_slender_strip_buckles_in_its_middle() {
     let euler = PI * PI / 3.0 * 0.01;
     let strain = 0.3 * end.reached();
     assert!((strain / euler - 1.0).abs() < 0.1, "{strain} {euler}");
-    let SolveFault::Buckling { place } = &end.fault else {
+    let SolveFault::Buckling { position } = &end.fault else {
         panic!("{}", end.fault)
     };
     assert!(
-        place.contains("(50.0, ") && place.ends_with("along y"),
-        "{place}"
+        position.contains("(50.0, ") && position.ends_with("along y"),
+        "{position}"
     );
     assert_eq!(end.states.len(), 1);
     assert!(end.last.is_some());

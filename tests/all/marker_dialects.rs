@@ -112,13 +112,13 @@ fn named_columns_give_what_the_program_is_known_for() {
             let text = dialect.text(export, "");
             let found = read_bytes(text.as_bytes(), &unnamed(names));
             assert_eq!(found.understood.layout, "columns");
-            let places = |series: &MarkerSeries| -> Vec<_> {
+            let positions = |series: &MarkerSeries| -> Vec<_> {
                 let markers = series.frames[0].markers.iter();
                 markers
-                    .map(|marker| (marker.place, marker.displacement))
+                    .map(|marker| (marker.position, marker.displacement))
                     .collect()
             };
-            assert_eq!(places(&found.series), places(&expected), "{layout}");
+            assert_eq!(positions(&found.series), positions(&expected), "{layout}");
         }
     }
     // Capitals tell columns apart; the file's y axis points up here.
@@ -162,8 +162,8 @@ fn a_field_read_downwards_is_the_mirrored_one() {
     let [first, wanted] =
         [&found.series, &upwards.series].map(|series| series.frames[0].markers[0]);
     assert_eq!(
-        (first.place[1], first.displacement[1]),
-        (-wanted.place[1], -wanted.displacement[1])
+        (first.position[1], first.displacement[1]),
+        (-wanted.position[1], -wanted.displacement[1])
     );
 }
 

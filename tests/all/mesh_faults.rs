@@ -274,8 +274,8 @@ fn shuffled(file: &MeshFile) -> MeshFile {
         }
     };
     let mut nodes = vec![[0.0; 2]; count];
-    for (node, place) in file.nodes.iter().enumerate() {
-        nodes[new(node)] = *place;
+    for (node, position) in file.nodes.iter().enumerate() {
+        nodes[new(node)] = *position;
     }
     let renamed = |own: &Vec<usize>| own.iter().map(|node| new(*node)).collect::<Vec<_>>();
     MeshFile {
@@ -309,7 +309,7 @@ fn the_same_mesh_in_other_numbers_places_and_units_has_the_same_force() {
             assert!(error < 1e-9, "{kind:?}, {what}: {error}");
         };
         let moved = |map: &dyn Fn([f64; 2]) -> [f64; 2]| MeshFile {
-            nodes: file.nodes.iter().map(|place| map(*place)).collect(),
+            nodes: file.nodes.iter().map(|position| map(*position)).collect(),
             ..file.clone()
         };
         same(
@@ -334,7 +334,7 @@ fn the_same_mesh_in_other_numbers_places_and_units_has_the_same_force() {
         let mirror = |[x, y]: [f64; 2]| [-x, y];
         let mirrored = force(&read("a.msh", &moved(&mirror).msh(), 1.0), mirror(way));
         same("mirrored", mirrored, mirror(expected));
-        let metres = moved(&|place| place.map(|x| 1e-3 * x));
+        let metres = moved(&|position| position.map(|x| 1e-3 * x));
         same(
             "in metres",
             force(&read("a.msh", &metres.msh(), 1e3), way),

@@ -149,9 +149,9 @@ fn a_field_of_ones_own_deviates_by_nothing() {
 #[test]
 fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_body() {
     let folder = folder_with(SMALL);
-    let place = folder.path();
+    let position = folder.path();
     let json = |arguments: &[&str], code: i32| -> serde_json::Value {
-        let done = gelbench(place, arguments).code(code);
+        let done = gelbench(position, arguments).code(code);
         serde_json::from_slice(&done.get_output().stdout).unwrap()
     };
     let run = json(&["run", "small.toml", "--output", "out", "--json"], 0);
@@ -166,14 +166,14 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
     let ratio = of(&compared, 2) / own;
     assert!((0.9..1.2).contains(&ratio), "{ratio}");
 
-    let moved = import_field(&place.join(field), 1.0, None, 1.0).unwrap();
+    let moved = import_field(&position.join(field), 1.0, None, 1.0).unwrap();
     let nodes = moved.mesh.nodes.iter().zip(moved.displacement.chunks(2));
     let rows = nodes.map(|([x, y], u)| format!("{x},{y},{},{}\n", u[0] + 1.5, u[1] - 0.7));
     let table = format!(
         "X [mm],Y [mm],ux [mm],uy [mm]\n{}",
         rows.collect::<String>()
     );
-    fs::write(place.join("moved.csv"), table).unwrap();
+    fs::write(position.join("moved.csv"), table).unwrap();
     let compared = json(&["compare", "small.toml", "moved.csv", "--json"], 1);
     let told = compared["doubts"][0].as_str().unwrap();
     assert!(

@@ -283,16 +283,16 @@ fn an_inclusion_has_the_force_and_the_displacement_of_another_code() {
         assert!((found / energy - 1.0).abs() < 1e-9, "{found}");
     }
     let sheet = problem.deformed(&mesh, &states[3]);
-    for (place, expected) in [
+    for (position, expected) in [
         ([32.0, 13.0], [8.27815747167066, 0.272367141829521]),
         ([26.0, 19.0], [7.65191336517936, -0.0484161161714678]),
         ([30.0, 30.0], [8.9452353159507, -1.56208163960977]),
     ] {
-        let found = sheet.displacement_at(place).unwrap();
+        let found = sheet.displacement_at(position).unwrap();
         for axis in [0, 1] {
             assert!(
                 (found[axis] - expected[axis]).abs() < 1e-8,
-                "{place:?}: {found:?}"
+                "{position:?}: {found:?}"
             );
         }
     }

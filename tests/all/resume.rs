@@ -109,8 +109,8 @@ const LONG: &str = "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 
 
 #[test]
 fn a_run_goes_on_where_it_was_broken_off() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("l"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("l"));
     fs::write(folder.join("long.toml"), LONG).unwrap();
     let command = "run long.toml --output l";
     run(folder, command);
@@ -155,8 +155,8 @@ fn a_run_goes_on_where_it_was_broken_off() {
 
 #[test]
 fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
-    let place = workplace();
-    let (folder, output) = (place.path(), &place.path().join("c"));
+    let position = workplace();
+    let (folder, output) = (position.path(), &position.path().join("c"));
     run(folder, CORRECT);
     let whole = results(output);
     assert_eq!(whole.len(), 4 * 5 + 3 + 1 + 12, "{:?}", whole.keys());

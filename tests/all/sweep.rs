@@ -37,8 +37,8 @@ fn sweep(folder: &Path, more: &str) -> BTreeMap<String, Vec<u8>> {
 
 #[test]
 fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
-    let place = folder();
-    let folder = place.path();
+    let position = folder();
+    let folder = position.path();
     let whole = sweep(folder, "");
     let table = String::from_utf8(whole["sweep.csv"].clone()).unwrap();
     assert_eq!(table.lines().count(), 25);
@@ -89,8 +89,8 @@ fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
 
 #[test]
 fn a_sweep_of_other_cards_is_another_sweep() {
-    let place = folder();
-    let (folder, output) = (place.path(), &place.path().join("output/s_sweep"));
+    let position = folder();
+    let (folder, output) = (position.path(), &position.path().join("output/s_sweep"));
     let card = fs::read_to_string(crate::common::root().join("materials/neo-hooke.toml")).unwrap();
     fs::write(folder.join("a.toml"), &card).unwrap();
     let arguments = "sweep s.toml --vary material.card=a.toml --vary plate.width=40..60mm:24";
@@ -116,8 +116,8 @@ fn a_sweep_of_other_cards_is_another_sweep() {
 
 #[test]
 fn runs_without_a_solution_stand_in_the_table() {
-    let place = folder();
-    let folder = place.path();
+    let position = folder();
+    let folder = position.path();
     let done = run(
         folder,
         "sweep s.toml --vary mass_spring.max_iterations=1,40",
@@ -148,15 +148,16 @@ fn runs_without_a_solution_stand_in_the_table() {
 /// The column of a table below a head.
 fn column<'a>(table: &'a str, head: &str) -> Vec<&'a str> {
     let heads: Vec<&str> = table.lines().next().unwrap().split(',').collect();
-    let place = heads.iter().position(|own| *own == head);
-    let place = place.unwrap_or_else(|| panic!("{head}: {heads:?}"));
+    let position = heads.iter().position(|own| *own == head);
+    let position = position.unwrap_or_else(|| panic!("{head}: {heads:?}"));
     let rows = table.lines().skip(1);
-    rows.map(|row| row.split(',').nth(place).unwrap()).collect()
+    rows.map(|row| row.split(',').nth(position).unwrap())
+        .collect()
 }
 
 #[test]
 fn parameters_of_softening_and_relaxation_are_varied_by_the_names_that_fits_have_for_them() {
-    let place = folder();
+    let position = folder();
     let card = "\
 law = \"neo-hooke\"
 title = \"soft\"
@@ -178,17 +179,17 @@ stretch_range = [0.5, 3.0]
 citation = \"made\"
 specimen = \"none\"
 ";
-    fs::write(place.path().join("card.toml"), card).unwrap();
+    fs::write(position.path().join("card.toml"), card).unwrap();
     let study = STUDY.replace("\"neo-hooke\"", "\"card.toml\"").replace(
         "\"20 %\"]",
         "\"20 %\", \"10 %\"]\n[corrector]\nmethod = \"direct\"",
     );
-    fs::write(place.path().join("s.toml"), study).unwrap();
+    fs::write(position.path().join("s.toml"), study).unwrap();
     let varied =
         "s.toml --vary material.softening.r=1.5,3 --vary material.relaxation.2.share=0.1,0.2";
-    let done = run(place.path(), &format!("sweep {varied}"));
+    let done = run(position.path(), &format!("sweep {varied}"));
     assert!(done.status.success(), "{}", told(&done));
-    let files = results(&place.path().join("output/s_sweep"));
+    let files = results(&position.path().join("output/s_sweep"));
     let table = String::from_utf8(files["sweep.csv"].clone()).unwrap();
     let virgin = column(&table, "corrected.force_N@0.1");
     assert!(
@@ -202,7 +203,7 @@ specimen = \"none\"
         "{forces:?}"
     );
     let done = run(
-        place.path(),
+        position.path(),
         "sweep s.toml --vary material.relaxation.3.share=0.1,0.2",
     );
     assert!(!done.status.success());
@@ -210,13 +211,13 @@ specimen = \"none\"
 
 #[test]
 fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
-    let place = folder();
+    let position = folder();
     let varied =
         "s.toml --vary material.c10=0.05+-0.045MPa --vary load.stretches.1=15..25% --samples 16";
-    let done = run(place.path(), &format!("sweep {varied}"));
+    let done = run(position.path(), &format!("sweep {varied}"));
     // Some have no solution.
     assert_ends(&done, 1, "outside the admissible range of a study");
-    let file = |name: &str| fs::read(place.path().join("output/s_sweep").join(name)).unwrap();
+    let file = |name: &str| fs::read(position.path().join("output/s_sweep").join(name)).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&file("sweep.json")).unwrap();
     let failed = report["failed"].as_u64().unwrap();
     assert!((1..=3).contains(&failed), "{failed}");
@@ -232,7 +233,7 @@ fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
     );
     // More than a few are a mistake.
     let done = run(
-        place.path(),
+        position.path(),
         "sweep s.toml --vary material.c10=0.01+-0.1MPa --samples 16",
     );
     assert_ends(&done, 2, "parameters.c10");
@@ -240,7 +241,7 @@ fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
 
 #[test]
 fn what_cannot_be_varied_is_told_before_anything_is_computed() {
-    let place = folder();
+    let position = folder();
     for (arguments, expected) in [
         ("s.toml", "nothing is varied"),
         (
@@ -263,7 +264,7 @@ fn what_cannot_be_varied_is_told_before_anything_is_computed() {
         ("s.toml --points s.toml", "is not a comma-separated table"),
         ("none.toml --vary plate.width=45mm,50mm", "none.toml"),
     ] {
-        let done = run(place.path(), &format!("sweep {arguments}"));
+        let done = run(position.path(), &format!("sweep {arguments}"));
         assert_ends(&done, 2, expected);
     }
 }

@@ -12,13 +12,13 @@ pub fn second_frame(keep: impl Fn([f64; 2]) -> bool) -> String {
     let text = fs::read_to_string(root().join("examples/measured_plate.csv")).unwrap();
     let mut kept = String::from("x [mm],y [mm],ux [mm],uy [mm]\n");
     for line in text.lines().filter(|line| line.starts_with("2,")) {
-        let place: Vec<f64> = line
+        let position: Vec<f64> = line
             .split(',')
             .skip(1)
             .take(2)
             .map(|x| x.parse().unwrap())
             .collect();
-        if keep([place[0], place[1]]) {
+        if keep([position[0], position[1]]) {
             kept += &format!("{}\n", &line[2..]);
         }
     }

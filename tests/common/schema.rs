@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 /// What of a value does not follow a schema, of the keywords that gelbench's schemas use.
-pub fn faults(schema: &Value, value: &Value, place: &str) -> Vec<String> {
+pub fn faults(schema: &Value, value: &Value, position: &str) -> Vec<String> {
     let mut found = Vec::new();
     let matches = |name: &Value| match name.as_str() {
         Some("object") => value.is_object(),
@@ -21,9 +21,9 @@ pub fn faults(schema: &Value, value: &Value, place: &str) -> Vec<String> {
         name => matches(name),
     };
     if let Some(choices) = schema["anyOf"].as_array() {
-        let mut each = choices.iter().map(|choice| faults(choice, value, place));
+        let mut each = choices.iter().map(|choice| faults(choice, value, position));
         if each.all(|found| !found.is_empty()) {
-            found.push(format!("{place}: {value} is none of the choices"));
+            found.push(format!("{position}: {value} is none of the choices"));
         }
     }
     let listed = schema["enum"].as_array();
@@ -39,28 +39,32 @@ pub fn faults(schema: &Value, value: &Value, place: &str) -> Vec<String> {
         || beyond("maximum", |value, most| value > most)
         || beyond("exclusiveMinimum", |value, least| value <= least);
     if outside || !constant.is_null() && constant != value {
-        found.push(format!("{place}: {value}"));
+        found.push(format!("{position}: {value}"));
     }
     if !of_type || listed.is_some_and(|listed| !listed.contains(value)) {
-        found.push(format!("{place}: {value}"));
+        found.push(format!("{position}: {value}"));
     }
     for (index, item) in value.as_array().into_iter().flatten().enumerate() {
-        found.extend(faults(&schema["items"], item, &format!("{place}[{index}]")));
+        found.extend(faults(
+            &schema["items"],
+            item,
+            &format!("{position}[{index}]"),
+        ));
     }
     let Some(entries) = value.as_object() else {
         return found;
     };
     for key in schema["required"].as_array().into_iter().flatten() {
         if !entries.contains_key(key.as_str().unwrap()) {
-            found.push(format!("{place}: lacks {key}"));
+            found.push(format!("{position}: lacks {key}"));
         }
     }
     for (key, own) in entries {
-        let place = format!("{place}.{key}");
+        let position = format!("{position}.{key}");
         match (&schema["properties"][key], &schema["additionalProperties"]) {
-            (Value::Null, Value::Bool(false)) => found.push(format!("{place}: not allowed")),
-            (Value::Null, other) => found.extend(faults(other, own, &place)),
-            (known, _) => found.extend(faults(known, own, &place)),
+            (Value::Null, Value::Bool(false)) => found.push(format!("{position}: not allowed")),
+            (Value::Null, other) => found.extend(faults(other, own, &position)),
+            (known, _) => found.extend(faults(known, own, &position)),
         }
     }
     found

@@ -96,6 +96,6 @@ impl Measure {
 
 fn median_and_worst(mut times: Vec<f64>) -> [f64; 2] {
     times.sort_by(f64::total_cmp);
-    let at = |place: usize| times.get(place).copied().unwrap_or(f64::NAN);
+    let at = |position: usize| times.get(position).copied().unwrap_or(f64::NAN);
     [at(times.len() / 2), at(times.len().saturating_sub(1))]
 }

@@ -58,7 +58,7 @@ pub fn tell(bench: &Workbench, context: &Context) {
         "pixels_per_point": context.pixels_per_point(),
         "dark": context.theme() == Theme::Dark,
         "tab": format!("{:?}", bench.tab()),
-        "places": bench.places().iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
+        "places": bench.positions().iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
         "moving": table.moving().map(|moving| [moving.clock(), moving.computed(), moving.duration()]),
         "told": bench.said(),
         "grip_at": bench.grip_at().map(|at| [at.x, at.y]),

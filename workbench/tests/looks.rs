@@ -180,19 +180,19 @@ fn the_report_is_shown_after_a_run_with_contents_that_lead_to_its_headings() {
     let at = bench.get_all_by_label(&title).last().unwrap().rect();
     assert!(at.top() > 0.0 && at.top() < 250.0, "{at:?}");
     let heading = heading.unwrap();
-    let places = |bench: &Bench| -> Vec<Rect> {
+    let positions = |bench: &Bench| -> Vec<Rect> {
         bench
             .get_all_by_label(&heading)
             .map(|node| node.rect())
             .collect()
     };
-    let [entry, before] = places(&bench)[..] else {
+    let [entry, before] = positions(&bench)[..] else {
         panic!("an entry and a heading {heading}");
     };
     assert!(entry.top() < 700.0);
     bench.get_all_by_label(&heading).next().unwrap().click();
     bench.run_steps(60);
-    let after = places(&bench)[1];
+    let after = positions(&bench)[1];
     assert!(
         after.top() < before.top() && after.bottom() < 700.0,
         "{before:?} {after:?}"

@@ -198,8 +198,8 @@ fn every_view_is_seen_in_every_size_and_light(page: &mut Browser) {
             for label in ["sheet", "material", "measured field", "study", "export"] {
                 let at = [0, 1].map(|axis| told["places"][label][axis].as_f64());
                 let inside = |axis: usize| {
-                    let place = at[axis].unwrap();
-                    0.0 < place && place < f64::from(size[axis])
+                    let position = at[axis].unwrap();
+                    0.0 < position && position < f64::from(size[axis])
                 };
                 assert!(inside(0) && inside(1), "{label} at {at:?} in {size:?}");
             }

@@ -157,8 +157,8 @@ impl fmt::Display for Amount {
             return write!(f, "{:.1e}", self.0);
         }
         let digits = format!("{:.0}", self.0);
-        for (place, digit) in digits.chars().enumerate() {
-            if place > 0 && (digits.len() - place).is_multiple_of(3) {
+        for (position, digit) in digits.chars().enumerate() {
+            if position > 0 && (digits.len() - position).is_multiple_of(3) {
                 write!(f, ",")?;
             }
             write!(f, "{digit}")?;

@@ -136,7 +136,7 @@ impl Faults {
         if self.is_broken.get() {
             all.retain(|fault| fault.message.starts_with(SYNTAX));
         }
-        all.sort_by_key(|fault| fault.place.as_ref().map_or(0, |(_, span)| span.start));
+        all.sort_by_key(|fault| fault.position.as_ref().map_or(0, |(_, span)| span.start));
         if all.len() > MOST_TOLD {
             let more = all.len() - MOST_TOLD;
             // Errors come first: the author must see them.

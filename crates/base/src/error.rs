@@ -45,7 +45,7 @@ pub struct Diagnostic {
     /// Whether this finding stops the program.
     pub severity: Severity,
     /// The text and the bytes in it that the finding is about.
-    pub place: Option<(Arc<Source>, Range<usize>)>,
+    pub position: Option<(Arc<Source>, Range<usize>)>,
     /// The key's full path, such as `plate.length`.
     pub key: String,
     /// What is wrong.
@@ -59,7 +59,7 @@ impl Diagnostic {
     pub fn error(key: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
-            place: None,
+            position: None,
             key: key.into(),
             message: message.into(),
             hint: None,
@@ -85,7 +85,7 @@ impl Diagnostic {
     #[must_use]
     pub fn at(mut self, source: &Arc<Source>, span: Range<usize>) -> Self {
         let end = source.text.len();
-        self.place = Some((Arc::clone(source), span.start.min(end)..span.end.min(end)));
+        self.position = Some((Arc::clone(source), span.start.min(end)..span.end.min(end)));
         self
     }
 }
@@ -93,7 +93,7 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     /// One line: `file:line: key: message (hint)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some((source, span)) = &self.place {
+        if let Some((source, span)) = &self.position {
             write!(f, "{}:{}: ", source.name, source.line(span.start))?;
         }
         if !self.key.is_empty() {
@@ -125,11 +125,11 @@ pub enum SolveFault {
     NotPositiveDefinite,
     /// A body with a direction of negative stiffness before any load acts.
     #[error(
-        "unstable at rest: before any load acts, a mode that is largest at {place} has a negative stiffness"
+        "unstable at rest: before any load acts, a mode that is largest at {position} has a negative stiffness"
     )]
     UnstableAtRest {
         /// Where the mode is largest.
-        place: String,
+        position: String,
     },
     /// A material whose stress falls with strain.
     #[error("material unstable in {element} at {state}")]
@@ -141,21 +141,21 @@ pub enum SolveFault {
     },
     /// A motion driven by the loads has lost its stiffness: the load has reached its maximum, or a part snaps through.
     #[error(
-        "no equilibrium beyond load factor {factor:.4}: limit point, the load has reached a maximum, or a part of the body snaps through; the motion is largest at {place}"
+        "no equilibrium beyond load factor {factor:.4}: limit point, the load has reached a maximum, or a part of the body snaps through; the motion is largest at {position}"
     )]
     LoadMaximum {
         /// The last load factor with an equilibrium.
         factor: f64,
         /// The unknown that moves most, named with its place.
-        place: String,
+        position: String,
     },
     /// A direction without stiffness in which the loads do not push: the sheet buckles, wrinkles or necks.
     #[error(
-        "the tangent stiffness is not positive definite: buckling, wrinkling or necking; the mode is largest at {place}"
+        "the tangent stiffness is not positive definite: buckling, wrinkling or necking; the mode is largest at {position}"
     )]
     Buckling {
         /// The unknown that moves most, named with its place.
-        place: String,
+        position: String,
     },
     /// A motion without strain that no support prevents.
     #[error("{0}")]

@@ -137,7 +137,7 @@ pub fn markers(bytes: &[u8]) -> Became {
         let Ok(found) = read(&[file.to_owned()], &settings) else {
             return Became::Refused;
         };
-        let _ = Outline::of_points(&found.series.places());
+        let _ = Outline::of_points(&found.series.positions());
         Became::Complete
     })
 }

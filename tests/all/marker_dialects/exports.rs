@@ -15,12 +15,12 @@ pub struct Export {
 }
 
 pub fn points() -> Vec<Point> {
-    let places = (0..4).flat_map(|i| (0..3).map(move |j| [f64::from(i), f64::from(j)]));
+    let positions = (0..4).flat_map(|i| (0..3).map(move |j| [f64::from(i), f64::from(j)]));
     let point = |[i, j]: [f64; 2]| {
         let [x, y] = [10.0 + 2.5 * i, 1200.0 + 3.25 * j];
         [x, y, 0.125 * i + 0.0625 * j * j, 0.5 - 0.25 * j]
     };
-    places.map(point).collect()
+    positions.map(point).collect()
 }
 
 pub const ID: fn(usize, Point) -> f64 = |id, _| id as f64;

@@ -91,7 +91,7 @@ struct Found {
     /// Whether the direct method has a field.
     direct: bool,
     /// The plate and the stretch, for messages.
-    place: String,
+    position: String,
 }
 
 impl Plate {
@@ -112,7 +112,7 @@ impl Plate {
                 climbed,
                 share,
                 direct: direct.is_some(),
-                place: self.describe(*stretch),
+                position: self.describe(*stretch),
             }
         };
         stretches.map(found).collect()
@@ -154,10 +154,10 @@ fn outcome(found: &[Found]) -> Outcome {
                        on the same equations (root mean square over the nodes), relative to the discretisation error that \
                        the climb states:";
     let mut blocks = vec![Block::paragraph(explanation), table_of_laws(found)];
-    let places = lost
+    let positions = lost
         .clone()
-        .map(|lost| format!("No field from the climb: {}", lost.place));
-    blocks.extend(places.map(Block::paragraph));
+        .map(|lost| format!("No field from the climb: {}", lost.position));
+    blocks.extend(positions.map(Block::paragraph));
     Outcome {
         checks: vec![
             check(missing, "–", lost.count() as f64)

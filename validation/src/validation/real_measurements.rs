@@ -47,7 +47,7 @@ struct MeasuredField {
 
 impl MeasuredField {
     fn read(field: &Section, folder: &Path, material: &str) -> Self {
-        let place = |name: &String| folder.join(name);
+        let position = |name: &String| folder.join(name);
         let mesh = field.optional_text("mesh");
         let conditions = [
             ("free", EdgeCondition::Free),
@@ -65,7 +65,7 @@ impl MeasuredField {
         Self {
             name: field.text("name"),
             request: Request {
-                files: field.texts("files").iter().map(place).collect(),
+                files: field.texts("files").iter().map(position).collect(),
                 reading: ReadSettings {
                     unit: field.has("pixel").then(pixel),
                     ..ReadSettings::default()

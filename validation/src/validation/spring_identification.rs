@@ -22,12 +22,12 @@ use crate::units::Dimension;
 struct Settings {
     sample: Sample,
     trials: usize,
-    places: usize,
+    positions: usize,
 }
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Computation {
-    let places = section(root, "comparison", |comparison| {
+    let positions = section(root, "comparison", |comparison| {
         comparison.count("places", 3, 1000)
     });
     let settings = section(root, "recording", |recording| Settings {
@@ -38,7 +38,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
             seed: recording.count("first_seed", 0, usize::MAX) as u64,
         },
         trials: recording.count("trials", 3, 10_000),
-        places,
+        positions,
     });
     Box::new(move |progress| compute(settings, progress))
 }
@@ -60,7 +60,7 @@ const TRUTH: [fn(f64) -> f64; 2] = [Sample::stiffness, Sample::damping];
 
 fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
     progress.tell("trials");
-    let places = places(&settings);
+    let positions = positions(&settings);
     let seeds: Vec<u64> = (0..settings.trials as u64).collect();
     let one = |seed: &u64| -> Result<Trial, Error> {
         let sample = Sample {
@@ -72,17 +72,17 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
             IdentificationSettings::default(),
             &|_| (),
         )?;
-        Ok(compare(&found, &places))
+        Ok(compare(&found, &positions))
     };
     let trials: Vec<Trial> = seeds.par_iter().map(one).collect::<Result<_, _>>()?;
     let recording = settings.sample.recording();
     let drawn = identify(&recording, IdentificationSettings::default(), &|_| ())?;
-    let within = |trial: &&Trial| trial.iter().flatten().all(|place| place.within_band);
+    let within = |trial: &&Trial| trial.iter().flatten().all(|position| position.within_band);
     let good = trials.iter().filter(within).count();
     Ok(Outcome {
         checks: checks(&trials, good),
         claims: vec![claim(&settings, good)],
-        blocks: vec![explanation(&settings), error_table(&trials, &places)],
+        blocks: vec![explanation(&settings), error_table(&trials, &positions)],
         figures: vec![Figure::new(
             "spring_identification.png",
             format!(
@@ -97,15 +97,15 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
 }
 
 /// Fixed extensions from the smallest to the largest of the exact motion.
-fn places(settings: &Settings) -> Vec<f64> {
+fn positions(settings: &Settings) -> Vec<f64> {
     let exact = settings.sample.exact().extension;
     let low = exact.iter().copied().fold(f64::INFINITY, f64::min);
     let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let place = |i: usize| low + (high - low) * i as f64 / (settings.places - 1) as f64;
-    (0..settings.places).map(place).collect()
+    let position = |i: usize| low + (high - low) * i as f64 / (settings.positions - 1) as f64;
+    (0..settings.positions).map(position).collect()
 }
 
-fn compare(found: &Identification, places: &[f64]) -> Trial {
+fn compare(found: &Identification, positions: &[f64]) -> Trial {
     let at = |function: &Function, truth: fn(f64) -> f64, x: f64| {
         let (estimate, truth) = (function.at(x), truth(x));
         let within = |[low, high]: [f64; 2]| (low..=high).contains(&truth);
@@ -119,7 +119,7 @@ fn compare(found: &Identification, places: &[f64]) -> Trial {
     };
     [0, 1].map(|index| {
         let (_, _, function) = found.functions()[index];
-        places
+        positions
             .iter()
             .map(|x| at(function, TRUTH[index], *x))
             .collect()
@@ -135,7 +135,7 @@ fn share_of_places(trials: &[Trial], index: usize, holds: impl Fn(&Place) -> boo
 /// Median of |error| over trials and places, in % of the truth.
 fn median_error(trials: &[Trial], index: usize) -> f64 {
     let all = trials.iter().flat_map(|trial| &trial[index]);
-    median(all.map(|place| 100.0 * (place.error / place.truth).abs()))
+    median(all.map(|position| 100.0 * (position.error / position.truth).abs()))
 }
 
 fn checks(trials: &[Trial], good: usize) -> Vec<Check> {
@@ -145,7 +145,7 @@ fn checks(trials: &[Trial], good: usize) -> Vec<Check> {
     let good = check(what, "%", 100.0 * good as f64 / count as f64);
     let mut checks = vec![good.at_least(90.0, chance)];
     for (index, name) in ["K(·)", "D(·)"].into_iter().enumerate() {
-        let within = share_of_places(trials, index, |place| place.within_interval);
+        let within = share_of_places(trials, index, |position| position.within_interval);
         let error = median_error(trials, index);
         checks.extend([
             check(
@@ -189,22 +189,22 @@ fn explanation(settings: &Settings) -> Block {
     ))
 }
 
-fn error_table(trials: &[Trial], places: &[f64]) -> Block {
+fn error_table(trials: &[Trial], positions: &[f64]) -> Block {
     const ROWS: usize = 10;
-    let mean = |index: usize, place: usize, of: fn(&Place) -> f64| {
-        mean(trials.iter().map(|trial| of(&trial[index][place])))
+    let mean = |index: usize, position: usize, of: fn(&Place) -> f64| {
+        mean(trials.iter().map(|trial| of(&trial[index][position])))
     };
-    let cells = |index: usize, place: usize| {
+    let cells = |index: usize, position: usize| {
         [
-            TRUTH[index](places[place]),
-            mean(index, place, |one| one.error),
-            mean(index, place, |one| one.standard_error),
+            TRUTH[index](positions[position]),
+            mean(index, position, |one| one.error),
+            mean(index, position, |one| one.standard_error),
         ]
     };
-    let rows = (0..places.len()).step_by((places.len() / ROWS).max(1));
-    let rows = rows.map(|place| {
-        let numbers = [0, 1].map(|index| cells(index, place));
-        row(number(places[place]), numbers.concat())
+    let rows = (0..positions.len()).step_by((positions.len() / ROWS).max(1));
+    let rows = rows.map(|position| {
+        let numbers = [0, 1].map(|index| cells(index, position));
+        row(number(positions[position]), numbers.concat())
     });
     let head = "x [mm] | K [N/mm] | mean error of K | mean standard error of K | \
                 D [N·s/mm] | mean error of D | mean standard error of D";

@@ -47,7 +47,8 @@ fn force_percent([x, y]: [f64; 2], [x0, y0]: [f64; 2]) -> f64 {
 /// The displacement of the right grip times X over the length, in mm.
 fn linear_between_grips(scene: &Scene, lattice: &Mesh) -> Vec<f64> {
     let lines = scene.grip.lines(scene.axis());
-    let at = |place: &[f64; 2]| lines.map(|line| place[0] / scene.size[0] * line.at(*place));
+    let at =
+        |position: &[f64; 2]| lines.map(|line| position[0] / scene.size[0] * line.at(*position));
     lattice.nodes.iter().flat_map(at).collect()
 }
 

@@ -278,7 +278,7 @@ fn preview(study: &MarkerStudy) -> Preview {
         )
     };
     let columns = understood.columns.iter().map(column);
-    let axes = [Some(understood.axes()), understood.places()];
+    let axes = [Some(understood.axes()), understood.positions()];
     let last = study.series.frames.last();
     let markers = last.map_or(&[][..], |frame| &frame.markers);
     Preview {
@@ -293,8 +293,8 @@ fn preview(study: &MarkerStudy) -> Preview {
         markers: markers
             .iter()
             .map(|marker| {
-                let found = [0, 1].map(|axis| marker.place[axis] + marker.displacement[axis]);
-                [marker.place, found]
+                let found = [0, 1].map(|axis| marker.position[axis] + marker.displacement[axis]);
+                [marker.position, found]
             })
             .collect(),
         warnings: study.warnings.iter().map(settings::told).collect(),
@@ -315,7 +315,7 @@ fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Co
         &Option<gelbench::estimation::MarkerEstimate>,
     )| {
         let found = found.as_ref()?;
-        Some((marker.place, found.residual, found.trust))
+        Some((marker.position, found.residual, found.trust))
     };
     let forces = estimate.forces.iter().map(|force| {
         let axes = force

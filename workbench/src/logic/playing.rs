@@ -300,7 +300,7 @@ mod tests {
             }
         }
         let mesh = crate::logic::engine::meshes(&scene).unwrap()[0].clone();
-        let right = mesh.nodes.iter().position(|place| place[0] > 149.9);
+        let right = mesh.nodes.iter().position(|position| position[0] > 149.9);
         let curve = playing.curve(Model::Springs, right.unwrap());
         // From stretched to pressed and back: half a period each.
         let crossings: Vec<f64> = curve

@@ -96,7 +96,7 @@ pub struct Workbench {
     told: String,
     grip_at: Option<egui::Pos2>,
     /// Where some of the buttons stand in the last frame, by their words.
-    places: BTreeMap<String, egui::Pos2>,
+    positions: BTreeMap<String, egui::Pos2>,
     measure: Option<Measure>,
 }
 
@@ -135,7 +135,7 @@ impl Workbench {
             shows_controls: None,
             told: String::new(),
             grip_at: None,
-            places: BTreeMap::new(),
+            positions: BTreeMap::new(),
             measure: None,
         };
         bench.forget_changes();
@@ -172,8 +172,8 @@ impl Workbench {
     }
 
     /// Where the buttons stand in the last frame that a program may press: by their words, in points.
-    pub fn places(&self) -> &BTreeMap<String, egui::Pos2> {
-        &self.places
+    pub fn positions(&self) -> &BTreeMap<String, egui::Pos2> {
+        &self.positions
     }
 
     /// Shows a view.
@@ -203,7 +203,7 @@ impl Workbench {
 
     /// Draws a frame.
     pub fn show(&mut self, ui: &mut Ui) {
-        self.places.clear();
+        self.positions.clear();
         self.receive(ui.ctx());
         if !self.ask(ui.ctx()) {
             self.keys(ui);

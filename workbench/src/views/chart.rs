@@ -50,20 +50,20 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
         }
         for line in &chart.lines {
             let ink = ink(line.colour);
-            let places = || -> PlotPoints<'_> {
-                let places = line.points.iter().map(|[x, y]| [of_x(*x), of_y(*y)]);
-                places
-                    .filter(|place| place.iter().all(|part| part.is_finite()))
+            let positions = || -> PlotPoints<'_> {
+                let positions = line.points.iter().map(|[x, y]| [of_x(*x), of_y(*y)]);
+                positions
+                    .filter(|position| position.iter().all(|part| part.is_finite()))
                     .collect()
             };
             let through = |width: f32| {
-                Line::new(line.label.clone(), places())
+                Line::new(line.label.clone(), positions())
                     .color(ink)
                     .width(width)
             };
             match line.stroke {
                 Stroke::Points => plot.points(
-                    Points::new(line.label.clone(), places())
+                    Points::new(line.label.clone(), positions())
                         .color(ink)
                         .radius(2.5),
                 ),
@@ -74,7 +74,7 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
                 Stroke::Marked | Stroke::Ringed => {
                     plot.line(through(0.8).style(LineStyle::dashed_loose()));
                     plot.points(
-                        Points::new(line.label.clone(), places())
+                        Points::new(line.label.clone(), positions())
                             .color(ink)
                             .filled(line.stroke == Stroke::Marked)
                             .radius(3.0),
@@ -97,11 +97,16 @@ fn between(
 ) -> FilledArea {
     let (there, back) = line.points.split_at(line.points.len() / 2);
     let pairs = there.iter().zip(back.iter().rev());
-    let places = pairs.map(|([x, one], [_, other])| [of_x(*x), of_y(*one), of_y(*other)]);
-    let places: Vec<[f64; 3]> = places
-        .filter(|place| place.iter().all(|part| part.is_finite()))
+    let positions = pairs.map(|([x, one], [_, other])| [of_x(*x), of_y(*one), of_y(*other)]);
+    let positions: Vec<[f64; 3]> = positions
+        .filter(|position| position.iter().all(|part| part.is_finite()))
         .collect();
-    let along = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<_>>();
+    let along = |axis: usize| {
+        positions
+            .iter()
+            .map(|position| position[axis])
+            .collect::<Vec<_>>()
+    };
     let [r, g, b] = line.colour;
     let pale = Color32::from_rgba_unmultiplied(r, g, b, 50);
     FilledArea::new(line.label.clone(), &along(0), &along(1), &along(2)).fill_color(pale)

@@ -24,9 +24,9 @@ pub fn colour(value: f64, [low, high]: [f64; 2]) -> Color32 {
         return GREY;
     }
     let last = STOPS.len() - 1;
-    let place = share.clamp(0.0, 1.0) * last as f64;
-    let before = (place as usize).min(last - 1);
-    let part = place - before as f64;
+    let position = share.clamp(0.0, 1.0) * last as f64;
+    let before = (position as usize).min(last - 1);
+    let part = position - before as f64;
     let [r, g, b] = [0, 1, 2].map(|channel| {
         let [from, to] = [before, before + 1].map(|stop| f64::from(STOPS[stop][channel]));
         (from + part * (to - from)).round() as u8

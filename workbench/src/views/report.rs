@@ -149,8 +149,8 @@ pub fn panels(ui: &mut Ui, quantity: &str, scale: Scale, panels: &[Panel]) {
         }))));
         let ink = ui.visuals().text_color();
         for line in &panel.surface.outline {
-            let places = line.iter().map(|place| view.at(*place)).collect();
-            painter.add(Shape::line(places, Stroke::new(1.0, ink)));
+            let positions = line.iter().map(|position| view.at(*position)).collect();
+            painter.add(Shape::line(positions, Stroke::new(1.0, ink)));
         }
     }
     let (bar, _) =
@@ -171,8 +171,8 @@ fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> Color32) -> Triangles
     let points = &panel.surface.points;
     match &panel.values {
         Values::AtPoints(values) => {
-            for (place, value) in points.iter().zip(values) {
-                drawn.colored_vertex(view.at(*place), ink(*value));
+            for (position, value) in points.iter().zip(values) {
+                drawn.colored_vertex(view.at(*position), ink(*value));
             }
             drawn.indices = panel.surface.triangles.iter().flatten().copied().collect();
         }
@@ -193,8 +193,12 @@ fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> Color32) -> Triangles
 }
 
 /// Room for places in true proportions, as wide as there is and at most half as high.
-pub fn room<'a>(ui: &mut Ui, places: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (View, Rect) {
-    let along = |axis: usize| range(places.clone().map(|place| place[axis])).unwrap_or([0.0, 1.0]);
+pub fn room<'a>(
+    ui: &mut Ui,
+    positions: impl Iterator<Item = &'a [f64; 2]> + Clone,
+) -> (View, Rect) {
+    let along =
+        |axis: usize| range(positions.clone().map(|position| position[axis])).unwrap_or([0.0, 1.0]);
     let ([left, right], [bottom, top]) = (along(0), along(1));
     let width = ui.available_width().min(760.0);
     let height = width * ((top - bottom) / (right - left).max(1e-9)) as f32 + 12.0;
@@ -208,8 +212,8 @@ pub fn room<'a>(ui: &mut Ui, places: impl Iterator<Item = &'a [f64; 2]> + Clone)
 /// The colour of an edge: those of a mesh differ, whatever their order.
 pub fn edge_colour(figure: &MeshFigure, name: &str) -> Color32 {
     let groups = figure.groups.iter();
-    let place = groups.filter(|group| *group.name < *name).count();
-    let [r, g, b] = PALETTE[place % PALETTE.len()];
+    let position = groups.filter(|group| *group.name < *name).count();
+    let [r, g, b] = PALETTE[position % PALETTE.len()];
     Color32::from_rgb(r, g, b)
 }
 
@@ -218,14 +222,14 @@ pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> (View, Rect) {
     let (view, area) = room(ui, figure.cells.iter().flatten());
     let painter = ui.painter().with_clip_rect(area.expand(8.0));
     let faint = Stroke::new(0.5, ui.visuals().text_color().gamma_multiply(0.4));
-    let places = |line: &[[f64; 2]]| line.iter().map(|place| view.at(*place)).collect();
+    let positions = |line: &[[f64; 2]]| line.iter().map(|position| view.at(*position)).collect();
     for cell in &figure.cells {
-        painter.add(Shape::closed_line(places(cell), faint));
+        painter.add(Shape::closed_line(positions(cell), faint));
     }
     for group in &figure.groups {
         let ink = edge_colour(figure, &group.name);
         for line in &group.lines {
-            painter.add(Shape::line(places(line), Stroke::new(3.0, ink)));
+            painter.add(Shape::line(positions(line), Stroke::new(3.0, ink)));
         }
     }
     (view, area)

@@ -86,7 +86,7 @@ impl Sheets {
         for (number, model) in models.iter().enumerate() {
             let own = areas[if over { 0 } else { number }];
             let line = if over { 15.0 * number as f32 } else { 0.0 };
-            let place = Place {
+            let position = Place {
                 ui,
                 painter: ui.painter().with_clip_rect(own),
                 table,
@@ -94,9 +94,9 @@ impl Sheets {
                 range,
                 outline_only: over && number > 0,
             };
-            self.sheet(&place, *model);
-            label(&place, *model, own.min + vec2(6.0, 4.0 + line));
-            let view = place.view;
+            self.sheet(&position, *model);
+            label(&position, *model, own.min + vec2(6.0, 4.0 + line));
+            let view = position.view;
             if table.played().is_some() {
                 held = Some(Held::nothing(view.at([table.scene().size[0], 0.0])));
             } else if number == 0 || !over {
@@ -112,9 +112,9 @@ impl Sheets {
         if let Some(held) = held.as_ref().filter(|_| untouched) {
             let font = FontId::proportional(15.0);
             let ink = ui.visuals().hyperlink_color;
-            let place = held.at + vec2(16.0, 0.0);
+            let position = held.at + vec2(16.0, 0.0);
             ui.painter()
-                .text(place, Align2::LEFT_CENTER, "pull me", font, ink);
+                .text(position, Align2::LEFT_CENTER, "pull me", font, ink);
         }
         warnings(ui, table, row);
         colour_bar(ui, table.shown_colour().name(), span, bar);
@@ -148,8 +148,8 @@ impl Sheets {
         self.closer.of(whole, screen.center())
     }
 
-    fn sheet(&mut self, place: &Place, model: Model) {
-        let table = place.table;
+    fn sheet(&mut self, position: &Place, model: Model) {
+        let table = position.table;
         let (Some(mesh), Some(drawn)) = (table.mesh(model), table.drawn(model)) else {
             return;
         };
@@ -157,22 +157,22 @@ impl Sheets {
         if displacement.len() != 2 * mesh.nodes.len() {
             return;
         }
-        if !place.outline_only {
-            place
+        if !position.outline_only {
+            position
                 .painter
-                .add(Shape::Mesh(self.surface(place, model, mesh, &drawn)));
+                .add(Shape::Mesh(self.surface(position, model, mesh, &drawn)));
         }
         let ink = match table.scene().look.layout {
             Layout::Over => model_colour(model),
-            Layout::Beside => place.ui.visuals().text_color(),
+            Layout::Beside => position.ui.visuals().text_color(),
         };
         let lines = Lines {
-            place,
+            position,
             mesh,
             displacement,
         };
         lines.outline(Stroke::new(1.5, ink));
-        if table.scene().look.cells && !place.outline_only {
+        if table.scene().look.cells && !position.outline_only {
             lines.cells();
         }
         if model == Model::Springs && table.scene().look.multipliers && table.played().is_none() {
@@ -180,10 +180,16 @@ impl Sheets {
         }
     }
 
-    fn surface(&mut self, place: &Place, model: Model, mesh: &Mesh, now: &Drawn) -> Arc<Triangles> {
+    fn surface(
+        &mut self,
+        position: &Place,
+        model: Model,
+        mesh: &Mesh,
+        now: &Drawn,
+    ) -> Arc<Triangles> {
         let Place {
             table, view, range, ..
-        } = *place;
+        } = *position;
         let slot = &mut self.drawn[model as usize];
         let known = slot.as_ref().filter(|drawn| {
             (drawn.revision, drawn.view, drawn.range) == (table.revision(), view, range)
@@ -244,8 +250,8 @@ pub fn model_colour(model: Model) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-fn label(place: &Place, model: Model, at: Pos2) {
-    let Place { table, ui, .. } = place;
+fn label(position: &Place, model: Model, at: Pos2) {
+    let Place { table, ui, .. } = position;
     let fault = match table.moving() {
         Some(moving) => moving.fault(model),
         None => table.fault(model),
@@ -261,7 +267,7 @@ fn label(place: &Place, model: Model, at: Pos2) {
     };
     let text = format!("{}{follows}", model.name());
     let font = FontId::proportional(13.0);
-    place.painter.text(at, Align2::LEFT_TOP, text, font, ink);
+    position.painter.text(at, Align2::LEFT_TOP, text, font, ink);
 }
 
 /// What the command would warn of, in a row that is there without warnings too, so that they move nothing; in full below the sheets
@@ -282,7 +288,7 @@ fn warnings(ui: &mut Ui, table: &Table, row: Rect) {
 
 /// The lines on a deformed mesh.
 struct Lines<'a> {
-    place: &'a Place<'a>,
+    position: &'a Place<'a>,
     mesh: &'a Mesh,
     displacement: &'a [f64],
 }
@@ -294,26 +300,26 @@ impl Lines<'_> {
     }
 
     fn at(&self, node: usize) -> Pos2 {
-        self.place.view.at(self.moved(node))
+        self.position.view.at(self.moved(node))
     }
 
     fn outline(&self, stroke: Stroke) {
         for edge in self.mesh.boundary() {
             let nodes = [Some(&edge[0]), edge.get(2), Some(&edge[1])];
             let points = nodes.into_iter().flatten().map(|node| self.at(*node));
-            self.place
+            self.position
                 .painter
                 .add(Shape::line(points.collect(), stroke));
         }
     }
 
     fn cells(&self) {
-        let ink = self.place.ui.visuals().text_color().gamma_multiply(0.35);
+        let ink = self.position.ui.visuals().text_color().gamma_multiply(0.35);
         for cell in 0..self.mesh.cell_count() {
             let corners = &self.mesh.cell(cell)[..self.mesh.shape(cell).corners()];
             let points = corners.iter().map(|node| self.at(*node)).collect();
             let line = Shape::closed_line(points, Stroke::new(0.5, ink));
-            self.place.painter.add(line);
+            self.position.painter.add(line);
         }
     }
 
@@ -325,7 +331,7 @@ impl Lines<'_> {
             painter,
             view,
             ..
-        } = self.place;
+        } = self.position;
         let corrected = table.shown(Model::Corrected);
         let found = corrected.and_then(|shown| shown.solved.multipliers.as_ref());
         let Some(values) = found.filter(|values| values.len() == self.displacement.len()) else {

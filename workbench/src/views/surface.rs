@@ -46,7 +46,7 @@ impl View {
         let scale = (screen.width() / width)
             .min(screen.height() / height)
             .max(1e-6);
-        let middle = [0.5 * (left + right), 0.5 * (bottom + top)].map(|place| place as f32);
+        let middle = [0.5 * (left + right), 0.5 * (bottom + top)].map(|position| position as f32);
         Self {
             origin: pos2(
                 screen.center().x - scale * middle[0],
@@ -74,7 +74,7 @@ impl View {
     }
 
     /// What lies at a place of the screen, in mm.
-    pub fn place(&self, on_screen: Pos2) -> [f64; 2] {
+    pub fn position(&self, on_screen: Pos2) -> [f64; 2] {
         self.way(on_screen - self.origin)
     }
 
@@ -138,7 +138,7 @@ mod tests {
         let way = view.at([30.0, 20.0]) - view.at([20.0, 15.0]);
         let [x, y] = view.way(way);
         assert!((x - 10.0).abs() < 1e-4 && (y - 5.0).abs() < 1e-4);
-        let [x, y] = view.place(view.at([30.0, 20.0]));
+        let [x, y] = view.position(view.at([30.0, 20.0]));
         assert!((x - 30.0).abs() < 1e-4 && (y - 20.0).abs() < 1e-4);
         assert!(screen.contains(view.at([0.0, 0.0])) && screen.contains(view.at([150.0, 40.0])));
     }

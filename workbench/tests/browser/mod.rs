@@ -56,9 +56,9 @@ fn page_folder() -> PathBuf {
 fn chromium() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let names = ["chromium", "chromium-browser", "google-chrome"];
-    let places =
+    let positions =
         std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name)));
-    places.into_iter().find(|place| place.is_file())
+    positions.into_iter().find(|position| position.is_file())
 }
 
 impl Browser {
@@ -280,14 +280,14 @@ impl Browser {
     /// and clicks.
     #[track_caller]
     pub fn press_button(&mut self, name: &str) {
-        let mut at = self.place(name);
+        let mut at = self.position(name);
         loop {
             for aside in [1.0, 0.0] {
                 let drawn = self.until(|_| true)["drawn"].as_u64();
                 self.mouse("mouseMoved", [at[0] + aside, at[1]]);
                 self.until(|told| told["drawn"].as_u64() > drawn);
             }
-            let still = self.place(name);
+            let still = self.position(name);
             if still == at {
                 break;
             }
@@ -297,7 +297,7 @@ impl Browser {
     }
 
     #[track_caller]
-    fn place(&mut self, name: &str) -> [f64; 2] {
+    fn position(&mut self, name: &str) -> [f64; 2] {
         let told = self.until(|told| told["places"][name].is_array());
         [0, 1].map(|axis| told["places"][name][axis].as_f64().expect("a place"))
     }

@@ -108,19 +108,21 @@ fn set_within(
         Value::Table(table) => set(table, rest, value),
         Value::Array(list) => {
             let count = list.len();
-            let place = rest[0].parse::<usize>().ok();
-            let place = place.and_then(|place| list.get_mut(place)).ok_or_else(|| {
-                format!(
-                    "`{name}` is a list of {count} entries, and `{}` is not one of them",
-                    rest[0]
-                )
-            })?;
+            let position = rest[0].parse::<usize>().ok();
+            let position = position
+                .and_then(|position| list.get_mut(position))
+                .ok_or_else(|| {
+                    format!(
+                        "`{name}` is a list of {count} entries, and `{}` is not one of them",
+                        rest[0]
+                    )
+                })?;
             match rest {
                 [_] => {
-                    *place = value.value();
+                    *position = value.value();
                     Ok(())
                 }
-                _ => set_within(place, rest[0], &rest[1..], value),
+                _ => set_within(position, rest[0], &rest[1..], value),
             }
         }
         _ => Err(format!("`{name}` is a value, not a section")),

@@ -178,7 +178,7 @@ fn value(key: &Key) -> Value {
 }
 
 /// The table that a path leads to and the name in it; tables on the way are made where they are missing.
-fn place<'a, 'b>(file: &'a mut Table, path: &'b str) -> Option<(&'a mut Table, &'b str)> {
+fn position<'a, 'b>(file: &'a mut Table, path: &'b str) -> Option<(&'a mut Table, &'b str)> {
     let Some((first, rest)) = path.split_once('.') else {
         return Some((file, path));
     };
@@ -194,12 +194,12 @@ fn place<'a, 'b>(file: &'a mut Table, path: &'b str) -> Option<(&'a mut Table, &
         Value::Array(tables) => tables.first_mut(),
         other => Some(other),
     };
-    place(inner?.as_table_mut()?, rest)
+    position(inner?.as_table_mut()?, rest)
 }
 
 /// Gives a key a value; existing tables are kept.
 fn put(file: &mut Table, path: &str, value: Value) {
-    let Some((table, name)) = place(file, path) else {
+    let Some((table, name)) = position(file, path) else {
         return;
     };
     let holds_tables = |value: &Value| match value {
@@ -214,7 +214,7 @@ fn put(file: &mut Table, path: &str, value: Value) {
 }
 
 fn remove(file: &mut Table, path: &str) {
-    if let Some((table, name)) = place(file, path) {
+    if let Some((table, name)) = position(file, path) {
         table.remove(name);
     }
 }

@@ -48,11 +48,11 @@ impl<'a> Head<'a> {
     /// A fault at a place of the table.
     pub fn fault(
         &self,
-        place: Range<usize>,
+        position: Range<usize>,
         message: impl Into<String>,
         hint: &str,
     ) -> Box<Diagnostic> {
-        Box::new(self.table.fault(place, message, hint))
+        Box::new(self.table.fault(position, message, hint))
     }
 
     /// A fault for a key that is not stated.
@@ -108,24 +108,24 @@ impl<'a> Head<'a> {
     ) -> Faulty<Option<String>> {
         let mut said: Vec<(&str, String, Range<usize>)> = Vec::new();
         if let Some(named) = named {
-            let place = self.table.columns_place.clone();
-            said.push(("the name of a column", named.to_owned(), place));
+            let position = self.table.columns_place.clone();
+            said.push(("the name of a column", named.to_owned(), position));
         }
-        if let Some((value, place)) = self.pairs.get(key) {
-            said.push(("the header", read(value), place.clone()));
+        if let Some((value, position)) = self.pairs.get(key) {
+            said.push(("the header", read(value), position.clone()));
         }
         if let Some(value) = self.given.get(key) {
             said.push(("the command line", value.trim().to_owned(), 0..0));
         }
         for pair in said.windows(2) {
-            let [(one, first, place), (other, second, _)] = pair else {
+            let [(one, first, position), (other, second, _)] = pair else {
                 continue;
             };
             if first != second {
                 let message = format!(
                     "the {key} is {first} according to {one} and {second} according to {other}"
                 );
-                return Err(self.fault(place.clone(), message, "state it once, or identically"));
+                return Err(self.fault(position.clone(), message, "state it once, or identically"));
             }
         }
         Ok(said.into_iter().next().map(|(_, value, _)| value))
@@ -154,7 +154,7 @@ impl<'a> Head<'a> {
         }
         let hint = suggestion(&value, &known(), "it must be one of");
         Err(self.fault(
-            self.place(key),
+            self.position(key),
             format!("the {key} `{value}` is not known"),
             &hint,
         ))
@@ -177,7 +177,7 @@ impl<'a> Head<'a> {
             Err(fault) => (fault.to_string(), fault.remedy(&value, dimension)),
         };
         Err(self.fault(
-            self.place(key),
+            self.position(key),
             format!("the {key} \"{value}\" {reason}"),
             &hint,
         ))
@@ -231,15 +231,15 @@ impl<'a> Head<'a> {
                 ),
                 None => fault.remedy(&unit, dimension),
             };
-            let place = self.table.columns_place.clone();
-            self.fault(place, format!("the {key} {fault}"), &hint)
+            let position = self.table.columns_place.clone();
+            self.fault(position, format!("the {key} {fault}"), &hint)
         })
     }
 
     /// The place of the head's statement about `key`.
-    pub fn place(&self, key: &str) -> Range<usize> {
+    pub fn position(&self, key: &str) -> Range<usize> {
         let pair = self.pairs.get(key);
-        pair.map_or(0..0, |(_, place)| place.clone())
+        pair.map_or(0..0, |(_, position)| position.clone())
     }
 }
 
@@ -253,7 +253,7 @@ pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnost
     let known = |key: &str| known.contains(&&*plain_key(key));
     let mut start = 0;
     for line in table.source.text.split_inclusive('\n') {
-        let place = start..start + line.trim_end().len();
+        let position = start..start + line.trim_end().len();
         start += line.len();
         let Some(comment) = line.strip_prefix('#') else {
             continue;
@@ -265,11 +265,11 @@ pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnost
             match pairs.get(&key) {
                 Some((first, _)) if known(&key) && *first != value => {
                     let message = format!("the {key} is stated twice with different values");
-                    faults.push(table.fault(place.clone(), message, "state it once"));
+                    faults.push(table.fault(position.clone(), message, "state it once"));
                 }
                 Some(_) => {}
                 None => {
-                    pairs.insert(key, (value, place.clone()));
+                    pairs.insert(key, (value, position.clone()));
                 }
             }
         }

@@ -165,7 +165,7 @@ impl<'a> Section<'a> {
     /// Records a fault at the place of `key`.
     pub fn fault(&self, key: &'static str, message: &str, hint: &str) {
         self.record(
-            self.place(key),
+            self.position(key),
             Diagnostic::error(self.full(key), message).hint(hint),
         );
     }
@@ -197,7 +197,7 @@ impl<'a> Section<'a> {
     /// Records a warning at the place of `key`.
     pub fn warning(&self, key: &'static str, message: &str, hint: &str) {
         self.record(
-            self.place(key),
+            self.position(key),
             Diagnostic::warning(self.full(key), message).hint(hint),
         );
     }
@@ -331,7 +331,7 @@ impl<'a> Section<'a> {
             .push(diagnostic.at(self.source, span.unwrap_or_else(|| self.span.clone())));
     }
 
-    fn place(&self, key: &'static str) -> Option<Range<usize>> {
+    fn position(&self, key: &'static str) -> Option<Range<usize>> {
         self.table
             .and_then(|table| table.get(key))
             .map(Spanned::span)

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 /// What to write instead, where the text about a syntax fault shows it.
-pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<String> {
+pub(super) fn remedy(text: &str, position: &Range<usize>, message: &str) -> Option<String> {
     if message.contains("duplicate key") {
-        let key = text.get(place.clone()).unwrap_or_default().trim();
+        let key = text.get(position.clone()).unwrap_or_default().trim();
         return Some(match key {
             "law" => "a card has one law: remove one, or write a card for each".to_owned(),
             _ => {
@@ -14,12 +14,12 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
             }
         });
     }
-    if let Some(quote) = typographic_quote(text, place.start) {
+    if let Some(quote) = typographic_quote(text, position.start) {
         return Some(format!(
             "{quote} is a typographic quote: use the straight \" around texts"
         ));
     }
-    let (key, value) = unquoted(text, place.start)?;
+    let (key, value) = unquoted(text, position.start)?;
     let comma = value.replacen(',', ".", 1);
     if let Ok(number) = comma.parse::<f64>() {
         return value
@@ -52,16 +52,16 @@ pub(super) fn advice(message: &str) -> Option<String> {
 }
 
 /// A place that can be displayed: at least one character of the text, the one before an empty place at the end of a line.
-pub(super) fn visible(text: &str, place: Range<usize>) -> Range<usize> {
-    let Some(before) = text.get(..place.start).filter(|_| place.is_empty()) else {
-        return place;
+pub(super) fn visible(text: &str, position: Range<usize>) -> Range<usize> {
+    let Some(before) = text.get(..position.start).filter(|_| position.is_empty()) else {
+        return position;
     };
-    let here = text[place.start..].chars().next();
+    let here = text[position.start..].chars().next();
     match here.filter(|letter| !letter.is_whitespace()) {
-        Some(letter) => place.start..place.start + letter.len_utf8(),
+        Some(letter) => position.start..position.start + letter.len_utf8(),
         None => {
             let start = before.trim_end().char_indices().next_back();
-            start.map_or(place, |(start, letter)| start..start + letter.len_utf8())
+            start.map_or(position, |(start, letter)| start..start + letter.len_utf8())
         }
     }
 }

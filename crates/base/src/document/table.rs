@@ -188,14 +188,14 @@ impl Table {
             if record.iter().all(str::is_empty) {
                 continue;
             }
-            let place = line_at(text, record.position().map_or(0, |at| at.byte() as usize));
+            let position = line_at(text, record.position().map_or(0, |at| at.byte() as usize));
             if Some(line) == above.names {
                 self.columns = record.iter().map(Column::new).collect();
-                self.columns_place = place;
+                self.columns_place = position;
             } else if Some(line) == above.units {
                 self.add_units(&record);
             } else if line >= above.first_row {
-                self.add_row(&record, place, &mut decimals, faults);
+                self.add_row(&record, position, &mut decimals, faults);
             }
             line += 1;
         }
@@ -219,7 +219,7 @@ impl Table {
     fn add_row(
         &mut self,
         record: &csv::StringRecord,
-        place: Range<usize>,
+        position: Range<usize>,
         decimals: &mut Decimals,
         faults: &Faults,
     ) {
@@ -242,7 +242,7 @@ impl Table {
             let message = format!("{count} fields, but the header has {columns} columns");
             let hint = "every row needs as many fields as the header; numbers with decimal commas need semicolons or tabs \
                         between the columns, and lines above the header must begin with #";
-            return faults.push(self.fault(place, message, hint));
+            return faults.push(self.fault(position, message, hint));
         }
         self.faults.resize(count, None);
         self.nonsense.resize(count, None);
@@ -262,7 +262,7 @@ impl Table {
                 })
             });
         let row = row.collect();
-        self.rows.push((row, place));
+        self.rows.push((row, position));
     }
 
     /// The table with some of its rows, in their order, including all whose fields are nonsense.
@@ -339,15 +339,20 @@ impl Table {
     }
 
     /// A fault at a place of the file.
-    pub fn fault(&self, place: Range<usize>, message: impl Into<String>, hint: &str) -> Diagnostic {
+    pub fn fault(
+        &self,
+        position: Range<usize>,
+        message: impl Into<String>,
+        hint: &str,
+    ) -> Diagnostic {
         Diagnostic::error("", message)
             .hint(hint)
-            .at(&self.source, place)
+            .at(&self.source, position)
     }
 
     /// The refusal of the file for one fault.
-    pub fn refuse(&self, place: Range<usize>, message: impl Into<String>, hint: &str) -> Error {
-        self.fault(place, message, hint).into()
+    pub fn refuse(&self, position: Range<usize>, message: impl Into<String>, hint: &str) -> Error {
+        self.fault(position, message, hint).into()
     }
 
     /// The refusal of the file because of its names of columns.

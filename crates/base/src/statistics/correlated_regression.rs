@@ -273,11 +273,11 @@ mod tests {
 
     /// Noise of a correlation on a grid of 20 × 12 places, with a plane taken away from each component.
     fn noise(correlation: Option<Correlation>, seed: u64) -> (Sites, DMatrix<f64>, DVector<f64>) {
-        let places = (0..20).flat_map(|i| (0..12).map(move |j| [f64::from(i), f64::from(j)]));
-        let places: Vec<[f64; 2]> = places.collect();
-        let count = places.len();
+        let positions = (0..20).flat_map(|i| (0..12).map(move |j| [f64::from(i), f64::from(j)]));
+        let positions: Vec<[f64; 2]> = positions.collect();
+        let count = positions.len();
         let root = DMatrix::from_fn(count, count, |i, j| {
-            let [a, b] = [places[i], places[j]];
+            let [a, b] = [positions[i], positions[j]];
             let far = (a[0] - b[0]).hypot(a[1] - b[1]);
             match (i == j, correlation) {
                 (true, _) => 1.0,
@@ -291,7 +291,7 @@ mod tests {
         let components = [&root * draw(), &root * draw()];
         let values = DVector::from_fn(2 * count, |row, _| components[row % 2][row / 2]);
         let design = DMatrix::from_fn(2 * count, 6, |row, column| {
-            let [x, y] = places[row / 2];
+            let [x, y] = positions[row / 2];
             if column / 3 == row % 2 {
                 [1.0, x / 20.0, y / 12.0][column % 3]
             } else {
@@ -303,7 +303,7 @@ mod tests {
             .unwrap()
             .solve(&design.tr_mul(&values));
         let left = &values - &design * fitted;
-        (Sites::new(places), design, left)
+        (Sites::new(positions), design, left)
     }
 
     fn likeliest(correlation: Option<Correlation>, seed: u64) -> CorrelatedNoise {

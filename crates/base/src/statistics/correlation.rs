@@ -57,17 +57,17 @@ impl Correlation {
     }
 
     /// The number of independent values with the same information on a variance as values at these places: n²/Σ ρᵢⱼ².
-    pub fn independent(&self, places: &[[f64; 2]]) -> f64 {
+    pub fn independent(&self, positions: &[[f64; 2]]) -> f64 {
         const MOST: usize = 300;
-        let stride = places.len().div_ceil(MOST).max(1);
-        let some: Vec<_> = places.iter().step_by(stride).collect();
-        let of = |place: &[f64; 2]| -> f64 {
-            let others = places.iter().filter(|other| *other != place);
-            let squares = others.map(|other| self.at(distance(*place, *other)).powi(2));
+        let stride = positions.len().div_ceil(MOST).max(1);
+        let some: Vec<_> = positions.iter().step_by(stride).collect();
+        let of = |position: &[f64; 2]| -> f64 {
+            let others = positions.iter().filter(|other| *other != position);
+            let squares = others.map(|other| self.at(distance(*position, *other)).powi(2));
             1.0 + squares.sum::<f64>()
         };
-        let mean = some.iter().map(|place| of(place)).sum::<f64>() / some.len().max(1) as f64;
-        places.len() as f64 / mean.max(1.0)
+        let mean = some.iter().map(|position| of(position)).sum::<f64>() / some.len().max(1) as f64;
+        positions.len() as f64 / mean.max(1.0)
     }
 }
 
@@ -78,22 +78,22 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Places with an order in which each one follows from few before it.
 #[derive(Clone, Debug)]
 pub struct Sites {
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     order: Vec<(usize, Vec<usize>)>,
 }
 
 impl Sites {
     /// The order of places.
-    pub fn new(places: Vec<[f64; 2]>) -> Self {
+    pub fn new(positions: Vec<[f64; 2]>) -> Self {
         Self {
-            order: nearest_before(&places, NEIGHBOURS),
-            places,
+            order: nearest_before(&positions, NEIGHBOURS),
+            positions,
         }
     }
 
     /// The places.
-    pub fn places(&self) -> &[[f64; 2]] {
-        &self.places
+    pub fn positions(&self) -> &[[f64; 2]] {
+        &self.positions
     }
 }
 
@@ -105,7 +105,7 @@ pub struct Whitening {
 
 #[derive(Clone, Debug)]
 struct Row {
-    place: usize,
+    position: usize,
     /// 1/√f.
     scale: f64,
     /// bⱼ of the places before.
@@ -115,15 +115,16 @@ struct Row {
 impl Whitening {
     /// The transformation that makes noise of this correlation white; the identity where there is no correlation.
     pub fn new(sites: &Sites, correlation: &Correlation) -> Self {
-        let row = |(place, before): &(usize, Vec<usize>)| {
+        let row = |(position, before): &(usize, Vec<usize>)| {
             let at = |a: usize, b: usize| {
                 if a == b {
                     1.0
                 } else {
-                    correlation.at(distance(sites.places[a], sites.places[b]))
+                    correlation.at(distance(sites.positions[a], sites.positions[b]))
                 }
             };
-            let own = DVector::from_iterator(before.len(), before.iter().map(|b| at(*place, *b)));
+            let own =
+                DVector::from_iterator(before.len(), before.iter().map(|b| at(*position, *b)));
             let mutual =
                 DMatrix::from_fn(before.len(), before.len(), |i, j| at(before[i], before[j]));
             // Places twice in the data have the same row: their common part is counted once.
@@ -131,7 +132,7 @@ impl Whitening {
             let weights = weights.unwrap_or_else(|| DVector::zeros(before.len()));
             let left = (1.0 - own.dot(&weights)).max(1e-6);
             Row {
-                place: *place,
+                position: *position,
                 scale: left.sqrt().recip(),
                 before: before
                     .iter()
@@ -159,8 +160,8 @@ impl Whitening {
                     .iter()
                     .map(|(j, b)| b * values[2 * j + axis])
                     .sum();
-                let place = 2 * row.place + axis;
-                white[place] = row.scale * (values[place] - known);
+                let position = 2 * row.position + axis;
+                white[position] = row.scale * (values[position] - known);
             }
         }
     }
@@ -170,10 +171,10 @@ impl Whitening {
         let (mut rest, mut result) = (values.to_vec(), vec![0.0; values.len()]);
         for row in self.rows.iter().rev() {
             for axis in [0, 1] {
-                let place = 2 * row.place + axis;
-                result[place] = rest[place] / row.scale;
+                let position = 2 * row.position + axis;
+                result[position] = rest[position] / row.scale;
                 for (j, b) in &row.before {
-                    rest[2 * j + axis] += b * rest[place];
+                    rest[2 * j + axis] += b * rest[position];
                 }
             }
         }
@@ -197,8 +198,8 @@ mod tests {
     use super::*;
 
     fn sites() -> Sites {
-        let places = (0..6).flat_map(|i| (0..5).map(move |j| [f64::from(i), f64::from(j)]));
-        Sites::new(places.collect())
+        let positions = (0..6).flat_map(|i| (0..5).map(move |j| [f64::from(i), f64::from(j)]));
+        Sites::new(positions.collect())
     }
 
     const SHORT: Correlation = Correlation {
@@ -223,21 +224,21 @@ mod tests {
     fn whitening_is_the_inverse_root_of_the_correlation() {
         let sites = sites();
         let whitening = Whitening::new(&sites, &SHORT);
-        let places = sites.places();
-        let exact = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+        let positions = sites.positions();
+        let exact = DMatrix::from_fn(positions.len(), positions.len(), |i, j| {
             if i == j {
                 1.0
             } else {
-                SHORT.at(distance(places[i], places[j]))
+                SHORT.at(distance(positions[i], positions[j]))
             }
         });
         let exact_log = exact.clone().determinant().ln();
         assert!((whitening.log_determinant() / exact_log - 1.0).abs() < 0.02);
         let wave = |k: usize| (0.7 * k as f64).sin();
-        let both: Vec<f64> = (0..places.len())
+        let both: Vec<f64> = (0..positions.len())
             .flat_map(|k| [wave(k), -2.0 * wave(k)])
             .collect();
-        let one = DVector::from_fn(places.len(), |k, _| wave(k));
+        let one = DVector::from_fn(positions.len(), |k, _| wave(k));
         let square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
         let direct = one.dot(&(&exact * &one));
         let found = square(&whitening.apply_inverse_transposed(&both));
@@ -260,13 +261,13 @@ mod tests {
 
     #[test]
     fn long_correlations_leave_few_independent_values() {
-        let places = sites().places().to_vec();
-        assert!(SHORT.independent(&places) > 15.0);
+        let positions = sites().positions().to_vec();
+        assert!(SHORT.independent(&positions) > 15.0);
         let long = Correlation {
             share: 1.0,
             length: 100.0,
             ..SHORT
         };
-        assert!(long.independent(&places) < 1.2);
+        assert!(long.independent(&positions) < 1.2);
     }
 }

@@ -30,14 +30,14 @@ impl Curve {
     }
 
     /// Rows in the order of their places.
-    pub fn of_places(mut places: Vec<(usize, f64)>) -> Self {
-        places.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let gaps = places.windows(2).map(|pair| pair[1].1 - pair[0].1);
+    pub fn of_places(mut positions: Vec<(usize, f64)>) -> Self {
+        positions.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let gaps = positions.windows(2).map(|pair| pair[1].1 - pair[0].1);
         let gaps: Vec<f64> = gaps.collect();
         let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
         let mean = if mean > 0.0 { mean } else { 1.0 };
         Self {
-            rows: places.into_iter().map(|(row, _)| row).collect(),
+            rows: positions.into_iter().map(|(row, _)| row).collect(),
             gaps: gaps.into_iter().map(|gap| gap / mean).collect(),
         }
     }

@@ -42,7 +42,7 @@ fn likelihood(curves: &[Vec<usize>], residual: &DVector<f64>, squares: &DVector<
     const FEWEST: usize = 3;
     let of_curve = |rows: &Vec<usize>| {
         let own = rows.windows(3).map(|near| {
-            let [before, at, after] = [0, 1, 2].map(|place| near[place]);
+            let [before, at, after] = [0, 1, 2].map(|position| near[position]);
             let variance = (4.0 * squares[at] + squares[before] + squares[after]) / 6.0;
             let difference = 2.0 * residual[at] - residual[before] - residual[after];
             (variance.ln(), difference.powi(2) / 6.0 / variance)

@@ -5,10 +5,10 @@
 /// # Panics
 /// Without values.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let below = place.floor() as usize;
+    let position = share * (sorted.len() - 1) as f64;
+    let below = position.floor() as usize;
     let above = (below + 1).min(sorted.len() - 1);
-    let part = place - below as f64;
+    let part = position - below as f64;
     sorted[below] * (1.0 - part) + sorted[above] * part
 }
 

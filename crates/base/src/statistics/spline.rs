@@ -66,7 +66,7 @@ impl BSpline {
     }
 
     /// Where equal parts 0 ≤ t ≤ 1 of the range end, as a share of it.
-    fn place(&self, t: f64) -> f64 {
+    fn position(&self, t: f64) -> f64 {
         match self.graded {
             [false, false] => t,
             [true, false] => t.powf(GRADING),
@@ -96,7 +96,7 @@ impl BSpline {
             Ends::Clamped => {
                 let index = index.saturating_sub(self.degree).min(self.intervals);
                 let intervals = self.intervals as f64;
-                intervals * self.place(index as f64 / intervals)
+                intervals * self.position(index as f64 / intervals)
             }
         }
     }

@@ -75,10 +75,11 @@ pub struct Unevenness {
 
 impl Unevenness {
     /// The unevenness of vectors of noise at some places, `None` at places that are not sound; `None` where all may be of one size.
-    pub fn found(places: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
-        let sound = places.iter().zip(noise);
-        let (own, z): (Vec<_>, Vec<_>) =
-            sound.filter_map(|(place, z)| Some((*place, (*z)?))).unzip();
+    pub fn found(positions: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
+        let sound = positions.iter().zip(noise);
+        let (own, z): (Vec<_>, Vec<_>) = sound
+            .filter_map(|(position, z)| Some((*position, (*z)?)))
+            .unzip();
         let told = Told::of(&own, &z)?;
         let apart = told.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
         let ratios = told.slopes(&apart);
@@ -92,7 +93,7 @@ impl Unevenness {
         if sizes.is_none() && ratios.is_none() && ratio.is_none() {
             return None;
         }
-        let sites = sites(places, &own, told.margin)?;
+        let sites = sites(positions, &own, told.margin)?;
         let nothing = [0.0; TERMS];
         let sizes = at(&sizes.unwrap_or(nothing), &sites);
         // The mean of the ratios is that of their logarithms, where it is any.
@@ -139,16 +140,16 @@ struct Logarithms {
 
 impl Told {
     /// The differences at sound places; `None` where these are too few, or have no noise.
-    fn of(places: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Self> {
-        if places.len() < FEWEST[0] {
+    fn of(positions: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Self> {
+        if positions.len() < FEWEST[0] {
             return None;
         }
-        let around = nearest(places, FAR);
+        let around = nearest(positions, FAR);
         let differences = differences(&around, z)?;
         let margin = correlation(&around, z) < CORRELATED;
-        let all = sites(places, places, true)?;
+        let all = sites(positions, positions, true)?;
         let is_inside = |index: &usize| all[*index][OUT[0]].max(all[*index][OUT[1]]) < MARGIN;
-        let chosen = (0..places.len()).filter(|index| margin || is_inside(index));
+        let chosen = (0..positions.len()).filter(|index| margin || is_inside(index));
         let chosen: Vec<usize> = chosen.collect();
         if chosen.len() < FEWEST[0] {
             return None;
@@ -157,7 +158,7 @@ impl Told {
             let squares = chosen.iter().map(|index| differences[*index][axis].powi(2));
             above_rounding(squares.collect())
         };
-        let own: Vec<[f64; 2]> = chosen.iter().map(|index| places[*index]).collect();
+        let own: Vec<[f64; 2]> = chosen.iter().map(|index| positions[*index]).collect();
         Some(Self {
             margin,
             sites: chosen
@@ -252,16 +253,16 @@ fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
 }
 
 /// q of places, relative to those that are sound; `None` where it is not a number.
-fn sites(places: &[[f64; 2]], sound: &[[f64; 2]], margin: bool) -> Option<Vec<[f64; TERMS]>> {
-    let sides = [0, 1].map(|axis| extremes(sound.iter().map(|place| place[axis])));
-    let around = nearest(places, AROUND).into_iter().enumerate();
+fn sites(positions: &[[f64; 2]], sound: &[[f64; 2]], margin: bool) -> Option<Vec<[f64; TERMS]>> {
+    let sides = [0, 1].map(|axis| extremes(sound.iter().map(|position| position[axis])));
+    let around = nearest(positions, AROUND).into_iter().enumerate();
     let of_place = |(own, others): (usize, Vec<usize>)| {
-        let place = places[own];
+        let position = positions[own];
         let [x, y] = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
-            share(2.0 * place[axis] - low - high, high - low)
+            share(2.0 * position[axis] - low - high, high - low)
         });
-        let [out_x, out_y] = out_of_the_middle(places, place, &others);
+        let [out_x, out_y] = out_of_the_middle(positions, position, &others);
         with_margin([x, y, out_x, out_y, x * x, x * y, y * y], margin)
     };
     let all: Vec<_> = around.map(of_place).collect();
@@ -272,10 +273,10 @@ fn sites(places: &[[f64; 2]], sound: &[[f64; 2]], margin: bool) -> Option<Vec<[f
 }
 
 /// How far a place lies out of the middle of its neighbours along each axis, over their mean distance.
-fn out_of_the_middle(places: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) -> [f64; 2] {
+fn out_of_the_middle(positions: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) -> [f64; 2] {
     let away = others
         .iter()
-        .map(|other| [places[*other][0] - x, places[*other][1] - y]);
+        .map(|other| [positions[*other][0] - x, positions[*other][1] - y]);
     let (sum, far) = away.fold(([0.0; 2], 0.0), |(sum, far), [x, y]| {
         ([sum[0] + x, sum[1] + y], far + x.hypot(y))
     });

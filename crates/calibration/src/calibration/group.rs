@@ -92,7 +92,7 @@ impl Group {
     }
 
     /// Where stresses are compared: protocols in three ratios of the largest strains of biaxial tests, the test's own strains of others.
-    fn places(reached: [f64; 2], test: Test) -> Vec<Observation> {
+    fn positions(reached: [f64; 2], test: Test) -> Vec<Observation> {
         const RATIOS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
         let ratios = match test {
             Test::Biaxial => &RATIOS[..],
@@ -125,10 +125,10 @@ impl Group {
             let of_other = other.reached();
             reached = [0, 1].map(|axis| reached[axis].min(of_other[axis]));
         }
-        let places = Self::places(reached, self.tests[0].test);
+        let positions = Self::positions(reached, self.tests[0].test);
         let of_fit = |(fit, test): (&Fit, &TestData)| -> Vec<[f64; 2]> {
-            let halves = fit.half_widths(test, &places).into_iter();
-            let pairs = places.iter().zip(halves);
+            let halves = fit.half_widths(test, &positions).into_iter();
+            let pairs = positions.iter().zip(halves);
             pairs
                 .map(|(one, half)| {
                     // Without intervals the spread alone speaks.
@@ -150,7 +150,7 @@ impl Group {
                 stress: RandomEffects::new(&stresses).expect("two specimens at least"),
             }
         };
-        places.iter().enumerate().map(state).collect()
+        positions.iter().enumerate().map(state).collect()
     }
 
     /// The mean stresses of some states as a test.

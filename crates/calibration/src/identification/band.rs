@@ -75,27 +75,27 @@ impl Function {
     }
 
     /// Evenly spaced arguments over the range of the data.
-    pub fn places(&self, count: usize) -> Vec<f64> {
+    pub fn positions(&self, count: usize) -> Vec<f64> {
         let [low, high] = self.basis.range;
-        let place = |i: usize| low + (high - low) * i as f64 / (count - 1) as f64;
-        (0..count).map(place).collect()
+        let position = |i: usize| low + (high - low) * i as f64 / (count - 1) as f64;
+        (0..count).map(position).collect()
     }
 
     fn product(&self, x: f64, y: f64) -> f64 {
-        let [x, y] = [x, y].map(|place| self.basis.values(place, 0));
+        let [x, y] = [x, y].map(|position| self.basis.values(position, 0));
         x.dot(&(&self.covariance * y))
     }
 
     /// κ: the length of the curve of unit vectors that the function's errors follow.
     fn length(&self) -> f64 {
         const STEPS: usize = 400;
-        let places = self.places(STEPS + 1);
+        let positions = self.positions(STEPS + 1);
         let angle = |pair: &[f64]| {
             let own = self.product(pair[0], pair[0]) * self.product(pair[1], pair[1]);
             let cosine = self.product(pair[0], pair[1]) / own.sqrt();
             (2.0 - 2.0 * cosine).max(0.0).sqrt()
         };
-        places.windows(2).map(angle).sum()
+        positions.windows(2).map(angle).sum()
     }
 }
 

@@ -53,11 +53,11 @@ mod tests {
     use super::*;
 
     /// A motion over ten periods of 120 instants.
-    fn sampled(place: impl Fn(f64) -> f64, noise: f64) -> Vec<f64> {
+    fn sampled(position: impl Fn(f64) -> f64, noise: f64) -> Vec<f64> {
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         (0..1200)
-            .map(|i| place(f64::from(i) / 120.0) + noise * draw())
+            .map(|i| position(f64::from(i) / 120.0) + noise * draw())
             .collect()
     }
 

@@ -100,9 +100,9 @@ impl FunctionText<'_> {
 
     /// Values below zero are written as zero: studies refuse springs that push and dashpots that add energy.
     fn table(&self) -> String {
-        let places = self.function.places(POINTS);
-        let estimates: Vec<_> = places.iter().map(|x| self.function.at(*x)).collect();
-        let arguments: Vec<String> = places.iter().map(|x| plain(x / self.scale)).collect();
+        let positions = self.function.positions(POINTS);
+        let estimates: Vec<_> = positions.iter().map(|x| self.function.at(*x)).collect();
+        let arguments: Vec<String> = positions.iter().map(|x| plain(x / self.scale)).collect();
         let values: Vec<f64> = estimates
             .iter()
             .map(|one| self.factor * one.value.max(0.0))

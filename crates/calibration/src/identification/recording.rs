@@ -167,8 +167,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn fault(&mut self, place: Range<usize>, message: impl Into<String>, hint: &str) {
-        self.faults.push(self.table.fault(place, message, hint));
+    fn fault(&mut self, position: Range<usize>, message: impl Into<String>, hint: &str) {
+        self.faults.push(self.table.fault(position, message, hint));
     }
 
     fn take<T: Default>(&mut self, found: Faulty<T>) -> T {
@@ -181,11 +181,11 @@ impl Reader<'_> {
     /// A column in the internal unit.
     fn column(&mut self, signal: Signal) -> Vec<f64> {
         let (name, dimension) = signal.usual();
-        let place = self.table.columns_place.clone();
+        let position = self.table.columns_place.clone();
         let Some(index) = signal.column(self.table) else {
             let unit = dimension.units().next().unwrap_or("-");
             let hint = format!("name one `{name} [{unit}]`");
-            self.fault(place, format!("there is no column `{name}`"), &hint);
+            self.fault(position, format!("there is no column `{name}`"), &hint);
             return Vec::new();
         };
         let hint = "every row needs a number in this column";
@@ -206,7 +206,7 @@ impl Reader<'_> {
                         units.join(", ")
                     ),
                 };
-                self.fault(place, format!("the column `{name}` {reason}"), &hint);
+                self.fault(position, format!("the column `{name}` {reason}"), &hint);
                 Vec::new()
             }
         }
@@ -217,9 +217,9 @@ impl Reader<'_> {
         if let Some(row) = wrong {
             let (first, second) = (times[row], times[row + 1]);
             let message = format!("time {second} s does not come after {first} s");
-            let place = self.table.rows[row + 1].1.clone();
+            let position = self.table.rows[row + 1].1.clone();
             let hint = "sort the rows by time and leave out repeated ones";
-            self.fault(place, message, hint);
+            self.fault(position, message, hint);
         }
     }
 }

@@ -84,8 +84,8 @@ impl BandMatrix {
                 if product == 0.0 {
                     continue;
                 }
-                if let Some(place) = self.cholesky.pattern().position(first + j, first + i) {
-                    self.values[place] += product;
+                if let Some(position) = self.cholesky.pattern().position(first + j, first + i) {
+                    self.values[position] += product;
                 }
             }
         }

@@ -155,16 +155,16 @@ fn trials(
     let (reduced, own) = (&equations.reduced, state.functions.len());
     let gradient = reduced.gradient.rows(0, own) - &found.penalty * &state.functions;
     let trial = |(index, suspect): (usize, &Suspect)| {
-        let place = own + index;
+        let position = own + index;
         let mixed: DVector<f64> = reduced
             .information
-            .view((0, place), (own, 1))
+            .view((0, position), (own, 1))
             .column(0)
             .into();
         let follow = &found.inverse * &mixed;
-        let information = reduced.information[(place, place)] - mixed.dot(&follow);
+        let information = reduced.information[(position, position)] - mixed.dot(&follow);
         let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
-        let score = reduced.gradient[place] - follow.dot(&gradient);
+        let score = reduced.gradient[position] - follow.dot(&gradient);
         let is_own = information > OWN * square;
         let (amount, error) = if is_own {
             let error = (fit.misfit.max(1.0) / information).sqrt();

@@ -134,8 +134,11 @@ fn a_shape_is_kept_against_the_data() {
             ..IdentificationSettings::default()
         };
         let found = identify(&recording, wanted, &|_| ()).unwrap();
-        let places = found.damping.places(200);
-        let values: Vec<f64> = places.iter().map(|x| found.damping.at(*x).value).collect();
+        let positions = found.damping.positions(200);
+        let values: Vec<f64> = positions
+            .iter()
+            .map(|x| found.damping.at(*x).value)
+            .collect();
         let size = values.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let rises = values.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0));
         rises.sum::<f64>() / size

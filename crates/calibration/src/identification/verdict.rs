@@ -48,7 +48,7 @@ fn negative(found: &Identification) -> Vec<String> {
     let mut doubts = Vec::new();
     for (name, _, function) in found.functions() {
         let is_negative = function
-            .places(PLACES)
+            .positions(PLACES)
             .into_iter()
             .map(|x| function.at(x).interval[1] < 0.0);
         let count = is_negative.filter(|is_negative| *is_negative).count();
@@ -69,7 +69,7 @@ fn negative(found: &Identification) -> Vec<String> {
 pub fn notes(found: &Identification, recording: &Recording) -> Vec<String> {
     let is_undetermined = |function: &Function| {
         function
-            .places(PLACES)
+            .positions(PLACES)
             .into_iter()
             .all(|x| function.at(x).interval[0] <= 0.0 && function.at(x).interval[1] >= 0.0)
     };

@@ -284,9 +284,11 @@ impl<'a> Climb<'a> {
     /// The force on the moving grip in N: the virtual work of all forces in a uniform stretch.
     fn force(&mut self, field: &Field) -> Result<f64, Inverted> {
         let length = self.problem.size[0];
-        let places = self.grid().coordinates[0].clone();
+        let coordinates = self.grid().coordinates[0].clone();
         let forces = self.forces(field).ok_or(Inverted)?;
-        let lines = forces.components[0].chunks_exact(field.width).zip(places);
+        let lines = forces.components[0]
+            .chunks_exact(field.width)
+            .zip(coordinates);
         Ok(lines
             .map(|(line, x)| x / length * line.iter().sum::<f64>())
             .sum())
@@ -341,14 +343,14 @@ fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<
 }
 
 /// Every second one of some places; where the number of intervals is odd, places between them.
-fn thin_out(places: &[f64]) -> Vec<f64> {
-    let fine = places.len() - 1;
+fn thin_out(coordinates: &[f64]) -> Vec<f64> {
+    let fine = coordinates.len() - 1;
     let coarse = fine.div_ceil(2);
     let at = |index: usize| {
         let position = (index * fine) as f64 / coarse as f64;
         let before = (position as usize).min(fine - 1);
         let share = position - before as f64;
-        places[before] + share * (places[before + 1] - places[before])
+        coordinates[before] + share * (coordinates[before + 1] - coordinates[before])
     };
     (0..=coarse).map(at).collect()
 }

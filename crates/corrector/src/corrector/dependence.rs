@@ -62,8 +62,8 @@ pub fn find(jacobian: &SparseRows, values: &[f64], field_size: f64) -> Option<De
 
 fn vanishing_combination(scaled: &SparseRows) -> Result<Vec<f64>, FactorFault> {
     let (pattern, mut values) = scaled.normal_matrix(&vec![1.0; scaled.columns()]);
-    for place in pattern.diagonal() {
-        values[*place] += SHIFT;
+    for position in pattern.diagonal() {
+        values[*position] += SHIFT;
     }
     let mut cholesky = Cholesky::analyse(pattern)?;
     cholesky.factorise(&values)?;

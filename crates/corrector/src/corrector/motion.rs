@@ -296,8 +296,8 @@ impl<'a> EquationOfMotion<'a> {
             }
         }
         let diagonal = self.assembly.pattern().diagonal();
-        for (unknown, place) in self.assembly.free().iter().zip(diagonal) {
-            values[*place] += inertia * self.inertia(*unknown);
+        for (unknown, position) in self.assembly.free().iter().zip(diagonal) {
+            values[*position] += inertia * self.inertia(*unknown);
         }
         values
     }

@@ -75,13 +75,13 @@ impl<const NODES: usize> Rule<NODES> {
 }
 
 /// Value and derivative of each node's polynomial, which is one there and zero at the other nodes.
-fn lagrange<const NODES: usize>(nodes: &[f64], place: f64) -> [[f64; 2]; NODES] {
+fn lagrange<const NODES: usize>(nodes: &[f64], position: f64) -> [[f64; 2]; NODES] {
     std::array::from_fn(|own| {
         let others = || (0..NODES).filter(move |other| *other != own);
         let factor = |other: usize| 1.0 / (nodes[own] - nodes[other]);
         let without = |left_out: usize| -> f64 {
             let kept = others().filter(|other| *other != left_out);
-            kept.map(|other| (place - nodes[other]) * factor(other))
+            kept.map(|other| (position - nodes[other]) * factor(other))
                 .product()
         };
         let slope = others().map(|other| factor(other) * without(other)).sum();
@@ -101,7 +101,7 @@ pub fn energy<const NODES: usize>(
 ) -> SheetEnergy {
     let order = NODES - 1;
     let [x, y] = coordinates;
-    let cells = [x, y].map(|places| places.len() - 1);
+    let cells = [x, y].map(|positions| positions.len() - 1);
     assert!(cells.iter().all(|cells| cells.is_multiple_of(order)));
     let nodes = x.iter().flat_map(|x| y.iter().map(|y| [*x, *y])).collect();
     let mut energy = SheetEnergy::new(Arc::clone(&problem.law), x.len() * y.len());

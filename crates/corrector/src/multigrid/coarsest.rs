@@ -61,13 +61,13 @@ impl Factor {
     }
 
     /// Where column j of row i is kept.
-    fn place(&self, i: usize, j: usize) -> usize {
+    fn position(&self, i: usize, j: usize) -> usize {
         (i + 1) * self.numbers.width + j
     }
 
     /// Row i from column `first` to the diagonal.
     fn row(&self, i: usize, first: usize) -> &[f64] {
-        &self.rows[self.place(i, first)..=self.place(i, i)]
+        &self.rows[self.position(i, first)..=self.position(i, i)]
     }
 
     /// The first column of row i.
@@ -86,13 +86,13 @@ impl Factor {
                         continue;
                     }
                     let block = stencil.block([line, node], to).expect("neighbours");
-                    let places = [self.numbers.of(line, node), self.numbers.of(to[0], to[1])];
+                    let positions = [self.numbers.of(line, node), self.numbers.of(to[0], to[1])];
                     for (i, row) in block.iter().enumerate() {
                         for (k, entry) in row.iter().enumerate() {
-                            let pair = [places[0] + i, places[1] + k];
+                            let pair = [positions[0] + i, positions[1] + k];
                             let [column, row] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
-                            let place = self.place(row, column);
-                            self.rows[place] = f64::from(*entry);
+                            let position = self.position(row, column);
+                            self.rows[position] = f64::from(*entry);
                         }
                     }
                 }
@@ -114,8 +114,8 @@ impl Factor {
                     true => return false,
                     false => rest / other[known],
                 };
-                let place = self.place(i, j);
-                self.rows[place] = entry;
+                let position = self.position(i, j);
+                self.rows[position] = entry;
             }
         }
         true
@@ -128,17 +128,17 @@ impl Factor {
         for line in 1..lines.count - 1 {
             let [b_x, b_y] = b.line(line);
             for node in 0..lines.nodes {
-                let place = numbers.of(line, node);
-                solution[place] = f64::from(b_x[node + 1]);
-                solution[place + 1] = f64::from(b_y[node + 1]);
+                let position = numbers.of(line, node);
+                solution[position] = f64::from(b_x[node + 1]);
+                solution[position + 1] = f64::from(b_y[node + 1]);
             }
         }
         self.substitute(&mut solution);
         x.for_each_free_line(|line, x_x, x_y| {
             for node in 0..lines.nodes {
-                let place = numbers.of(line, node);
-                x_x[node + 1] = solution[place] as f32;
-                x_y[node + 1] = solution[place + 1] as f32;
+                let position = numbers.of(line, node);
+                x_x[node + 1] = solution[position] as f32;
+                x_y[node + 1] = solution[position + 1] as f32;
             }
         });
         self.solution = solution;

@@ -24,32 +24,32 @@ impl<'a> LineStencil<'a> {
 
     /// The coefficients of a block, row by row, of the nodes of a vector.
     #[inline(always)]
-    fn block<S: Simd>(&self, [a, b, c, d]: [usize; 4], place: usize) -> [S::f32s; 4] {
+    fn block<S: Simd>(&self, [a, b, c, d]: [usize; 4], position: usize) -> [S::f32s; 4] {
         [
-            load::<S>(self.array(a), place),
-            load::<S>(self.array(b), place),
-            load::<S>(self.array(c), place),
-            load::<S>(self.array(d), place),
+            load::<S>(self.array(a), position),
+            load::<S>(self.array(b), position),
+            load::<S>(self.array(c), position),
+            load::<S>(self.array(d), position),
         ]
     }
 }
 
 /// The numbers of a vector that begin at a place.
 #[inline(always)]
-fn load<S: Simd>(numbers: &[f32], place: usize) -> S::f32s {
-    S::as_simd_f32s(&numbers[place..place + S::F32_LANES]).0[0]
+fn load<S: Simd>(numbers: &[f32], position: usize) -> S::f32s {
+    S::as_simd_f32s(&numbers[position..position + S::F32_LANES]).0[0]
 }
 
 /// Writes a vector of numbers at a place.
 #[inline(always)]
-pub fn store<S: Simd>(numbers: &mut [f32], place: usize, vector: S::f32s) {
-    S::as_mut_simd_f32s(&mut numbers[place..place + S::F32_LANES]).0[0] = vector;
+pub fn store<S: Simd>(numbers: &mut [f32], position: usize, vector: S::f32s) {
+    S::as_mut_simd_f32s(&mut numbers[position..position + S::F32_LANES]).0[0] = vector;
 }
 
 /// The part of both lines of a pair that begins at a place.
 #[inline(always)]
-fn load_pair<S: Simd>(pair: Pair, place: usize) -> [S::f32s; 2] {
-    [load::<S>(pair[0], place), load::<S>(pair[1], place)]
+fn load_pair<S: Simd>(pair: Pair, position: usize) -> [S::f32s; 2] {
+    [load::<S>(pair[0], position), load::<S>(pair[1], position)]
 }
 
 /// a x + b y.
@@ -79,9 +79,9 @@ fn subtract_beside<S: Simd>(
     r: [S::f32s; 2],
     [before, own]: [LineStencil; 2],
     [left, right]: [Pair; 2],
-    place: usize,
+    position: usize,
 ) -> [S::f32s; 2] {
-    let middle = place + 1;
+    let middle = position + 1;
     let r = subtract(
         simd,
         r,
@@ -92,13 +92,13 @@ fn subtract_beside<S: Simd>(
         simd,
         r,
         own.block::<S>(NORTH_EAST, middle),
-        load_pair::<S>(right, place + 2),
+        load_pair::<S>(right, position + 2),
     );
     let r = subtract(
         simd,
         r,
         own.block::<S>(SOUTH_EAST, middle),
-        load_pair::<S>(right, place),
+        load_pair::<S>(right, position),
     );
     let r = subtract(
         simd,
@@ -109,14 +109,14 @@ fn subtract_beside<S: Simd>(
     let r = subtract(
         simd,
         r,
-        before.block::<S>(NORTH_EAST, place),
-        load_pair::<S>(left, place),
+        before.block::<S>(NORTH_EAST, position),
+        load_pair::<S>(left, position),
     );
     subtract(
         simd,
         r,
-        before.block::<S>(SOUTH_EAST, place + 2),
-        load_pair::<S>(left, place + 2),
+        before.block::<S>(SOUTH_EAST, position + 2),
+        load_pair::<S>(left, position + 2),
     )
 }
 
@@ -127,19 +127,19 @@ fn subtract_along<S: Simd>(
     r: [S::f32s; 2],
     own: LineStencil,
     x: Pair,
-    place: usize,
+    position: usize,
 ) -> [S::f32s; 2] {
     let r = subtract(
         simd,
         r,
-        own.block::<S>(NORTH, place + 1),
-        load_pair::<S>(x, place + 2),
+        own.block::<S>(NORTH, position + 1),
+        load_pair::<S>(x, position + 2),
     );
     subtract(
         simd,
         r,
-        own.block::<S>(transposed(NORTH), place),
-        load_pair::<S>(x, place),
+        own.block::<S>(transposed(NORTH), position),
+        load_pair::<S>(x, position),
     )
 }
 
@@ -150,13 +150,13 @@ pub fn residual<S: Simd>(
     [before, own]: [LineStencil; 2],
     [left, middle, right]: [Pair; 3],
     b: Pair,
-    place: usize,
+    position: usize,
 ) -> [S::f32s; 2] {
-    let b = load_pair::<S>(b, place + 1);
-    let r = subtract_beside(simd, b, [before, own], [left, right], place);
-    let r = subtract_along(simd, r, own, middle, place);
-    let block = own.block::<S>(ITSELF, place + 1);
-    subtract(simd, r, block, load_pair::<S>(middle, place + 1))
+    let b = load_pair::<S>(b, position + 1);
+    let r = subtract_beside(simd, b, [before, own], [left, right], position);
+    let r = subtract_along(simd, r, own, middle, position);
+    let block = own.block::<S>(ITSELF, position + 1);
+    subtract(simd, r, block, load_pair::<S>(middle, position + 1))
 }
 
 /// r = b − K x on a line.
@@ -174,10 +174,10 @@ impl WithSimd for LineResidual<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        for place in (0..self.r_x.len() - 2).step_by(S::F32_LANES) {
-            let middle = place + 1;
+        for position in (0..self.r_x.len() - 2).step_by(S::F32_LANES) {
+            let middle = position + 1;
             let stencils = [self.before, self.own];
-            let [r_x, r_y] = residual(simd, stencils, self.x, self.b, place);
+            let [r_x, r_y] = residual(simd, stencils, self.x, self.b, position);
             store::<S>(self.r_x, middle, r_x);
             store::<S>(self.r_y, middle, r_y);
         }
@@ -201,10 +201,10 @@ pub struct SmoothLine<'a> {
 /// One at the nodes of a colour, zero at the others, from a place that is even.
 pub const OWN: [[f32; VECTOR]; 2] = {
     let mut own = [[0.0; VECTOR]; 2];
-    let mut place = 0;
-    while place < VECTOR {
-        own[place % 2][place] = 1.0;
-        place += 1;
+    let mut position = 0;
+    while position < VECTOR {
+        own[position % 2][position] = 1.0;
+        position += 1;
     }
     own
 };
@@ -218,27 +218,27 @@ impl WithSimd for SmoothLine<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let nodes = self.x_x.len() - 2;
         let [g_x, g_y] = self.scratch;
-        for place in (0..nodes).step_by(S::F32_LANES) {
-            let b = load_pair::<S>(self.b, place + 1);
+        for position in (0..nodes).step_by(S::F32_LANES) {
+            let b = load_pair::<S>(self.b, position + 1);
             let [x, y] = match self.beside {
-                Some(beside) => subtract_beside(simd, b, [self.before, self.own], beside, place),
+                Some(beside) => subtract_beside(simd, b, [self.before, self.own], beside, position),
                 None => b,
             };
-            store::<S>(g_x, place, x);
-            store::<S>(g_y, place, y);
+            store::<S>(g_x, position, x);
+            store::<S>(g_y, position, y);
         }
         for colour in [self.first, 1 - self.first] {
             let own = load::<S>(&OWN[colour], 0);
             let other = load::<S>(&OWN[1 - colour], 0);
-            for place in (0..nodes).step_by(S::F32_LANES) {
-                let g = [load::<S>(g_x, place), load::<S>(g_y, place)];
-                let r = subtract_along(simd, g, self.own, [self.x_x, self.x_y], place);
-                let [a, b, c, d] = self.own.block::<S>(INVERSE, place + 1);
-                let [x, y] = load_pair::<S>([self.x_x, self.x_y], place + 1);
+            for position in (0..nodes).step_by(S::F32_LANES) {
+                let g = [load::<S>(g_x, position), load::<S>(g_y, position)];
+                let r = subtract_along(simd, g, self.own, [self.x_x, self.x_y], position);
+                let [a, b, c, d] = self.own.block::<S>(INVERSE, position + 1);
+                let [x, y] = load_pair::<S>([self.x_x, self.x_y], position + 1);
                 let x = combine(simd, [own, other], [combine(simd, [a, b], r), x]);
                 let y = combine(simd, [own, other], [combine(simd, [c, d], r), y]);
-                store::<S>(self.x_x, place + 1, x);
-                store::<S>(self.x_y, place + 1, y);
+                store::<S>(self.x_x, position + 1, x);
+                store::<S>(self.x_y, position + 1, y);
             }
         }
     }

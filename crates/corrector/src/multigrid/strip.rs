@@ -64,7 +64,7 @@ impl LineSmoother {
             count: grid[0].len(),
             nodes: grid[1].len(),
         };
-        let [x, y] = grid.each_ref().map(|places| spacings(places));
+        let [x, y] = grid.each_ref().map(|positions| spacings(positions));
         if [&x, &y].into_iter().all(|spacings| is_even(spacings)) {
             return Self::of(Vec::new());
         }
@@ -132,8 +132,8 @@ impl LineSmoother {
     }
 }
 
-fn spacings(places: &[f64]) -> Vec<f64> {
-    places.windows(2).map(|pair| pair[1] - pair[0]).collect()
+fn spacings(positions: &[f64]) -> Vec<f64> {
+    positions.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
 fn longest(spacings: &[f64]) -> f64 {
@@ -148,15 +148,15 @@ fn is_even(spacings: &[f64]) -> bool {
 /// Runs of places among some whose neighbours are close, as compared with the longest spacing along the other axis.
 fn close(spacings: &[f64], other: f64, among: Range<usize>) -> Vec<Range<usize>> {
     let last = spacings.len() - 1;
-    let is_close = |place: usize| {
-        let shorter = spacings[place.saturating_sub(1)].min(spacings[place.min(last)]);
+    let is_close = |position: usize| {
+        let shorter = spacings[position.saturating_sub(1)].min(spacings[position.min(last)]);
         LONG * shorter < other
     };
     let mut runs: Vec<Range<usize>> = Vec::new();
-    for place in among.filter(|place| is_close(*place)) {
+    for position in among.filter(|position| is_close(*position)) {
         match runs.last_mut() {
-            Some(run) if run.end == place => run.end += 1,
-            _ => runs.push(place..place + 1),
+            Some(run) if run.end == position => run.end += 1,
+            _ => runs.push(position..position + 1),
         }
     }
     runs
@@ -168,16 +168,16 @@ impl Strip {
             Axis::X => lines.padded() / LANES,
             Axis::Y => 2 * batches_of_lines(lines),
         };
-        let places = batches * range.len();
+        let positions = batches * range.len();
         let at_once = match axis {
-            Axis::X => places,
-            Axis::Y => places / 2,
+            Axis::X => positions,
+            Axis::Y => positions / 2,
         };
         Self {
             axis,
             range,
             lines,
-            factors: vec![0.0; places * FACTOR],
+            factors: vec![0.0; positions * FACTOR],
             corrections: vec![0.0; at_once * PAIR],
         }
     }
@@ -192,8 +192,9 @@ impl Strip {
         let mut factors = std::mem::take(&mut self.factors);
         let size = self.range.len() * FACTOR;
         let factorise = |(batch, factors): (usize, &mut [f32])| {
-            let places = self.range.clone().zip(factors.chunks_exact_mut(FACTOR));
-            places.for_each(|(place, numbers)| self.gather(stencil, batch, place, numbers));
+            let positions = self.range.clone().zip(factors.chunks_exact_mut(FACTOR));
+            positions
+                .for_each(|(position, numbers)| self.gather(stencil, batch, position, numbers));
             Arch::new().dispatch(Factorise { factors });
         };
         if self.lines.threaded() {
@@ -205,11 +206,11 @@ impl Strip {
     }
 
     /// Writes Dₖ and Eₖ of a batch's lines at a place.
-    fn gather(&self, stencil: &Stencil, batch: usize, place: usize, numbers: &mut [f32]) {
+    fn gather(&self, stencil: &Stencil, batch: usize, position: usize, numbers: &mut [f32]) {
         let lanes = numbers.chunks_exact_mut(LANES);
         match self.axis {
             Axis::X => {
-                let own = stencil.line(place);
+                let own = stencil.line(position);
                 for (k, lanes) in [0, 1, 2, 7, 8, 9, 10].into_iter().zip(lanes) {
                     lanes.copy_from_slice(&own.array(k)[1 + batch * LANES..][..LANES]);
                 }
@@ -220,7 +221,8 @@ impl Strip {
                 for (k, lanes) in [0, 1, 2, 3, 4, 5, 6].into_iter().zip(lanes) {
                     for (lane, number) in lanes.iter_mut().enumerate() {
                         let line = self.free_line([parity, batch, lane]);
-                        *number = line.map_or(0.0, |line| stencil.line(line).array(k)[place + 1]);
+                        *number =
+                            line.map_or(0.0, |line| stencil.line(line).array(k)[position + 1]);
                     }
                 }
             }
@@ -230,7 +232,7 @@ impl Strip {
     /// Solves for the lines of one colour.
     fn relax(&mut self, stencil: &Stencil, x: &mut Vector, b: &Vector, colour: usize) {
         let mut corrections = std::mem::take(&mut self.corrections);
-        let places = self.range.len();
+        let positions = self.range.len();
         let factors = match self.axis {
             Axis::X => &self.factors[..],
             Axis::Y => &self.factors[colour * self.factors.len() / 2..],
@@ -243,11 +245,11 @@ impl Strip {
                 b,
                 colour,
                 batch,
-                factors: &factors[batch * places * FACTOR..][..places * FACTOR],
+                factors: &factors[batch * positions * FACTOR..][..positions * FACTOR],
                 corrections,
             });
         };
-        let size = places * PAIR;
+        let size = positions * PAIR;
         if self.lines.threaded() {
             corrections.par_chunks_mut(size).enumerate().for_each(solve)
         } else {
@@ -259,7 +261,7 @@ impl Strip {
 
     /// Adds the corrections of one colour.
     fn add(&self, corrections: &[f32], x: &mut Vector, colour: usize) {
-        let places = self.range.len();
+        let positions = self.range.len();
         let start = self.range.start;
         match self.axis {
             Axis::X => x.for_each_free_line(|line, x_x, x_y| {
@@ -269,8 +271,8 @@ impl Strip {
                 for (component, x) in [x_x, x_y].into_iter().enumerate() {
                     let batches = x[1..].chunks_exact_mut(LANES).enumerate();
                     for (batch, x) in batches {
-                        let place = batch * places + line - start;
-                        let own = &corrections[(2 * place + component) * LANES..][..LANES];
+                        let position = batch * positions + line - start;
+                        let own = &corrections[(2 * position + component) * LANES..][..LANES];
                         for ((x, correction), own) in x.iter_mut().zip(own).zip(&OWN[colour]) {
                             *x += own * correction;
                         }
@@ -280,7 +282,7 @@ impl Strip {
             Axis::Y => x.for_each_of_parity(colour, |line, _, x_x, x_y| {
                 let (batch, lane) = (line / 2 / LANES, line / 2 % LANES);
                 for (component, x) in [x_x, x_y].into_iter().enumerate() {
-                    let first = 2 * batch * places + component;
+                    let first = 2 * batch * positions + component;
                     let own = corrections[first * LANES + lane..].iter().step_by(PAIR);
                     let x = x[start + 1..=self.range.end].iter_mut();
                     x.zip(own).for_each(|(x, correction)| *x += correction);
@@ -323,23 +325,23 @@ impl WithSimd for Batch<'_> {
 impl Batch<'_> {
     /// b − K x of a line at the nodes that begin at a place.
     #[inline(always)]
-    fn residual<S: Simd>(&self, simd: S, line: usize, place: usize) -> [S::f32s; 2] {
+    fn residual<S: Simd>(&self, simd: S, line: usize, position: usize) -> [S::f32s; 2] {
         let stencils: [LineStencil; 2] = [self.stencil.line(line - 1), self.stencil.line(line)];
         let x = [
             self.x.line(line - 1),
             self.x.line(line),
             self.x.line(line + 1),
         ];
-        residual::<S>(simd, stencils, x, self.b.line(line), place)
+        residual::<S>(simd, stencils, x, self.b.line(line), position)
     }
 
     #[inline(always)]
     fn residual_along_x<S: Simd>(&mut self, simd: S) {
-        for (place, line) in self.strip.range.clone().enumerate() {
+        for (position, line) in self.strip.range.clone().enumerate() {
             for lane in (0..LANES).step_by(S::F32_LANES) {
                 let r = self.residual(simd, line, self.batch * LANES + lane);
                 for (component, r) in r.into_iter().enumerate() {
-                    let target = (2 * place + component) * LANES + lane;
+                    let target = (2 * position + component) * LANES + lane;
                     store::<S>(self.corrections, target, r);
                 }
             }

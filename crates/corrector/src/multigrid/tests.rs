@@ -72,8 +72,8 @@ fn noise(lines: Lines, seed: u32) -> Vector {
     vector.for_each_free_line(|line, x, y| {
         for (axis, values) in [x, y].into_iter().enumerate() {
             for (node, value) in values[1..=lines.nodes].iter_mut().enumerate() {
-                let place = (line * 8_191 + node * 131 + axis * 17) as u32;
-                let mixed = place
+                let position = (line * 8_191 + node * 131 + axis * 17) as u32;
+                let mixed = position
                     .wrapping_mul(2_654_435_761)
                     .wrapping_add(seed)
                     .rotate_left(13);

@@ -12,60 +12,60 @@ pub struct Interpolation {
 
 impl Interpolation {
     /// Linear between the two nodes beside each place.
-    pub fn linear(nodes: &[f64], places: &[f64]) -> Self {
-        Self::lagrange(nodes, places, 2)
+    pub fn linear(nodes: &[f64], positions: &[f64]) -> Self {
+        Self::lagrange(nodes, positions, 2)
     }
 
     /// By cubics through the four nodes around each place, or through all where there are fewer.
-    pub fn cubic(nodes: &[f64], places: &[f64]) -> Self {
-        Self::lagrange(nodes, places, 4.min(nodes.len()))
+    pub fn cubic(nodes: &[f64], positions: &[f64]) -> Self {
+        Self::lagrange(nodes, positions, 4.min(nodes.len()))
     }
 
     /// By the polynomials of a degree through the nodes of each element.
-    pub fn of_elements(nodes: &[f64], places: &[f64], degree: usize) -> Self {
+    pub fn of_elements(nodes: &[f64], positions: &[f64], degree: usize) -> Self {
         let last = (nodes.len() - 1) / degree - 1;
-        let share = |place: &f64| {
-            let after = nodes.partition_point(|node| node <= place);
+        let share = |position: &f64| {
+            let after = nodes.partition_point(|node| node <= position);
             let first = (after.saturating_sub(1) / degree).min(last) * degree;
-            (first, shares(&nodes[first..=first + degree], *place))
+            (first, shares(&nodes[first..=first + degree], *position))
         };
         Self {
-            shares: places.iter().map(share).collect(),
+            shares: positions.iter().map(share).collect(),
             width: degree + 1,
         }
     }
 
-    fn lagrange(nodes: &[f64], places: &[f64], width: usize) -> Self {
-        let share = |place: &f64| {
-            let after = nodes.partition_point(|node| node <= place);
+    fn lagrange(nodes: &[f64], positions: &[f64], width: usize) -> Self {
+        let share = |position: &f64| {
+            let after = nodes.partition_point(|node| node <= position);
             let first = after.saturating_sub(width / 2).min(nodes.len() - width);
-            (first, shares(&nodes[first..first + width], *place))
+            (first, shares(&nodes[first..first + width], *position))
         };
         Self {
-            shares: places.iter().map(share).collect(),
+            shares: positions.iter().map(share).collect(),
             width,
         }
     }
 
     /// For each place the first node and the shares of it and of those that follow.
     pub fn shares(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        (0..self.shares.len()).map(|place| self.at(place))
+        (0..self.shares.len()).map(|position| self.at(position))
     }
 
     /// The first node and the shares of it and of those that follow, for one of the places.
-    pub fn at(&self, place: usize) -> (usize, &[f64]) {
-        let (first, shares) = &self.shares[place];
+    pub fn at(&self, position: usize) -> (usize, &[f64]) {
+        let (first, shares) = &self.shares[position];
         (*first, &shares[..self.width])
     }
 }
 
 /// The shares of up to four nodes at a place, by the polynomial through them.
-fn shares(nodes: &[f64], place: f64) -> [f64; 4] {
+fn shares(nodes: &[f64], position: f64) -> [f64; 4] {
     let mut shares = [0.0; 4];
     for (i, (share, own)) in shares.iter_mut().zip(nodes).enumerate() {
         let others = nodes.iter().enumerate().filter(|(other, _)| *other != i);
         *share = others
-            .map(|(_, other)| (place - other) / (own - other))
+            .map(|(_, other)| (position - other) / (own - other))
             .product();
     }
     shares
@@ -83,7 +83,7 @@ struct Axis {
 impl Axis {
     fn new(coarse: &[f64], fine: &[f64]) -> Self {
         let linear = Interpolation::linear(coarse, fine);
-        let places: Vec<(usize, f32)> = linear
+        let positions: Vec<(usize, f32)> = linear
             .shares()
             .map(|(first, shares)| (first, shares[1] as f32))
             .collect();
@@ -93,7 +93,7 @@ impl Axis {
             _ => 0.0,
         };
         let gather = |node: usize| {
-            let shares = places.iter().map(|place| share(node, place));
+            let shares = positions.iter().map(|position| share(node, position));
             let mut shares: Vec<f32> = shares.collect();
             let first = shares.iter().position(|share| *share != 0.0).unwrap_or(0);
             shares.drain(..first);
@@ -103,7 +103,7 @@ impl Axis {
         };
         Self {
             coarse: (0..coarse.len()).map(gather).collect(),
-            fine: places,
+            fine: positions,
         }
     }
 }
@@ -145,7 +145,9 @@ impl Transfer {
             for (axis, x) in [x_x, x_y].into_iter().enumerate() {
                 let (first, second) = (c.line(before)[axis], c.line(before + 1)[axis]);
                 for ((before, next), x) in along_y.fine.iter().zip(&mut x[1..]) {
-                    let at = |place: usize| first[place] + share * (second[place] - first[place]);
+                    let at = |position: usize| {
+                        first[position] + share * (second[position] - first[position])
+                    };
                     *x += (1.0 - next) * at(before + 1) + next * at(before + 2);
                 }
             }
@@ -161,12 +163,12 @@ mod tests {
     fn cubics_are_reproduced_between_uneven_nodes() {
         let cubic = |x: f64| 1.0 - x + 2.0 * x * x - 0.3 * x * x * x;
         let nodes = [0.0, 0.4, 1.0, 1.3, 2.5, 3.0];
-        let places = [0.0, 0.1, 0.4, 0.9, 1.2, 2.6, 3.0];
-        let interpolation = Interpolation::cubic(&nodes, &places);
-        for (place, (first, shares)) in places.iter().zip(interpolation.shares()) {
+        let positions = [0.0, 0.1, 0.4, 0.9, 1.2, 2.6, 3.0];
+        let interpolation = Interpolation::cubic(&nodes, &positions);
+        for (position, (first, shares)) in positions.iter().zip(interpolation.shares()) {
             let pairs = shares.iter().zip(&nodes[first..]);
             let value: f64 = pairs.map(|(share, node)| share * cubic(*node)).sum();
-            assert!((value - cubic(*place)).abs() < 1e-13, "{place}");
+            assert!((value - cubic(*position)).abs() < 1e-13, "{position}");
         }
     }
 }

@@ -79,10 +79,10 @@ fn split<const N: usize>(numbers: &[f32]) -> [Lanes; N] {
 #[inline(always)]
 pub fn substitute(factors: &[f32], corrections: &mut [f32]) {
     let mut from_before = [[0.0; LANES]; 2];
-    let places = factors
+    let positions = factors
         .chunks_exact(FACTOR)
         .zip(corrections.chunks_exact_mut(PAIR));
-    for (factors, pair) in places {
+    for (factors, pair) in positions {
         let [p, q, r, a, b, c, d]: [Lanes; 7] = split(factors);
         let (first, second) = pair.split_at_mut(LANES);
         for lane in 0..LANES {
@@ -95,10 +95,10 @@ pub fn substitute(factors: &[f32], corrections: &mut [f32]) {
         }
     }
     let mut after = [[0.0; LANES]; 2];
-    let places = factors
+    let positions = factors
         .chunks_exact(FACTOR)
         .zip(corrections.chunks_exact_mut(PAIR));
-    for (factors, pair) in places.rev() {
+    for (factors, pair) in positions.rev() {
         let [p, q, r, a, b, c, d]: [Lanes; 7] = split(factors);
         let (first, second) = pair.split_at_mut(LANES);
         for lane in 0..LANES {

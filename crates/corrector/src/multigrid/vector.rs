@@ -28,7 +28,7 @@ impl Lines {
     }
 
     /// Lines with an even number come first, then those with an odd one.
-    fn place(self, line: usize) -> usize {
+    fn position(self, line: usize) -> usize {
         line / 2 + (line % 2) * self.count.div_ceil(2)
     }
 
@@ -101,7 +101,7 @@ impl Vector {
     #[inline(always)]
     pub fn line(&self, line: usize) -> Pair<'_> {
         let stride = self.lines.stride();
-        let begin = self.lines.place(line) * stride;
+        let begin = self.lines.position(line) * stride;
         let [x, y] = &self.components;
         [&x[begin..][..stride], &y[begin..][..stride]]
     }
@@ -135,8 +135,8 @@ impl Vector {
             values: beside,
         };
         let last = lines.count - 1;
-        let visit = |(place, (x, y)): (usize, (&mut [f32], &mut [f32]))| {
-            let line = 2 * place + parity;
+        let visit = |(position, (x, y)): (usize, (&mut [f32], &mut [f32]))| {
+            let line = 2 * position + parity;
             if line > 0 && line < last {
                 write(line, neighbours, x, y);
             }

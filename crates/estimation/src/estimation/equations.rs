@@ -144,14 +144,14 @@ impl<'a> Equations<'a> {
                 parameters.extend(regressed.start());
             }
             parameters.resize(self.parameter_count(), 0.0);
-            let mut place = SearchState { parameters, field };
-            match self.settle(&mut place, ON_THE_WAY) {
+            let mut state = SearchState { parameters, field };
+            match self.settle(&mut state, ON_THE_WAY) {
                 Ok(_) => {
                     let trust = match self.task.knowledge.robust {
-                        Robust::No => vec![1.0; points.places.len()],
+                        Robust::No => vec![1.0; points.positions.len()],
                         _ => polynomial.trust(&points),
                     };
-                    return Ok((place, trust));
+                    return Ok((state, trust));
                 }
                 Err(fault) => last = Some(fault),
             }
@@ -196,28 +196,28 @@ impl<'a> Equations<'a> {
     /// Brings the inner nodes into equilibrium while the edges stay; returns the residual.
     pub fn settle(
         &mut self,
-        place: &mut SearchState,
+        state: &mut SearchState,
         settings: NewtonSettings,
     ) -> Result<Vec<f64>, Error> {
-        self.settle_by(Newton::solve, place, settings)
+        self.settle_by(Newton::solve, state, settings)
     }
 
     /// The same by one way of Newton's method.
     fn settle_by(
         &mut self,
         method: NewtonMethod,
-        place: &mut SearchState,
+        state: &mut SearchState,
         settings: NewtonSettings,
     ) -> Result<Vec<f64>, Error> {
-        self.take(&place.parameters);
-        let mut wanted = place.field.clone();
-        self.motion.at(&place.parameters).write(&mut wanted);
-        let mut residual = vec![0.0; place.field.len()];
+        self.take(&state.parameters);
+        let mut wanted = state.field.clone();
+        self.motion.at(&state.parameters).write(&mut wanted);
+        let mut residual = vec![0.0; state.field.len()];
         let mesh = self.task.specimen.mesh;
         let describe = |cell: usize| mesh.describe_cell(cell);
         let (newton, energy) = (&mut self.newton, &self.energy);
-        approach(newton, energy, &mut place.field, &wanted, &describe).map_err(solve)?;
-        let field = &mut place.field;
+        approach(newton, energy, &mut state.field, &wanted, &describe).map_err(solve)?;
+        let field = &mut state.field;
         let solved = self.with_potential(|newton, potential| {
             method(newton, potential, field, &mut residual, settings, &describe)
         });
@@ -309,20 +309,20 @@ impl<'a> Equations<'a> {
     }
 
     /// Checks the equilibrium of a state, and restores it where it is lost.
-    pub fn balance(&mut self, place: &mut SearchState) -> Result<(), Error> {
+    pub fn balance(&mut self, state: &mut SearchState) -> Result<(), Error> {
         const LOST: f64 = 1e-2;
-        self.take(&place.parameters);
-        self.motion.at(&place.parameters).write(&mut place.field);
-        let mut residual = vec![0.0; place.field.len()];
+        self.take(&state.parameters);
+        self.motion.at(&state.parameters).write(&mut state.field);
+        let mut residual = vec![0.0; state.field.len()];
         let admissible = self.with_potential(|_, potential| {
-            Assembly::residual(potential, &place.field, &mut residual)
+            Assembly::residual(potential, &state.field, &mut residual)
         });
         admissible.map_err(|fault| self.inverted(fault))?;
         let free = self.newton.free().iter();
         let lost = free.fold(0.0, |most: f64, unknown| most.max(residual[*unknown].abs()));
         if lost > LOST * largest(&residual) {
             // The tangent of the linearisation before is near.
-            self.settle_by(Newton::solve_near, place, ON_THE_WAY)?;
+            self.settle_by(Newton::solve_near, state, ON_THE_WAY)?;
         }
         Ok(())
     }

@@ -77,10 +77,10 @@ impl NearestField<'_> {
         let regressed = self.equations.task.knowledge.law.iter();
         let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
         let estimate = |(index, parameter): (usize, &Parameter)| {
-            let place = first + index;
-            let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
-            let mesh = own.map_or(0.0, |own| own.parameters[place]);
-            let value = Estimate::new(self.parameters[place], error.hypot(mesh), reach);
+            let position = first + index;
+            let error = self.fit.covariance[(position, position)].max(0.0).sqrt();
+            let mesh = own.map_or(0.0, |own| own.parameters[position]);
+            let value = Estimate::new(self.parameters[position], error.hypot(mesh), reach);
             (parameter.key.into(), parameter.unit().into(), value)
         };
         parameters.map(estimate).collect()

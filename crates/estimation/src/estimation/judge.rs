@@ -319,7 +319,7 @@ impl Rows {
         NoiseCorrelation {
             length: noise.correlation.length,
             share: noise.correlation.share,
-            independent: noise.correlation.independent(self.sites.places()),
+            independent: noise.correlation.independent(self.sites.positions()),
             evidence: noise.evidence,
         }
     }
@@ -327,7 +327,7 @@ impl Rows {
     /// The place at which the mean residual of a marker and its neighbours is largest.
     fn worst(&self, found: &NearestField) -> Option<Worst> {
         const NEIGHBOURS: usize = 8;
-        let around = nearest(self.sites.places(), NEIGHBOURS);
+        let around = nearest(self.sites.positions(), NEIGHBOURS);
         let mean = |index: usize| {
             let members = around[index].iter().chain([&index]);
             let sum = members.fold([0.0; 2], |sum, one| {
@@ -340,7 +340,7 @@ impl Rows {
         let size = |[x, y]: [f64; 2]| x.hypot(y);
         let worst = all.max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
         worst.map(|(index, misfit)| Worst {
-            place: self.sites.places()[index],
+            position: self.sites.positions()[index],
             misfit,
         })
     }

@@ -133,7 +133,7 @@ impl NearestField<'_> {
                 })
             })
         });
-        Unevenness::found(&observations.places, &left.collect::<Vec<_>>())
+        Unevenness::found(&observations.positions, &left.collect::<Vec<_>>())
     }
 
     /// The ratio of the markers' scatter to their stated noise, from the median of the standardised residuals, where
@@ -182,7 +182,7 @@ impl NearestField<'_> {
     fn take_noise(&mut self, judged: &Judgement) -> Option<f64> {
         const LEAST: f64 = 3.0;
         let observations = self.observations();
-        let sites = Sites::new(observations.places.clone());
+        let sites = Sites::new(observations.positions.clone());
         let rows = MarkerRows {
             design: &self.linear.design,
             weights: &observations.weights,
@@ -195,7 +195,7 @@ impl NearestField<'_> {
             (covariance.dot(&information), covariance, noise)
         });
         let (_, covariance, noise) = widened.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let independent = noise.correlation.independent(sites.places());
+        let independent = noise.correlation.independent(sites.positions());
         self.fit.covariance = covariance;
         Some((2.0 * independent - self.fit.effective).max(LEAST))
     }

@@ -51,14 +51,14 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// [`Error::Input`] when the data do not determine it, [`Error::Solve`] when `most` steps do not reach it.
     pub fn run(mut self, most: usize) -> Result<NearestField<'a>, Error> {
-        let (place, trust) = self.start()?;
+        let (state, trust) = self.start()?;
         let variances = VarianceComponents {
             smoothing: Vec::new(),
             trust,
-            variance: self.first_variance(&place.field),
+            variance: self.first_variance(&state.field),
             sound: 1.0,
         };
-        self.run_from(place, variances, VARIANCE_STEPS, most)
+        self.run_from(state, variances, VARIANCE_STEPS, most)
     }
 
     /// The same from a given state, with variances that the data change in so many first steps.
@@ -67,7 +67,7 @@ impl<'a> Equations<'a> {
     /// As [`Self::run`].
     pub fn run_from(
         mut self,
-        mut place: SearchState,
+        mut state: SearchState,
         mut variances: VarianceComponents,
         adjusting: usize,
         most: usize,
@@ -75,11 +75,11 @@ impl<'a> Equations<'a> {
         let (mut last, mut share) = (f64::INFINITY, 1.0);
         let (mut moved, mut wanted) = (f64::NAN, f64::NAN);
         for steps in 1..=most {
-            let linear = self.linearise(&place)?;
-            let fit = self.regress(&place, steps > adjusting, &linear, &mut variances)?;
+            let linear = self.linearise(&state)?;
+            let fit = self.regress(&state, steps > adjusting, &linear, &mut variances)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
-            let close = self.close(&variances, &place.field);
-            let scale = largest(&place.field);
+            let close = self.close(&variances, &state.field);
+            let scale = largest(&state.field);
             (moved, wanted) = (largest(&change) / scale, close / scale);
             if steps > adjusting {
                 share = next_share(share, fit.length / last);
@@ -87,13 +87,13 @@ impl<'a> Equations<'a> {
             last = fit.length;
             let near = fit.length <= NEAR && largest(&linear.still) <= close;
             let done = largest(&change) <= close || (steps > adjusting && near);
-            let cut = self.advance(&mut place, &change, fit.step.as_slice(), share)?;
+            let cut = self.advance(&mut state, &change, fit.step.as_slice(), share)?;
             if done && !cut {
                 let multipliers = self.multipliers(&fit, &variances)?;
-                let residual = self.settle(&mut place, AT_THE_END)?;
+                let residual = self.settle(&mut state, AT_THE_END)?;
                 return Ok(NearestField {
-                    field: place.field,
-                    parameters: place.parameters,
+                    field: state.field,
+                    parameters: state.parameters,
                     multipliers,
                     residual,
                     linear,
@@ -120,8 +120,8 @@ impl<'a> Equations<'a> {
         found: &NearestField,
         most: usize,
     ) -> Result<NearestField<'a>, Error> {
-        let (place, variances) = self.near(found)?;
-        self.run_from(place, variances, VARIANCE_STEPS, most)
+        let (state, variances) = self.near(found)?;
+        self.run_from(state, variances, VARIANCE_STEPS, most)
     }
 
     /// The state near the field of another search, and its variances but for those of the edges.
@@ -130,16 +130,16 @@ impl<'a> Equations<'a> {
         let others = &found.parameters[found.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
         parameters.resize(self.parameter_count(), 0.0);
-        let mut place = SearchState {
+        let mut state = SearchState {
             parameters,
             field: found.field.clone(),
         };
-        self.settle(&mut place, ON_THE_WAY)?;
+        self.settle(&mut state, ON_THE_WAY)?;
         let variances = VarianceComponents {
             smoothing: Vec::new(),
             ..found.variances.clone()
         };
-        Ok((place, variances))
+        Ok((state, variances))
     }
 
     /// One linearised regression from the field of another search, with its trust of the markers.
@@ -147,9 +147,9 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// As [`Self::run`].
     pub fn score(mut self, found: &NearestField) -> Result<Scored, Error> {
-        let (place, mut variances) = self.near(found)?;
-        let linear = self.linearise(&place)?;
-        let fit = self.regress(&place, false, &linear, &mut variances)?;
+        let (state, mut variances) = self.near(found)?;
+        let linear = self.linearise(&state)?;
+        let fit = self.regress(&state, false, &linear, &mut variances)?;
         Ok(Scored {
             linear,
             fit,
@@ -171,12 +171,12 @@ impl<'a> Equations<'a> {
 
     fn regress(
         &self,
-        place: &SearchState,
+        state: &SearchState,
         settled: bool,
         linear: &Linear,
         variances: &mut VarianceComponents,
     ) -> Result<Fit, Error> {
-        let regression = self.regression(place, settled, linear);
+        let regression = self.regression(state, settled, linear);
         regression.fit(variances).map_err(|Undetermined| {
             Error::input(
                 "the data do not determine the motion of the edges, or the parameters of the law",
@@ -188,11 +188,11 @@ impl<'a> Equations<'a> {
     /// The regression about a state.
     pub(super) fn regression<'b>(
         &'b self,
-        place: &SearchState,
+        state: &SearchState,
         settled: bool,
         linear: &'b Linear,
     ) -> Regression<'b> {
-        let ahead = place.field.iter().zip(&linear.still);
+        let ahead = state.field.iter().zip(&linear.still);
         let ahead: Vec<f64> = ahead.map(|(u, still)| u + still).collect();
         let observations = self.task.observations;
         Regression {
@@ -201,7 +201,7 @@ impl<'a> Equations<'a> {
             weights: &observations.weights,
             known_noise: observations.known_noise,
             force_rows: (&linear.force_rows.0, &linear.force_rows.1),
-            priors: self.priors(&place.parameters),
+            priors: self.priors(&state.parameters),
             robust: self.task.knowledge.robust,
             settled,
         }
@@ -238,27 +238,27 @@ impl<'a> Equations<'a> {
     /// restored where it is lost. At most the share `most` of it is taken; returns whether it was cut beyond that.
     fn advance(
         &mut self,
-        place: &mut SearchState,
+        state: &mut SearchState,
         change: &[f64],
         step: &[f64],
         most: f64,
     ) -> Result<bool, Error> {
         const WITHIN: f64 = 0.5;
-        let values = self.law_values(&place.parameters).iter();
+        let values = self.law_values(&state.parameters).iter();
         let share = values
             .zip(self.law_values(step))
             .map(|(value, step)| (step / value).abs());
         let whole = 1.0 / share.fold(1.0, |most: f64, share| most.max(share / WITHIN));
         let mut length = whole.min(most);
         loop {
-            let mut next = place.clone();
+            let mut next = state.clone();
             let parameters = next.parameters.iter_mut().zip(step);
             parameters.for_each(|(p, step)| *p += length * step);
             let field = next.field.iter_mut().zip(change);
             field.for_each(|(u, change)| *u += length * change);
             match self.balance(&mut next) {
                 Ok(()) => {
-                    *place = next;
+                    *state = next;
                     return Ok(length < most);
                 }
                 Err(fault) if length <= SHORTEST => return Err(fault),
@@ -293,7 +293,7 @@ fn combined(still: &[f64], columns: &[Vec<f64>], step: &[f64]) -> Vec<f64> {
 
 impl NearestField<'_> {
     /// The state from which another search may begin.
-    pub fn place(&self) -> SearchState {
+    pub fn state(&self) -> SearchState {
         SearchState {
             parameters: self.parameters.clone(),
             field: self.field.clone(),

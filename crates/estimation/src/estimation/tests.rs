@@ -8,7 +8,7 @@ use crate::solve::NewtonSettings;
 
 mod coverage;
 mod pads;
-mod places;
+mod positions;
 mod truth;
 mod uneven;
 mod verdicts;
@@ -99,7 +99,7 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
             .unwrap()
             .remove(0);
         let square = |marker: &Marker| {
-            let there = mesh.displacement_at(&state.displacement, marker.place);
+            let there = mesh.displacement_at(&state.displacement, marker.position);
             let [x, y] = [0, 1].map(|axis| there[axis] - marker.displacement[axis]);
             0.5 * (x * x + y * y)
         };
@@ -151,7 +151,7 @@ fn wrong_input_is_told() {
     let far: Vec<Marker> = good
         .iter()
         .map(|marker| Marker {
-            place: marker.place.map(|x| x + 1000.0),
+            position: marker.position.map(|x| x + 1000.0),
             ..*marker
         })
         .collect();
@@ -160,7 +160,7 @@ fn wrong_input_is_told() {
     assert!(told(&good[..2], &grips).contains("2 of 2"));
     let line: Vec<Marker> = good
         .iter()
-        .filter(|marker| marker.place[1] == 0.0)
+        .filter(|marker| marker.position[1] == 0.0)
         .copied()
         .collect();
     assert!(told(&line, &grips).contains("affine"));

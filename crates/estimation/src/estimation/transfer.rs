@@ -215,8 +215,8 @@ fn differences(
     displacement: &[f64],
 ) -> Vec<Option<MarkerEstimate>> {
     let pairs = given.nodes.iter().zip(displacement.chunks_exact(2));
-    let difference = |(place, u): (&[f64; 2], &[f64])| {
-        let there = mesh.displacement_at(field, *place);
+    let difference = |(position, u): (&[f64; 2], &[f64])| {
+        let there = mesh.displacement_at(field, *position);
         Some(MarkerEstimate {
             residual: [u[0] - there[0], u[1] - there[1]],
             standardised_residual: 0.0,

@@ -75,38 +75,38 @@ fn smoothed(line: &[Place]) -> Vec<Place> {
         step(before) != step(index) && is_straight(before) && is_straight(index)
     };
     let corners: Vec<bool> = (0..count).map(is_corner).collect();
-    let mut places = Vec::new();
+    let mut positions = Vec::new();
     for index in 0..count {
         if corners[index] {
-            places.push(line[index]);
+            positions.push(line[index]);
         }
         let around = || (0..=2 * AROUND).map(|side| index + side + count * AROUND - AROUND);
         if count < 4 * AROUND || around().any(|side| corners[side % count]) {
-            places.push(middle(index));
+            positions.push(middle(index));
             continue;
         }
         let share = 1.0 / (2 * AROUND + 1) as f64;
-        places
+        positions
             .push([0, 1].map(|axis| share * around().map(|side| middle(side)[axis]).sum::<f64>()));
     }
-    places
+    positions
 }
 
 /// A closed line with fewer corners (Douglas and Peucker), divided at its two places farthest apart.
 fn straightened(line: &[Place]) -> Vec<Place> {
     let farthest = |from: Place| {
         let distance = |index: &usize| squared(from, line[*index]);
-        let places = 0..line.len();
-        places.max_by(|a, b| distance(a).total_cmp(&distance(b)))
+        let positions = 0..line.len();
+        positions.max_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
-    let Some(first) = line.first().and_then(|place| farthest(*place)) else {
+    let Some(first) = line.first().and_then(|position| farthest(*position)) else {
         return Vec::new();
     };
     let second = farthest(line[first]).unwrap_or(first);
     let turned = |from: usize, to: usize| {
         let count = (to + line.len() - from) % line.len();
-        let places = (0..=count).map(|step| line[(from + step) % line.len()]);
-        places.collect::<Vec<Place>>()
+        let positions = (0..=count).map(|step| line[(from + step) % line.len()]);
+        positions.collect::<Vec<Place>>()
     };
     let mut kept = Vec::new();
     for (from, to) in [(first, second), (second, first)] {
@@ -121,9 +121,9 @@ fn keep(line: &[Place], kept: &mut Vec<Place>) {
         return;
     };
     let length = squared(*first, *last).sqrt();
-    let off = |place: &Place| {
+    let off = |position: &Place| {
         let [dx, dy] = [0, 1].map(|axis| last[axis] - first[axis]);
-        let across = dx * (place[1] - first[1]) - dy * (place[0] - first[0]);
+        let across = dx * (position[1] - first[1]) - dy * (position[0] - first[0]);
         across.abs() / length
     };
     let inner = 1..line.len().saturating_sub(1);
@@ -180,7 +180,7 @@ mod tests {
             lines[1].len()
         );
         for corner in &rectangle {
-            let nearest = lines[0].iter().map(|place| squared(*corner, *place));
+            let nearest = lines[0].iter().map(|position| squared(*corner, *position));
             assert!(nearest.fold(f64::MAX, f64::min) < 4.0, "{corner:?}");
         }
     }

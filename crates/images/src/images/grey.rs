@@ -65,7 +65,7 @@ impl GreyImage {
     pub(super) fn around(&self, x: usize, y: usize) -> [f32; 8] {
         let at = y * self.width + x;
         let (above, below) = (at - self.width, at + self.width);
-        let places = [
+        let positions = [
             above - 1,
             above,
             above + 1,
@@ -75,6 +75,6 @@ impl GreyImage {
             below,
             below + 1,
         ];
-        places.map(|place| self.values[place])
+        positions.map(|position| self.values[position])
     }
 }

@@ -9,10 +9,10 @@ pub fn series(frames: &[(usize, Vec<Option<Tracked>>)], height: usize, pixel: f6
     let up = (height - 1) as f64;
     let marker = |(number, tracked): (usize, &Option<Tracked>)| {
         let tracked = tracked.as_ref()?;
-        let ([x, y], [u, v]) = (tracked.place, tracked.displacement);
+        let ([x, y], [u, v]) = (tracked.position, tracked.displacement);
         Some(Marker {
             number,
-            place: [x * pixel, (up - y) * pixel],
+            position: [x * pixel, (up - y) * pixel],
             displacement: [u * pixel, -v * pixel],
             standard_deviation: Some((0.5 * tracked.covariance.trace()).sqrt() * pixel),
         })

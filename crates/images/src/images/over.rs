@@ -31,8 +31,8 @@ impl Tracker {
         };
         let size = last.size();
         let centre = |point: usize| {
-            let place = before[point].as_ref()?.place(self.grid.points[point]);
-            pixel_at(place, size)
+            let position = before[point].as_ref()?.position(self.grid.points[point]);
+            pixel_at(position, size)
         };
         let lost: Vec<usize> = (0..states.len())
             .filter(|point| states[*point].is_none() && before[*point].is_some())

@@ -121,7 +121,7 @@ impl Patches<'_> {
         let [x, y] = [0, 1].map(|axis| middle[axis] - point[axis] as f64);
         let field = found.warp.moved(x, y);
         Some(Tracked {
-            place: middle,
+            position: middle,
             displacement: field.displacement(),
             gradient: field.gradient(),
             covariance: found.covariance,

@@ -81,8 +81,8 @@ impl<'a> Pyramid<'a> {
     pub fn seek(&self, centre: [usize; 2]) -> Option<Match> {
         self.refine(centre, Warp::default(), self.coarse.len())
             .or_else(|| {
-                let places = self.correlate(centre, Matrix2::identity());
-                places
+                let positions = self.correlate(centre, Matrix2::identity());
+                positions
                     .into_iter()
                     .find_map(|(_, warp)| self.refine(centre, warp, self.coarse.len()))
             })
@@ -228,8 +228,9 @@ fn best_places(
         f64::from(product / (size * (squares - sum * sum / count).max(1e-6).sqrt()))
     };
     let inner = HALF..columns.saturating_sub(HALF);
-    let places = (HALF..rows.saturating_sub(HALF)).flat_map(|y| inner.clone().map(move |x| (x, y)));
-    let mut scores: Vec<_> = places.map(|(x, y)| (score(x, y), x, y)).collect();
+    let positions =
+        (HALF..rows.saturating_sub(HALF)).flat_map(|y| inner.clone().map(move |x| (x, y)));
+    let mut scores: Vec<_> = positions.map(|(x, y)| (score(x, y), x, y)).collect();
     scores.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut best: Vec<(f64, usize, usize)> = Vec::new();
     for (score, x, y) in scores {

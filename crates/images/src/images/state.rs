@@ -9,7 +9,7 @@ use super::warp::Warp;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracked {
     /// Its place in the first image in pixels.
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// Its displacement in pixels.
     pub displacement: [f64; 2],
     /// ∂u/∂X.
@@ -45,7 +45,7 @@ impl State {
         }
     }
 
-    pub fn place(&self, point: [usize; 2]) -> [f64; 2] {
+    pub fn position(&self, point: [usize; 2]) -> [f64; 2] {
         let [u, v] = self.warp.displacement();
         [point[0] as f64 + u, point[1] as f64 + v]
     }
@@ -67,7 +67,7 @@ impl State {
 
     /// This state and a step from a pixel near its place.
     pub fn followed_by(&self, step: &Match, point: [usize; 2], centre: [usize; 2]) -> Self {
-        let [x, y] = self.place(point);
+        let [x, y] = self.position(point);
         let [u, v] = step.warp.at(x - centre[0] as f64, y - centre[1] as f64, 6);
         let f = step.warp.deformation_gradient() * self.warp.deformation_gradient();
         Self {
@@ -82,7 +82,7 @@ impl State {
 
     pub fn tracked(&self, point: [usize; 2]) -> Tracked {
         Tracked {
-            place: point.map(|x| x as f64),
+            position: point.map(|x| x as f64),
             displacement: self.warp.displacement(),
             gradient: self.warp.deformation_gradient() - Matrix2::identity(),
             covariance: self.covariance,

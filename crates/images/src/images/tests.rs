@@ -44,17 +44,17 @@ struct Figures {
 
 fn figures(
     tracked: &[Option<Tracked>],
-    places: &[[f64; 2]],
+    positions: &[[f64; 2]],
     size: [usize; 2],
     truth: &dyn Fn([f64; 2]) -> [f64; 2],
 ) -> Figures {
     const MARGIN: f64 = 15.0;
     let (mut squares, mut within, mut count, mut seen, mut worst) = (0.0, 0.0, 0.0, 0.0, 0.0_f64);
-    for (tracked, place) in tracked.iter().zip(places) {
-        let place = *place;
-        let [u, v] = truth(place);
+    for (tracked, position) in tracked.iter().zip(positions) {
+        let position = *position;
+        let [u, v] = truth(position);
         let inside = |at: f64, length: usize| at > MARGIN && at < length as f64 - 1.0 - MARGIN;
-        let is_seen = inside(place[0] + u, size[0]) && inside(place[1] + v, size[1]);
+        let is_seen = inside(position[0] + u, size[0]) && inside(position[1] + v, size[1]);
         seen += f64::from(u8::from(is_seen));
         let Some(tracked) = tracked.filter(|_| is_seen) else {
             continue;
@@ -96,9 +96,9 @@ fn follow(
 
 fn centres(tracker: &Tracker) -> Vec<[f64; 2]> {
     tracker
-        .places()
+        .positions()
         .iter()
-        .map(|place| place.map(|x| x as f64))
+        .map(|position| position.map(|x| x as f64))
         .collect()
 }
 
@@ -163,11 +163,11 @@ fn patches_share_no_pixel_and_their_intervals_hold() {
             let about = |point: usize| Some(tracked[point]?.warp());
             let measured = patches.measure(&patches.spline(&other), &about);
             let truth = |x| motion.displacement(x);
-            let places: Vec<[f64; 2]> = measured
+            let positions: Vec<[f64; 2]> = measured
                 .iter()
-                .map(|one| one.map_or([0.0; 2], |one| one.place))
+                .map(|one| one.map_or([0.0; 2], |one| one.position))
                 .collect();
-            let found = figures(&measured, &places, size, &truth);
+            let found = figures(&measured, &positions, size, &truth);
             says(
                 &format!("patches of {} {kind} {noise}", patches.width()),
                 &found,

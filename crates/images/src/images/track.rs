@@ -141,7 +141,7 @@ impl Tracker {
     }
 
     /// The places of all points in pixels.
-    pub fn places(&self) -> &[[usize; 2]] {
+    pub fn positions(&self) -> &[[usize; 2]] {
         &self.grid.points
     }
 

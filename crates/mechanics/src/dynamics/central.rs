@@ -163,8 +163,8 @@ impl DampedEnd<'_> {
         let pattern = self.assembly.pattern();
         let half = 0.5 * self.step;
         let mut values: Vec<f64> = damping.iter().map(|c| half * c).collect();
-        for (i, place) in self.assembly.free().iter().zip(pattern.diagonal()) {
-            values[*place] += self.motion.mass[*i];
+        for (i, position) in self.assembly.free().iter().zip(pattern.diagonal()) {
+            values[*position] += self.motion.mass[*i];
         }
         solve_by_diagonal(pattern, &values, b)
     }

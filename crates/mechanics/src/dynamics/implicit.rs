@@ -88,8 +88,8 @@ impl Implicit {
         let (assembly, cholesky) = self.system.as_mut().expect("prepared");
         let mut values = motion.tangent(assembly, at, step, c.gamma / (c.beta * step))?;
         let inertia = (1.0 - c.alpha_m) / ((1.0 - c.alpha_f) * c.beta * step * step);
-        for (i, place) in assembly.free().iter().zip(assembly.pattern().diagonal()) {
-            values[*place] += inertia * motion.mass[*i];
+        for (i, position) in assembly.free().iter().zip(assembly.pattern().diagonal()) {
+            values[*position] += inertia * motion.mass[*i];
         }
         self.factorised = None;
         cholesky

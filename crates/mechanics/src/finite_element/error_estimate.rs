@@ -283,7 +283,7 @@ mod tests {
                     displacement: &u,
                 };
                 let estimate = solved.energy_estimate();
-                let exact = solved.distance(|cell, local| gradient(mesh.place(cell, local)));
+                let exact = solved.distance(|cell, local| gradient(mesh.position(cell, local)));
                 assert!(exact.percent() > 0.1);
                 assert!(
                     (estimate.percent() / exact.percent() - 1.0).abs() < 1e-9,

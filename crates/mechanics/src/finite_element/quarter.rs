@@ -54,9 +54,9 @@ impl Quarter {
         let steps = cells.map(|cells| cells * whole.degree());
         let half = steps.map(|steps| steps / 2);
         let image = |node: usize| {
-            let place = [node / (steps[1] + 1), node % (steps[1] + 1)];
-            let mirrored = [0, 1].map(|axis| place[axis] > half[axis]);
-            let [i, j] = [0, 1].map(|axis| place[axis].min(steps[axis] - place[axis]));
+            let position = [node / (steps[1] + 1), node % (steps[1] + 1)];
+            let mirrored = [0, 1].map(|axis| position[axis] > half[axis]);
+            let [i, j] = [0, 1].map(|axis| position[axis].min(steps[axis] - position[axis]));
             (i * (half[1] + 1) + j, mirrored)
         };
         let images: Vec<(usize, [bool; 2])> = (0..whole.nodes.len()).map(image).collect();

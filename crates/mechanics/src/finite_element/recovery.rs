@@ -113,12 +113,12 @@ impl RecoveredGradient {
     /// G*₁₁, G*₁₂, G*₂₁, G*₂₂ at a point of a cell in natural coordinates.
     pub fn at(&self, mesh: &Mesh, cell: usize, local: [f64; 2]) -> [f64; 4] {
         let shape = mesh.shape(cell);
-        let place = mesh.place(cell, local);
+        let position = mesh.position(cell, local);
         let values = shape.linear().values(local);
         let mut gradient = [0.0; 4];
         for (corner, value) in mesh.cell(cell)[..shape.corners()].iter().zip(values) {
             let polynomial = self.polynomials[*corner].as_ref();
-            let part = polynomial.map_or([0.0; 4], |polynomial| polynomial.gradient(place));
+            let part = polynomial.map_or([0.0; 4], |polynomial| polynomial.gradient(position));
             for (sum, part) in gradient.iter_mut().zip(part) {
                 *sum += value * part;
             }
@@ -128,9 +128,9 @@ impl RecoveredGradient {
 }
 
 impl Polynomial {
-    fn gradient(&self, place: [f64; 2]) -> [f64; 4] {
+    fn gradient(&self, position: [f64; 2]) -> [f64; 4] {
         let [x, y] = [0, 1].map(|axis| {
-            let x = (place[axis] - self.origin[axis]) / self.scale[axis];
+            let x = (position[axis] - self.origin[axis]) / self.scale[axis];
             powers_and_slopes(x, self.scale[axis])
         });
         let mut gradient = [0.0; 4];
@@ -309,7 +309,7 @@ mod tests {
             let recovered = Recovery::new(&mesh).gradient(&u);
             for cell in 0..mesh.cell_count() {
                 for (local, _) in kind.quadrature() {
-                    let [x, y] = mesh.place(cell, local);
+                    let [x, y] = mesh.position(cell, local);
                     let exact = [
                         0.2 * x - 0.3 * y + cubic * 0.02 * x * y,
                         -0.3 * x + cubic * 0.01 * x * x,

@@ -292,7 +292,7 @@ pub fn out_of_plane(table: &Table, names: [Names; 2], ignored: &[String]) -> Vec
 /// [`Error::Input`] with how far they leave it.
 pub fn check_flat(
     table: &Table,
-    places: [usize; 2],
+    positions: [usize; 2],
     displacements: [usize; 2],
     names: [Names; 2],
     ignored: &[String],
@@ -304,7 +304,7 @@ pub fn check_flat(
     };
     let span = |column: usize| range(column)[1] - range(column)[0];
     let largest = |column: usize| range(column)[1].max(-range(column)[0]);
-    let size = places.map(span).into_iter().fold(0.0, f64::max);
+    let size = positions.map(span).into_iter().fold(0.0, f64::max);
     let motion = displacements.map(largest).into_iter().fold(0.0, f64::max);
     for column in out_of_plane(table, names, ignored) {
         let name = &table.columns[column].name;

@@ -32,7 +32,7 @@ pub struct Marker {
     /// Its number: the same point has the same one in all frames.
     pub number: usize,
     /// Its place at rest in mm.
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// ux, uy in mm.
     pub displacement: [f64; 2],
     /// Standard deviation of each component of the displacement in mm, where the data state it.
@@ -51,16 +51,16 @@ impl Frame {
         let pairs = || {
             self.markers
                 .iter()
-                .map(|one| (Vector2::from(one.place), Vector2::from(one.displacement)))
+                .map(|one| (Vector2::from(one.position), Vector2::from(one.displacement)))
         };
         let count = self.markers.len() as f64;
-        let (places, displacements): (Vec<Vector2<f64>>, Vec<Vector2<f64>>) = pairs().unzip();
-        let [place, displacement] =
-            [places, displacements].map(|all| all.into_iter().sum::<Vector2<f64>>() / count);
+        let (positions, displacements): (Vec<Vector2<f64>>, Vec<Vector2<f64>>) = pairs().unzip();
+        let [position, displacement] =
+            [positions, displacements].map(|all| all.into_iter().sum::<Vector2<f64>>() / count);
         let (mut squares, mut products) = (Matrix2::zeros(), Matrix2::zeros());
         for (x, u) in pairs() {
-            squares += (x - place) * (x - place).transpose();
-            products += (u - displacement) * (x - place).transpose();
+            squares += (x - position) * (x - position).transpose();
+            products += (u - displacement) * (x - position).transpose();
         }
         Some(products * squares.try_inverse()?)
     }
@@ -69,7 +69,7 @@ impl Frame {
 impl MarkerSeries {
     /// The places of all markers of all frames, each once, in the order of their first frame; those that were found in none
     /// come last.
-    pub fn places(&self) -> Vec<[f64; 2]> {
+    pub fn positions(&self) -> Vec<[f64; 2]> {
         let found = self.places_of_found().into_iter();
         found.chain(self.lost.iter().copied()).collect()
     }
@@ -79,6 +79,6 @@ impl MarkerSeries {
         let mut seen = HashSet::new();
         let markers = self.frames.iter().flat_map(|frame| &frame.markers);
         let found = markers.filter(|marker| seen.insert(marker.number));
-        found.map(|marker| marker.place).collect()
+        found.map(|marker| marker.position).collect()
     }
 }

@@ -39,7 +39,7 @@ use crate::document::{Table, is_pixel};
 #[derive(Debug)]
 pub(super) struct Layout {
     pub name: &'static str,
-    pub places: [Names; 2],
+    pub positions: [Names; 2],
     pub displacements: [Names; 2],
     pub deviation: Names,
     /// Heights and displacements out of the plane.
@@ -60,7 +60,7 @@ pub(super) struct Layout {
 
 const COLUMNS: Layout = Layout {
     name: "columns",
-    places: PLACES,
+    positions: PLACES,
     displacements: DISPLACEMENTS,
     deviation: &["standard_deviation", "sigma"],
     out_of_plane: [HEIGHT, LIFT],
@@ -80,7 +80,7 @@ pub(super) const NAMED: Layout = Layout {
 
 const DICE: Layout = Layout {
     name: "DICe",
-    places: [&["coordinate_x"], &["coordinate_y"]],
+    positions: [&["coordinate_x"], &["coordinate_y"]],
     displacements: [&["displacement_x"], &["displacement_y"]],
     deviation: &["sigma"],
     lost: &["sigma"],
@@ -91,7 +91,7 @@ const DICE: Layout = Layout {
 
 const DICE_STEREO: Layout = Layout {
     name: "DICe, stereo",
-    places: [&["model_coordinates_x"], &["model_coordinates_y"]],
+    positions: [&["model_coordinates_x"], &["model_coordinates_y"]],
     displacements: [&["model_displacement_x"], &["model_displacement_y"]],
     // SIGMA is in pixels, not in the calibration's unit.
     deviation: &[],
@@ -127,7 +127,7 @@ const PYALDIC: Layout = Layout {
 
 const PYVALE: Layout = Layout {
     name: "pyvale",
-    places: [&["subset_x"], &["subset_y"]],
+    positions: [&["subset_x"], &["subset_y"]],
     displacements: [&["displacement_u"], &["displacement_v"]],
     deviation: &[],
     converged: &["converged"],
@@ -159,7 +159,7 @@ const OPENCORR: Layout = Layout {
 
 const VIC_3D: Layout = Layout {
     name: "VIC-3D",
-    places: [&["=X"], &["=Y"]],
+    positions: [&["=X"], &["=Y"]],
     displacements: [&["=U"], &["=V"]],
     // It is in pixels, not in the calibration's unit.
     deviation: &[],
@@ -173,7 +173,7 @@ const VIC_3D: Layout = Layout {
 
 const VIC_2D: Layout = Layout {
     name: "VIC-2D",
-    places: [&["=x"], &["=y"]],
+    positions: [&["=x"], &["=y"]],
     displacements: [&["=u"], &["=v"]],
     deviation: &[],
     lost: &["sigma"],
@@ -185,7 +185,7 @@ const VIC_2D: Layout = Layout {
 
 const MATCHID: Layout = Layout {
     name: "MatchID",
-    places: [
+    positions: [
         &["coor.x", "coordinates.image_x", "x", "x_pic"],
         &["coor.y", "coordinates.image_y", "y", "y_pic"],
     ],
@@ -208,7 +208,7 @@ const MATCHID: Layout = Layout {
 
 const GOM_NODEMAP: Layout = Layout {
     name: "GOM, nodemap",
-    places: [&["x_undef"], &["y_undef"]],
+    positions: [&["x_undef"], &["y_undef"]],
     displacements: [&["u"], &["v"]],
     deviation: &[],
     out_of_plane: [&["z_undef"], LIFT],

@@ -97,7 +97,7 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
                     frame: None,
                     time: None,
                     name: None,
-                    place: [step * j as f64, -step * i as f64],
+                    position: [step * j as f64, -step * i as f64],
                     displacement: [unit * u, -unit * v],
                     standard_deviation: None,
                 });

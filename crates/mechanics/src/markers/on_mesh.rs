@@ -20,11 +20,11 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let rows = steps.flat_map(|(step, number)| {
         let nodes = series.mesh.nodes.iter().zip(0..);
         let pairs = nodes.zip(step.displacement.chunks_exact(2));
-        pairs.map(move |((place, node), u)| Row {
+        pairs.map(move |((position, node), u)| Row {
             frame: several.then_some(number),
             time: step.time,
             name: Some(node),
-            place: *place,
+            position: *position,
             displacement: [u[0], u[1]],
             standard_deviation: None,
         })

@@ -13,8 +13,8 @@ pub fn within(found: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     match Matrix::of(found, &lost) {
         Some(matrix) => {
             let outside = matrix.outside();
-            let kept = lost.into_iter().filter(|place| {
-                let [x, y] = matrix.index(*place);
+            let kept = lost.into_iter().filter(|position| {
+                let [x, y] = matrix.index(*position);
                 !outside[y][x]
             });
             kept.collect()
@@ -37,7 +37,7 @@ impl Matrix {
             return None;
         }
         let all = || found.iter().chain(lost);
-        let lines = [0, 1].map(|axis| lines(all().map(|place| place[axis]).collect()));
+        let lines = [0, 1].map(|axis| lines(all().map(|position| position[axis]).collect()));
         let [columns, rows] = lines.each_ref().map(Vec::len);
         let count = (found.len() + lost.len()) as f64;
         let whole = (rows * columns) as f64;
@@ -48,19 +48,19 @@ impl Matrix {
             lines,
             found: vec![vec![false; columns]; rows],
         };
-        for place in found {
-            let [x, y] = matrix.index(*place);
+        for position in found {
+            let [x, y] = matrix.index(*position);
             matrix.found[y][x] = true;
         }
         Some(matrix)
     }
 
     /// The column and the row of a point.
-    fn index(&self, place: [f64; 2]) -> [usize; 2] {
+    fn index(&self, position: [f64; 2]) -> [usize; 2] {
         [0, 1].map(|axis| {
             let lines = &self.lines[axis];
-            let next = lines.partition_point(|line| *line < place[axis]);
-            let nearer = |at: usize| (lines[at] - place[axis]).abs();
+            let next = lines.partition_point(|line| *line < position[axis]);
+            let nearer = |at: usize| (lines[at] - position[axis]).abs();
             match next {
                 0 => 0,
                 end if end == lines.len() || nearer(end - 1) < nearer(end) => end - 1,
@@ -146,10 +146,10 @@ mod tests {
     /// The points of a matrix of 12 × 8 that a specimen has, and the others.
     fn matrix(is_found: impl Fn(usize, usize) -> bool) -> [Vec<[f64; 2]>; 2] {
         let all: Vec<(usize, usize)> = (0..8).flat_map(|y| (0..12).map(move |x| (x, y))).collect();
-        let place = |(x, y): &(usize, usize)| [0.3 * *x as f64, 0.3 * *y as f64];
+        let position = |(x, y): &(usize, usize)| [0.3 * *x as f64, 0.3 * *y as f64];
         [true, false].map(|wanted| {
             let some = all.iter().filter(|(x, y)| is_found(*x, *y) == wanted);
-            some.map(place).collect()
+            some.map(position).collect()
         })
     }
 

@@ -37,7 +37,7 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
         ));
     }
     let markers = || series.frames.iter().flat_map(|frame| &frame.markers);
-    let extent = extent(markers().map(|marker| marker.place));
+    let extent = extent(markers().map(|marker| marker.position));
     let size = extent[0].max(extent[1]);
     let largest = markers()
         .map(|marker| marker.displacement[0].hypot(marker.displacement[1]))
@@ -48,8 +48,8 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
             "give a field of a specimen that is deformed",
         ));
     }
-    let places = markers().map(|marker| marker.place);
-    if let Err(measures) = check_size(places)
+    let positions = markers().map(|marker| marker.position);
+    if let Err(measures) = check_size(positions)
         && size > 0.0
     {
         let hint =
@@ -93,13 +93,14 @@ pub struct MarkersOnMesh {
 /// [`Error::Input`] when most do, with the likely reason: another unit, or another origin.
 pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Error> {
     let [low, high] = mesh.bounding_box();
-    let near = |place: [f64; 2]| {
+    let near = |position: [f64; 2]| {
         let margin = [0, 1].map(|axis| MARGIN * (high[axis] - low[axis]));
         (0..2).all(|axis| {
-            (low[axis] - margin[axis]..=high[axis] + margin[axis]).contains(&place[axis])
+            (low[axis] - margin[axis]..=high[axis] + margin[axis]).contains(&position[axis])
         })
     };
-    let within = |marker: &&Marker| near(marker.place) && mesh.outside(marker.place) <= NEAR_CELLS;
+    let within =
+        |marker: &&Marker| near(marker.position) && mesh.outside(marker.position) <= NEAR_CELLS;
     let frame = |frame: &Frame| Frame {
         markers: frame.markers.iter().filter(within).copied().collect(),
         ..frame.clone()
@@ -114,8 +115,8 @@ pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Err
         frames.map(|frame| frame.markers.len()).sum()
     };
     let (all, inside) = (count(series), count(&kept));
-    let places = || series.frames.iter().flat_map(|frame| &frame.markers);
-    let spanned = extent(places().map(|marker| marker.place));
+    let positions = || series.frames.iter().flat_map(|frame| &frame.markers);
+    let spanned = extent(positions().map(|marker| marker.position));
     let measures = extent(mesh.nodes.iter().copied());
     let ratio = measures[0].hypot(measures[1]) / spanned[0].hypot(spanned[1]);
     let unit = unit_ratio(ratio);
@@ -153,7 +154,7 @@ pub fn unit_ratio(ratio: f64) -> Option<f64> {
 }
 
 /// Length and width of the box around places.
-fn extent(places: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    let [low, high] = bounding_box(places);
+fn extent(positions: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let [low, high] = bounding_box(positions);
     [high[0] - low[0], high[1] - low[1]]
 }

@@ -40,12 +40,12 @@ pub(super) fn read(frame: &Path, settings: &ReadSettings) -> Result<FileRows, Er
     let rows = rest
         .into_iter()
         .zip(moved)
-        .map(|((name, place), (_, moved))| Row {
+        .map(|((name, position), (_, moved))| Row {
             frame: None,
             time: None,
             name,
-            place,
-            displacement: [moved[0] - place[0], moved[1] - place[1]],
+            position,
+            displacement: [moved[0] - position[0], moved[1] - position[1]],
             standard_deviation: None,
         });
     Ok(FileRows {
@@ -62,10 +62,10 @@ pub(super) fn read(frame: &Path, settings: &ReadSettings) -> Result<FileRows, Er
 
 /// The points at rest as they are in the frame: those that it lacks were not found.
 fn by_number(rest: &[Point], moved: &[Point], table: &Table) -> Result<Vec<Point>, Error> {
-    let places: HashMap<Option<u64>, [f64; 2]> = moved.iter().copied().collect();
+    let positions: HashMap<Option<u64>, [f64; 2]> = moved.iter().copied().collect();
     let known: HashMap<Option<u64>, [f64; 2]> = rest.iter().copied().collect();
     let hint = "each point needs one number, the same in all files";
-    if places.len() < moved.len() || known.len() < rest.len() {
+    if positions.len() < moved.len() || known.len() < rest.len() {
         return Err(table.refuse(0..0, "two points have the same number", hint));
     }
     if let Some((Some(number), _)) = moved.iter().find(|(number, _)| !known.contains_key(number)) {
@@ -78,7 +78,7 @@ fn by_number(rest: &[Point], moved: &[Point], table: &Table) -> Result<Vec<Point
     let in_frame = |(number, _): &Point| {
         (
             *number,
-            places.get(number).copied().unwrap_or([f64::NAN; 2]),
+            positions.get(number).copied().unwrap_or([f64::NAN; 2]),
         )
     };
     Ok(rest.iter().map(in_frame).collect())
@@ -138,7 +138,7 @@ mod tests {
         let markers = series.frames[0].markers.iter();
         Ok(markers
             .map(|marker| {
-                [marker.place, marker.displacement]
+                [marker.position, marker.displacement]
                     .concat()
                     .try_into()
                     .unwrap()

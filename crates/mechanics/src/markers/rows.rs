@@ -42,7 +42,7 @@ pub(super) struct Row {
     pub time: Option<f64>,
     /// The point's own number, where the file has one.
     pub name: Option<u64>,
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// No numbers where the marker was not found.
     pub displacement: [f64; 2],
     pub standard_deviation: Option<f64>,
@@ -91,7 +91,7 @@ struct Gathering {
 
 impl Gathering {
     fn add(&mut self, row: Row) {
-        let key = row.place.map(|x| (x + 0.0).to_bits());
+        let key = row.position.map(|x| (x + 0.0).to_bits());
         let next = self.by_place.len();
         let number = match row.name {
             Some(name) if self.named => name as usize,
@@ -102,8 +102,8 @@ impl Gathering {
         frame.time = frame.time.or(row.time);
         if row.displacement.iter().any(|u| !u.is_finite()) {
             self.holes += 1;
-            if row.place.iter().all(|x| x.is_finite()) {
-                self.lost.insert(number, row.place);
+            if row.position.iter().all(|x| x.is_finite()) {
+                self.lost.insert(number, row.position);
             }
             return;
         }
@@ -116,7 +116,7 @@ impl Gathering {
         there.push(row.displacement);
         frame.markers.push(Marker {
             number,
-            place: row.place,
+            position: row.position,
             displacement: row.displacement,
             standard_deviation: row.standard_deviation,
         });
@@ -147,8 +147,9 @@ impl Gathering {
             warnings.push(Diagnostic::warning("", format!("{what}: {count}")).hint(hint));
         }
         let found = self.frames.values().flat_map(|frame| &frame.markers);
-        let found: BTreeMap<usize, [f64; 2]> =
-            found.map(|marker| (marker.number, marker.place)).collect();
+        let found: BTreeMap<usize, [f64; 2]> = found
+            .map(|marker| (marker.number, marker.position))
+            .collect();
         let found: Vec<[f64; 2]> = found.into_values().collect();
         let all: Vec<[f64; 2]> = self.lost.into_values().collect();
         let without = all.len();

@@ -57,13 +57,13 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
     table.check_numbers(read, "give an outline as numbers x, y only")?;
     let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
     for (row, _) in &table.rows {
-        let (place, number) = (
+        let (position, number) = (
             [row[x.0] * x.1, row[y.0] * y.1],
             number.map_or(0.0, |n| row[n]),
         );
         match lines.iter_mut().find(|(known, _)| *known == number) {
-            Some((_, line)) => line.push(place),
-            None => lines.push((number, vec![place])),
+            Some((_, line)) => line.push(position),
+            None => lines.push((number, vec![position])),
         }
     }
     Ok(lines.into_iter().map(|(_, line)| line).collect())
@@ -78,7 +78,7 @@ struct Reader<'a> {
     layout: &'static str,
     downwards: bool,
     deformed: bool,
-    places: [Length; 2],
+    positions: [Length; 2],
     displacements: [Length; 2],
     deviation: Option<Length>,
     frame: Option<usize>,
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
             Some(index) => Some((index, columns::unit_of(table, index))),
             None => find(table, names),
         };
-        let ([x, y], [ux, uy]) = (layout.places, layout.displacements);
+        let ([x, y], [ux, uy]) = (layout.positions, layout.displacements);
         let roles = [(Role::X, x), (Role::Y, y), (Role::Ux, ux), (Role::Uy, uy)];
         let heads = roles.map(|(role, names)| head(role, names));
         let names = || heads.iter().map(|head| head.as_ref()?.1.as_deref());
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
             layout: layout.name,
             downwards: reading.downwards.unwrap_or(layout.downwards),
             deformed: reading.deformed.unwrap_or(layout.deformed),
-            places: [of(0)?, of(1)?],
+            positions: [of(0)?, of(1)?],
             displacements: [of(2)?, of(3)?],
             deviation: deviation
                 .map(|head| length(table, head, units))
@@ -185,7 +185,7 @@ impl<'a> Reader<'a> {
                     .push(Diagnostic::warning("", message).hint(hint));
             }
         } else {
-            let lengths = [layout.places, layout.displacements];
+            let lengths = [layout.positions, layout.displacements];
             let lengths = lengths.as_flattened().iter().chain([&layout.deviation]);
             let others = [FRAME, TIME, NAME].into_iter().chain(layout.out_of_plane);
             let known = lengths.copied().chain(others).map(columns::plainly);
@@ -195,7 +195,7 @@ impl<'a> Reader<'a> {
         let columns = |pair: [Length; 2]| pair.map(|(column, _)| column);
         columns::check_flat(
             table,
-            columns(self.places),
+            columns(self.positions),
             columns(self.displacements),
             layout.out_of_plane,
             ignored,
@@ -205,7 +205,7 @@ impl<'a> Reader<'a> {
 
     /// The columns whose fields are numbers.
     fn read(&self) -> impl Iterator<Item = usize> {
-        let lengths = self.places.into_iter().chain(self.displacements);
+        let lengths = self.positions.into_iter().chain(self.displacements);
         let lengths = lengths.chain(self.deviation).map(|(column, _)| column);
         let time = self.time.map(|(column, _)| column);
         let others = [self.frame, time, self.lost, self.converged];
@@ -217,9 +217,9 @@ impl<'a> Reader<'a> {
         let refuse = |message: &str, hint: &str| self.table.refuse(line.clone(), message, hint);
         let up = if self.downwards { -1.0 } else { 1.0 };
         let pair = |[x, y]: [Length; 2]| [values[x.0] * x.1, up * values[y.0] * y.1];
-        let (mut place, mut displacement) = (pair(self.places), pair(self.displacements));
+        let (mut position, mut displacement) = (pair(self.positions), pair(self.displacements));
         if self.deformed && displacement.iter().all(|u| u.is_finite()) {
-            place = [place[0] - displacement[0], place[1] - displacement[1]];
+            position = [position[0] - displacement[0], position[1] - displacement[1]];
         }
         let lost = self.lost.is_some_and(|column| values[column] < 0.0);
         let deviation = self.deviation.map(|(column, unit)| values[column] * unit);
@@ -231,13 +231,13 @@ impl<'a> Reader<'a> {
         if lost || unconverged || self.mismatch.is_some_and(|column| values[column] != 0.0) {
             displacement = [f64::NAN; 2];
         }
-        if place.iter().any(|x| !x.is_finite()) {
+        if position.iter().any(|x| !x.is_finite()) {
             let hint = "give x and y, or leave out the line";
             return Err(refuse("a marker has no position", hint));
         }
         if self.deformed && displacement.iter().any(|u| !u.is_finite()) {
             // Where it was at rest nobody knows.
-            place = [f64::NAN; 2];
+            position = [f64::NAN; 2];
         }
         let whole = |column: Option<usize>| {
             let value = values[column?];
@@ -252,7 +252,7 @@ impl<'a> Reader<'a> {
             frame: whole(self.frame).map(|frame| frame as usize),
             time: time.filter(|time| time.is_finite()),
             name: whole(self.name).map(|name| name as u64),
-            place,
+            position,
             displacement,
             standard_deviation: deviation.filter(|deviation| *deviation > 0.0),
         })
@@ -260,7 +260,7 @@ impl<'a> Reader<'a> {
 
     /// What was taken from which column, and how.
     fn understood(&self) -> Understood {
-        let [x, y, ux, uy] = [self.places, self.displacements].concat()[..] else {
+        let [x, y, ux, uy] = [self.positions, self.displacements].concat()[..] else {
             return Understood::of(self.layout);
         };
         let lengths = [("x", x), ("y", y), ("ux", ux), ("uy", uy)];
@@ -285,7 +285,7 @@ impl<'a> Reader<'a> {
             turned_up: self.downwards,
             taken_to_rest: self.deformed,
             subset: None,
-            pixel: self.in_pixels.then_some(self.places[0].1),
+            pixel: self.in_pixels.then_some(self.positions[0].1),
         }
     }
 

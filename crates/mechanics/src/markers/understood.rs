@@ -56,7 +56,7 @@ impl Understood {
     }
 
     /// Where places come from, if they are not the file's.
-    pub fn places(&self) -> Option<&'static str> {
+    pub fn positions(&self) -> Option<&'static str> {
         self.taken_to_rest.then_some(
             "The positions in the file are those in the frame; the displacement was subtracted to obtain positions at rest.",
         )

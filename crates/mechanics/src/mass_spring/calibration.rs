@@ -30,9 +30,9 @@ pub fn springs(mesh: &Mesh, laws: &CellLaws, thickness: f64) -> Vec<Spring> {
     let mut all = CrossSections::default();
     for cell in 0..mesh.cell_count() {
         let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
-        let places: Vec<[f64; 2]> = corners.iter().map(|node| mesh.nodes[*node]).collect();
+        let positions: Vec<[f64; 2]> = corners.iter().map(|node| mesh.nodes[*node]).collect();
         let pairs = pairs(corners.len());
-        let sections = sections(&places, &pairs);
+        let sections = sections(&positions, &pairs);
         for ([a, b], section) in pairs.iter().zip(sections) {
             let ends = [corners[*a], corners[*b]];
             all.add(ends, laws.number(cell), thickness * section);

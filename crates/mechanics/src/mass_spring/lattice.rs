@@ -135,12 +135,12 @@ impl Lattice {
         let next = |i: usize| (i + 1) % count;
         let before = |i: usize| (i + count - 1) % count;
         // Places relative to the first corner, so that no digit is lost far from the origin.
-        let (mut own, mut places) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
+        let (mut own, mut positions) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
         for (i, axis) in (0..count).flat_map(|i| [(i, 0), (i, 1)]) {
             own[i][axis] = corners[i][axis] - corners[0][axis];
-            places[i][axis] = own[i][axis] + u[2 * i + axis] - u[axis];
+            positions[i][axis] = own[i][axis] + u[2 * i + axis] - u[axis];
         }
-        let current = polygon_area(&places[..count]);
+        let current = polygon_area(&positions[..count]);
         if current.is_nan() || current <= 0.0 {
             return None;
         }
@@ -151,7 +151,7 @@ impl Lattice {
         let change = current / rest - 1.0;
         let slope: Vec<f64> = (0..count)
             .flat_map(|i| {
-                let (from, to) = (places[before(i)], places[next(i)]);
+                let (from, to) = (positions[before(i)], positions[next(i)]);
                 [0.5 * (to[1] - from[1]), 0.5 * (from[0] - to[0])]
             })
             .collect();

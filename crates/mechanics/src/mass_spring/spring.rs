@@ -29,9 +29,9 @@ impl CrossSections {
     }
 
     /// The springs between nodes at these places.
-    pub fn springs(self, places: &[[f64; 2]]) -> Vec<Spring> {
+    pub fn springs(self, positions: &[[f64; 2]]) -> Vec<Spring> {
         let spring = |((nodes, law), area): (([usize; 2], u8), f64)| {
-            let [from, to] = nodes.map(|node| places[node]);
+            let [from, to] = nodes.map(|node| positions[node]);
             Spring {
                 nodes,
                 rest_length: (to[0] - from[0]).hypot(to[1] - from[1]),

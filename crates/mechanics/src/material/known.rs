@@ -301,7 +301,7 @@ fn of_options(error: Error) -> Error {
         };
         Diagnostic {
             key,
-            place: None,
+            position: None,
             hint,
             ..fault
         }

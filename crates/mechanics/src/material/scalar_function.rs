@@ -157,8 +157,8 @@ impl Table {
     /// ∫ f x dx within one piece.
     fn moment(&self, piece: usize, from: f64, to: f64) -> f64 {
         debug_assert!(self.piece(0.5 * (from + to)) == piece || from == to);
-        let term = |[place, weight]: [f64; 2]| {
-            let x = from + place * (to - from);
+        let term = |[position, weight]: [f64; 2]| {
+            let x = from + position * (to - from);
             weight * self.at(x)[0] * x
         };
         (to - from) * GAUSS.map(term).iter().sum::<f64>()

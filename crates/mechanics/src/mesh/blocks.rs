@@ -62,21 +62,21 @@ impl Builder {
     }
 
     /// The node at a place, a new one where there is none.
-    fn node(&mut self, place: [f64; 2]) -> usize {
-        let square = place.map(|x| (x / self.fine).round() as i64);
+    fn node(&mut self, position: [f64; 2]) -> usize {
+        let square = position.map(|x| (x / self.fine).round() as i64);
         for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
             if let Some(node) = self.squares.get(&[square[0] + dx, square[1] + dy]) {
                 return *node;
             }
         }
-        let node = self.inner_node(place);
+        let node = self.inner_node(position);
         self.squares.insert(square, node);
         node
     }
 
     /// The node at a place inside of a block, where no other block has one.
-    fn inner_node(&mut self, place: [f64; 2]) -> usize {
-        self.nodes.push(place);
+    fn inner_node(&mut self, position: [f64; 2]) -> usize {
+        self.nodes.push(position);
         self.nodes.len() - 1
     }
 
@@ -90,12 +90,12 @@ impl Builder {
             if let Some(node) = known {
                 return *node;
             }
-            let place = (block.map)([i as f64 / (2 * nx) as f64, j as f64 / (2 * ny) as f64]);
+            let position = (block.map)([i as f64 / (2 * nx) as f64, j as f64 / (2 * ny) as f64]);
             let sides = [j == 0, i == 2 * nx, j == 2 * ny, i == 0];
             let node = if sides.contains(&true) {
-                builder.node(place)
+                builder.node(position)
             } else {
-                builder.inner_node(place)
+                builder.inner_node(position)
             };
             *known = Some(node);
             for (name, on) in block.sides.iter().zip(sides) {
@@ -111,7 +111,7 @@ impl Builder {
         };
         for (i, j) in (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j))) {
             for corners in pieces(shape, (i + j) % 2 == 0) {
-                let nodes = places(shape, &corners).into_iter();
+                let nodes = positions(shape, &corners).into_iter();
                 let nodes = nodes.map(|[x, y]| at(self, 2 * i + x, 2 * j + y)).collect();
                 self.cells.push((shape, nodes));
             }
@@ -130,18 +130,18 @@ fn pieces(shape: CellShape, rising: bool) -> Vec<Vec<[usize; 2]>> {
 }
 
 /// All nodes of a cell from its corners.
-fn places(shape: CellShape, corners: &[[usize; 2]]) -> Vec<[usize; 2]> {
-    let mut places = corners.to_vec();
+fn positions(shape: CellShape, corners: &[[usize; 2]]) -> Vec<[usize; 2]> {
+    let mut positions = corners.to_vec();
     if shape.degree() == 2 {
         for i in 0..corners.len() {
             let (from, to) = (corners[i], corners[(i + 1) % corners.len()]);
-            places.push([0, 1].map(|axis| (from[axis] + to[axis]) / 2));
+            positions.push([0, 1].map(|axis| (from[axis] + to[axis]) / 2));
         }
     }
     if shape == CellShape::Quad9 {
-        places.push([1, 1]);
+        positions.push([1, 1]);
     }
-    places
+    positions
 }
 
 #[cfg(test)]

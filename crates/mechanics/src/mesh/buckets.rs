@@ -26,7 +26,7 @@ impl Buckets {
             boxes: Vec::new(),
         };
         for (cell, corners) in boxes.iter().enumerate() {
-            let [from, to] = corners.map(|corner| buckets.place(corner));
+            let [from, to] = corners.map(|corner| buckets.position(corner));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     buckets.cells[i * counts[1] + j].push(cell);
@@ -42,7 +42,7 @@ impl Buckets {
         (0..2).all(|axis| (low[axis]..=high[axis]).contains(&point[axis]))
     }
 
-    fn place(&self, point: [f64; 2]) -> [usize; 2] {
+    fn position(&self, point: [f64; 2]) -> [usize; 2] {
         [0, 1].map(|axis| {
             let step = (point[axis] - self.low[axis]) / self.step;
             (step.max(0.0) as usize).min(self.counts[axis] - 1)
@@ -51,13 +51,13 @@ impl Buckets {
 
     /// The cells whose boxes touch the square of a point.
     pub fn around(&self, point: [f64; 2]) -> &[usize] {
-        let [i, j] = self.place(point);
+        let [i, j] = self.position(point);
         &self.cells[i * self.counts[1] + j]
     }
 
     /// The cells of all squares at a distance of 0, 1, … squares from that of a point.
     pub fn rings(&self, point: [f64; 2]) -> impl Iterator<Item = Vec<usize>> {
-        let square = self.place(point);
+        let square = self.position(point);
         (0..self.counts[0].max(self.counts[1])).map(move |reach| self.ring(square, reach))
     }
 

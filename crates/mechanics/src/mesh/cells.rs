@@ -212,9 +212,9 @@ impl Mesh {
         }
         let mut sorted = edges.to_vec();
         for edge in edges {
-            let place = &mut next[edge.ends[0]];
-            sorted[*place] = *edge;
-            *place += 1;
+            let position = &mut next[edge.ends[0]];
+            sorted[*position] = *edge;
+            *position += 1;
         }
         for begins_there in sorted.chunk_by_mut(|one, other| one.ends[0] == other.ends[0]) {
             begins_there.sort_unstable();

@@ -105,13 +105,13 @@ impl Grid {
 
     /// Length and width of a cell in mm.
     pub(super) fn cell_size(self, cell: usize) -> [f64; 2] {
-        let place = [cell / self.cells[1], cell % self.cells[1]];
+        let position = [cell / self.cells[1], cell % self.cells[1]];
         [0, 1].map(|axis| {
             if self.is_equal() {
                 self.size[axis] / self.cells[axis] as f64
             } else {
                 let line = |line: usize| self.node_line(axis, line, 1);
-                line(place[axis] + 1) - line(place[axis])
+                line(position[axis] + 1) - line(position[axis])
             }
         })
     }
@@ -128,12 +128,12 @@ impl Grid {
         if part == 0 {
             return from;
         }
-        let (places, cell) = (lobatto(self.together), part / degree);
+        let (positions, cell) = (lobatto(self.together), part / degree);
         let within = (part % degree) as f64 / degree as f64;
         let share = if within == 0.0 {
-            places[cell]
+            positions[cell]
         } else {
-            places[cell] + (places[cell + 1] - places[cell]) * within
+            positions[cell] + (positions[cell + 1] - positions[cell]) * within
         };
         from + (self.line(axis, block + 1, blocks) - from) * share
     }
@@ -145,7 +145,7 @@ impl Grid {
 
     /// The cell that contains a point, and the point's natural coordinates in it.
     pub(super) fn locate(self, point: [f64; 2]) -> (usize, [f64; 2]) {
-        let place = |axis: usize| {
+        let position = |axis: usize| {
             let cells = self.cells[axis];
             if self.is_equal() {
                 let step = self.size[axis] / cells as f64;
@@ -164,13 +164,13 @@ impl Grid {
             let block = (steps as usize).min(blocks - 1);
             let [from, to] = [block, block + 1].map(|step| self.line(axis, step, blocks));
             let along = (point[axis] - from) / (to - from);
-            let places = lobatto(self.together);
-            let part = places[1..self.together].partition_point(|place| *place <= along);
-            let [from, to] = [places[part], places[part + 1]];
+            let positions = lobatto(self.together);
+            let part = positions[1..self.together].partition_point(|position| *position <= along);
+            let [from, to] = [positions[part], positions[part + 1]];
             let index = block * self.together + part;
             (index, 2.0 * (along - from) / (to - from) - 1.0)
         };
-        let ((i, x), (j, y)) = (place(0), place(1));
+        let ((i, x), (j, y)) = (position(0), position(1));
         (i * self.cells[1] + j, [x, y])
     }
 }

@@ -93,7 +93,7 @@ impl Mesh {
     }
 
     /// The place in mm of a point of a cell in natural coordinates.
-    pub fn place(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
+    pub fn position(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
         let values = self.shape(cell).values(local);
         [0, 1].map(|axis| {
             let nodes = self.cell(cell).iter().zip(&values);
@@ -121,14 +121,14 @@ impl Mesh {
 
     /// Displacement interpolated at all nodes of another mesh of the specimen; on a seam, that of the side to which a node belongs.
     pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
-        let places = self.places_from_own_sides(other);
-        let place = |node: usize| match &places {
-            Some(places) => places[node],
+        let positions = self.places_from_own_sides(other);
+        let position = |node: usize| match &positions {
+            Some(positions) => positions[node],
             None => self.locate(other.nodes[node]),
         };
         let nodes = 0..other.nodes.len();
         nodes
-            .flat_map(|node| self.displacement_in(displacement, place(node)))
+            .flat_map(|node| self.displacement_in(displacement, position(node)))
             .collect()
     }
 
@@ -137,13 +137,13 @@ impl Mesh {
         let mut starts = Vec::with_capacity(other.nodes.len() + 1);
         starts.push(0);
         let (mut nodes, mut shares) = (Vec::new(), Vec::new());
-        let places = self.places_from_own_sides(other);
+        let positions = self.places_from_own_sides(other);
         let mut cell = 0;
-        for (node, place) in other.nodes.iter().enumerate() {
+        for (node, position) in other.nodes.iter().enumerate() {
             let local;
-            (cell, local) = match &places {
-                Some(places) => places[node],
-                None => self.locate_near(cell, *place),
+            (cell, local) = match &positions {
+                Some(positions) => positions[node],
+                None => self.locate_near(cell, *position),
             };
             shares.extend(self.shape(cell).values(local));
             nodes.extend(self.cell(cell).iter().map(|node| *node as u32));
@@ -223,9 +223,9 @@ mod tests {
             let mesh = Mesh::new(nodes, cells);
             // The map of the cells at the sides is singular there where they are graded by two.
             let on_top = (0..=37).map(|k| [50.0 * f64::from(k) / 37.0 + far, 150.0 - far]);
-            for place in mesh.nodes.iter().copied().chain(on_top) {
-                let outside = mesh.outside(place);
-                assert!(outside < 1e-5, "{grading} {far} {place:?}: {outside}");
+            for position in mesh.nodes.iter().copied().chain(on_top) {
+                let outside = mesh.outside(position);
+                assert!(outside < 1e-5, "{grading} {far} {position:?}: {outside}");
             }
         }
     }

@@ -94,10 +94,10 @@ impl Mesh {
         let shape = self.shape(cell);
         // Relative to a node of the cell, so that a mesh far from the origin loses no digits.
         let origin = self.nodes[self.cell(cell)[0]];
-        let from_origin = |place: [f64; 2]| [place[0] - origin[0], place[1] - origin[1]];
+        let from_origin = |position: [f64; 2]| [position[0] - origin[0], position[1] - origin[1]];
         let nodes = self.cell(cell).iter();
-        let places: Vec<[f64; 2]> = nodes.map(|node| from_origin(self.nodes[*node])).collect();
-        let size = places
+        let positions: Vec<[f64; 2]> = nodes.map(|node| from_origin(self.nodes[*node])).collect();
+        let size = positions
             .iter()
             .flatten()
             .fold(0.0, |size: f64, x| size.max(x.abs()));
@@ -107,8 +107,8 @@ impl Mesh {
         for _ in 0..60 {
             let values = shape.values(local);
             let mut miss = from_origin(point);
-            for (place, value) in places.iter().zip(&values) {
-                miss = [miss[0] - value * place[0], miss[1] - value * place[1]];
+            for (position, value) in positions.iter().zip(&values) {
+                miss = [miss[0] - value * position[0], miss[1] - value * position[1]];
             }
             // Where the Jacobian vanishes, as at the outer sides of cells graded by two, steps do not become short.
             if miss[0].abs().max(miss[1].abs()) <= negligible {
@@ -175,14 +175,14 @@ fn far_away(mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
     let cell = cell.expect("a mesh has a cell");
     let shape = mesh.shape(cell);
     let start = shape.centre();
-    let from = mesh.place(cell, start);
+    let from = mesh.position(cell, start);
     let (gradients, _) = mesh.gradients(cell, start);
     // ∂ξ/∂X = Σ ξₐ ∂Nₐ/∂X over the nodes of the cell.
     let nodes = || shape.natural_nodes().iter().zip(&gradients);
     let local = [0, 1].map(|axis| {
         let slope = |along: usize| {
             nodes()
-                .map(|(place, g)| place[axis] * g[along])
+                .map(|(position, g)| position[axis] * g[along])
                 .sum::<f64>()
         };
         start[axis] + slope(0) * (point[0] - from[0]) + slope(1) * (point[1] - from[1])
@@ -205,7 +205,7 @@ mod tests {
             ],
         );
         let (cell, local) = mesh.locate([9.0, 1.0]);
-        let there = mesh.place(cell, local);
+        let there = mesh.position(cell, local);
         assert!(
             (there[0] - 9.0).abs() < 1e-9 && (there[1] - 1.0).abs() < 1e-9,
             "{there:?}"

@@ -232,8 +232,8 @@ impl Outline {
     /// Whether no line crosses itself or another one, and all holes lie inside.
     fn check(&self) -> Result<(), OutlineFault> {
         let lines: Vec<Polygon> = self.lines().map(|line| Polygon(line)).collect();
-        if let Some(place) = polygon::crossing(&lines) {
-            return Err(OutlineFault::Crossing(place));
+        if let Some(position) = polygon::crossing(&lines) {
+            return Err(OutlineFault::Crossing(position));
         }
         match self.holes.iter().find(|hole| !lines[0].contains(hole[0])) {
             Some(hole) => Err(OutlineFault::SeparatedLines(hole[0])),

@@ -58,7 +58,7 @@ impl Mesh {
         let mut mesh = Self::new(nodes, all.map(cell));
         let size = [x, y].map(|lines| lines[lines.len() - 1]);
         for side in Side::ALL {
-            mesh.name_boundary(side.name(), |place| side.holds(size, place));
+            mesh.name_boundary(side.name(), |position| side.holds(size, position));
         }
         mesh
     }
@@ -189,7 +189,7 @@ mod tests {
             assert!((mesh.cell_size(0)[0] - 2.0 * first).abs() < 1e-12);
             for cell in 0..mesh.cell_count() {
                 for local in [[-0.9, 0.3], [0.0, 0.0], [0.99, -0.99]] {
-                    let (found, there) = mesh.locate(mesh.place(cell, local));
+                    let (found, there) = mesh.locate(mesh.position(cell, local));
                     assert_eq!(found, cell);
                     assert!((0..2).all(|axis| (there[axis] - local[axis]).abs() < 1e-9));
                 }

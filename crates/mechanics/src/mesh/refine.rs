@@ -142,8 +142,8 @@ impl<'a> Subdivision<'a> {
     pub fn corners(&self, cell: usize) -> Vec<Point> {
         let shape = self.mesh.shape(cell);
         let nodes = self.mesh.cell(cell)[..shape.corners()].iter();
-        let places = nodes.zip(shape.natural_nodes());
-        places
+        let positions = nodes.zip(shape.natural_nodes());
+        positions
             .map(|(node, local)| Point {
                 node: *node,
                 local: *local,
@@ -156,7 +156,7 @@ impl<'a> Subdivision<'a> {
         let local = [0, 1].map(|axis| 0.5 * (a.local[axis] + b.local[axis]));
         let (nodes, mesh) = (&mut self.nodes, self.mesh);
         let node = *self.made.entry(key(a.node, b.node)).or_insert_with(|| {
-            nodes.push(mesh.place(cell, local));
+            nodes.push(mesh.position(cell, local));
             nodes.len() - 1
         });
         Point { node, local }
@@ -170,7 +170,7 @@ impl<'a> Subdivision<'a> {
         let node = match own.filter(|_| local == [0.0; 2]) {
             Some(node) => *node,
             None => {
-                self.nodes.push(self.mesh.place(cell, local));
+                self.nodes.push(self.mesh.position(cell, local));
                 self.nodes.len() - 1
             }
         };
@@ -336,8 +336,8 @@ mod tests {
             let [a, b, m] = [edge[0], edge[1], edge[2]].map(|node| mesh.nodes[node]);
             let quarter = [0, 1].map(|axis| 0.375 * a[axis] + 0.75 * m[axis] - 0.125 * b[axis]);
             let near = |node: &usize| {
-                let place = fine.nodes[*node];
-                (place[0] - quarter[0]).hypot(place[1] - quarter[1]) < 1e-12
+                let position = fine.nodes[*node];
+                (position[0] - quarter[0]).hypot(position[1] - quarter[1]) < 1e-12
             };
             assert!(fine.groups()["inside"].nodes.iter().any(near), "{kind:?}");
             let inside = &fine.groups()["inside"].edges;

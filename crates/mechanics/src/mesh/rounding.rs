@@ -138,11 +138,11 @@ impl Mesh {
         let mut finer = self.quartered();
         for (piece, bump) in bumps {
             let (a, b) = (piece.edge[0], piece.edge[1]);
-            let places: &[_] = match piece.edge {
+            let positions: &[_] = match piece.edge {
                 [_, _, m] => &[(a, *m, -0.5), (*m, b, 0.5)],
                 _ => &[(a, b, 0.0)],
             };
-            for (from, to, s) in places {
+            for (from, to, s) in positions {
                 let way = piece.way(bump, *s);
                 if let Some(node) = finer.between(*from, *to) {
                     for (axis, way) in way.into_iter().enumerate() {

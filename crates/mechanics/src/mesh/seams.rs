@@ -32,14 +32,14 @@ impl Mesh {
             .iter()
             .flatten()
             .for_each(|node| on_boundary[*node] = true);
-        let place = |node: usize| match own_cell[node].filter(|_| on_boundary[node]) {
+        let position = |node: usize| match own_cell[node].filter(|_| on_boundary[node]) {
             Some(own) => {
                 let (start, _) = self.locate(other.centre(own));
                 self.walk(neighbours, start, other.nodes[node])
             }
             None => self.locate(other.nodes[node]),
         };
-        Some((0..other.nodes.len()).map(place).collect())
+        Some((0..other.nodes.len()).map(position).collect())
     }
 
     /// The neighbours of all cells where a node of the boundary lies on a cell that is not its own.
@@ -99,7 +99,7 @@ impl Mesh {
             visited.push(next);
             cell = next;
         }
-        nearest.map_or_else(|| self.locate(point), |(_, place)| place)
+        nearest.map_or_else(|| self.locate(point), |(_, position)| position)
     }
 
     /// The edges of a cell beyond whose chords a point lies, those it is farthest from first.
@@ -109,8 +109,9 @@ impl Mesh {
         let beyond = edges.filter_map(|(number, edge)| {
             let [a, b] = [edge[0], edge[1]].map(|node| self.nodes[self.cell(cell)[node]]);
             let along = [b[0] - a[0], b[1] - a[1]];
-            let side =
-                |place: [f64; 2]| along[0] * (place[1] - a[1]) - along[1] * (place[0] - a[0]);
+            let side = |position: [f64; 2]| {
+                along[0] * (position[1] - a[1]) - along[1] * (position[0] - a[0])
+            };
             // Positive beyond the chord, whichever way the cell is numbered.
             let beyond = -side(point) * side(centre).signum() / along[0].hypot(along[1]);
             (beyond > 0.0).then_some((beyond, number))
@@ -136,9 +137,9 @@ mod tests {
             .nodes
             .iter()
             .enumerate()
-            .map(|(node, place)| {
-                if is_doubled(*place) {
-                    nodes.push(*place);
+            .map(|(node, position)| {
+                if is_doubled(*position) {
+                    nodes.push(*position);
                     nodes.len() - 1
                 } else {
                     node

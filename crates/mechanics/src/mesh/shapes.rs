@@ -161,8 +161,8 @@ impl Shape {
             .flat_map(|(name, group)| group.nodes.iter().map(move |node| (name.as_str(), *node)))
             .filter_map(|(name, node)| Some((node, self.on_outline(name, mesh.nodes[node])?)))
             .collect();
-        for (node, place) in moves {
-            mesh.nodes[node] = place;
+        for (node, position) in moves {
+            mesh.nodes[node] = position;
         }
     }
 

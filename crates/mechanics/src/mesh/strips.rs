@@ -42,7 +42,7 @@ pub fn strip<'a>(
                 let x = match s {
                     0.0 => start,
                     1.0 => end,
-                    _ => lengths.place(before + s * (after - before)),
+                    _ => lengths.position(before + s * (after - before)),
                 };
                 [x, (2.0 * t - 1.0) * half_width(x)]
             }),
@@ -88,7 +88,7 @@ impl Lengths {
     }
 
     /// The place with some l.
-    fn place(&self, l: f64) -> f64 {
+    fn position(&self, l: f64) -> f64 {
         self.interpolated(l, [1, 0])
     }
 

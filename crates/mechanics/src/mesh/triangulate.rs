@@ -45,7 +45,7 @@ pub fn fill(points: &[[f64; 2]], edges: &[[usize; 2]]) -> (Vec<[f64; 2]>, Vec<[u
     let mut triangles: Vec<[usize; 3]> = faces
         .map(|face| face.vertices().map(|vertex| vertex.fix().index()))
         .collect();
-    let places: Vec<[f64; 2]> = mesh
+    let positions: Vec<[f64; 2]> = mesh
         .vertices()
         .map(|vertex| [vertex.position().x, vertex.position().y])
         .collect();
@@ -54,9 +54,9 @@ pub fn fill(points: &[[f64; 2]], edges: &[[usize; 2]]) -> (Vec<[f64; 2]>, Vec<[u
     used.sort_unstable();
     used.dedup();
     used.sort_by(|a, b| {
-        places[*a][0]
-            .total_cmp(&places[*b][0])
-            .then(places[*a][1].total_cmp(&places[*b][1]))
+        positions[*a][0]
+            .total_cmp(&positions[*b][0])
+            .then(positions[*a][1].total_cmp(&positions[*b][1]))
     });
     let order: HashMap<usize, usize> = used
         .iter()
@@ -67,7 +67,10 @@ pub fn fill(points: &[[f64; 2]], edges: &[[usize; 2]]) -> (Vec<[f64; 2]>, Vec<[u
         *triangle = first_least(triangle.map(|node| order[&node]));
     }
     triangles.sort_unstable();
-    (used.iter().map(|node| places[*node]).collect(), triangles)
+    (
+        used.iter().map(|node| positions[*node]).collect(),
+        triangles,
+    )
 }
 
 /// The same triangle, beginning at its first point.

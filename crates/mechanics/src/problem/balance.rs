@@ -17,10 +17,10 @@ pub struct Resultant {
 
 impl Resultant {
     /// The resultant of nodal forces in N, one for each unknown, at places in mm about a centre.
-    pub fn of_nodes(places: &[[f64; 2]], forces: &[f64], centre: [f64; 2]) -> Self {
+    pub fn of_nodes(positions: &[[f64; 2]], forces: &[f64], centre: [f64; 2]) -> Self {
         let mut sum = Self::default();
-        for (place, force) in places.iter().zip(forces.chunks_exact(2)) {
-            let arm = [place[0] - centre[0], place[1] - centre[1]];
+        for (position, force) in positions.iter().zip(forces.chunks_exact(2)) {
+            let arm = [position[0] - centre[0], position[1] - centre[1]];
             sum.force[0] += force[0];
             sum.force[1] += force[1];
             sum.moment += arm[0] * force[1] - arm[1] * force[0];
@@ -78,7 +78,7 @@ impl Balance {
 /// A deformed body, and the point about which its moments are taken.
 pub struct Body {
     /// The deformed nodes in mm.
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     /// The centre of the box around them.
     centre: [f64; 2],
     /// The centre relative to the middle of the mesh at rest.
@@ -90,14 +90,14 @@ impl Body {
     /// A mesh with displacements.
     pub fn new(mesh: &Mesh, displacement: &[f64]) -> Self {
         let moved = mesh.nodes.iter().zip(displacement.chunks_exact(2));
-        let places: Vec<[f64; 2]> = moved.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]).collect();
-        let [low, high] = bounding_box(places.iter().copied());
+        let positions: Vec<[f64; 2]> = moved.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]).collect();
+        let [low, high] = bounding_box(positions.iter().copied());
         let (centre, middle) = (
             [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])),
             mesh.middle(),
         );
         Self {
-            places,
+            positions,
             centre,
             from_middle: [0, 1].map(|axis| centre[axis] - middle[axis]),
             half_diagonal: 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]),
@@ -106,7 +106,7 @@ impl Body {
 
     /// The resultant of nodal forces in N, one for each unknown.
     pub fn resultant(&self, forces: &[f64]) -> Resultant {
-        Resultant::of_nodes(&self.places, forces, self.centre)
+        Resultant::of_nodes(&self.positions, forces, self.centre)
     }
 
     /// The balance of supports and loads about the centre, relative to forces of `negligible` in N at least.
@@ -129,8 +129,8 @@ mod tests {
 
     #[test]
     fn a_couple_has_a_moment_and_no_force() {
-        let places = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
-        let mesh = Mesh::new(places, [(CellShape::Triangle3, vec![0, 1, 2])]);
+        let positions = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
+        let mesh = Mesh::new(positions, [(CellShape::Triangle3, vec![0, 1, 2])]);
         let body = Body::new(&mesh, &[0.0; 6]);
         let of =
             |forces: [f64; 6]| body.balance(body.resultant(&forces), Resultant::default(), 0.0);

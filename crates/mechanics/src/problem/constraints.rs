@@ -20,7 +20,7 @@ pub enum Motion {
     Straight(f64),
     /// Like a coordinate of a point, at a place in mm relative to the centre, that is turned by an angle at 1.
     Turn {
-        place: [f64; 2],
+        position: [f64; 2],
         axis: usize,
         angle: f64,
     },
@@ -38,12 +38,16 @@ impl Motion {
     pub fn at(self, factor: f64) -> f64 {
         match self {
             Self::Straight(displacement) => factor * displacement,
-            Self::Turn { place, axis, angle } => {
+            Self::Turn {
+                position,
+                axis,
+                angle,
+            } => {
                 let turn = RigidMotion {
                     displacement: [0.0; 2],
                     angle: factor * angle,
                 };
-                turn.at(place)[axis]
+                turn.at(position)[axis]
             }
         }
     }
@@ -51,8 +55,8 @@ impl Motion {
 
 impl Support {
     /// The displacement in mm of a node at a place in mm, at a load factor, along an axis that the support holds.
-    pub fn displacement(&self, place: [f64; 2], axis: usize, factor: f64) -> Option<f64> {
-        motion(self, place, axis).map(|motion| motion.at(factor))
+    pub fn displacement(&self, position: [f64; 2], axis: usize, factor: f64) -> Option<f64> {
+        motion(self, position, axis).map(|motion| motion.at(factor))
     }
 }
 
@@ -347,8 +351,12 @@ fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
         // Its line tells along which direction it holds.
         Support::Roller => None,
         Support::Rotation { centre, angle } => {
-            let place = [node[0] - centre[0], node[1] - centre[1]];
-            Some(Motion::Turn { place, axis, angle })
+            let position = [node[0] - centre[0], node[1] - centre[1]];
+            Some(Motion::Turn {
+                position,
+                axis,
+                angle,
+            })
         }
         Support::Grip(drives) => match drives[axis] {
             Drive::Displacement(displacement) => Some(Motion::Straight(displacement)),
@@ -361,9 +369,9 @@ fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
 fn normal(mesh: &Mesh, group: &Group) -> Result<[f64; 2], SupportMisfit> {
     /// Distance from the line relative to its length.
     const STRAIGHT: f64 = 1e-9;
-    let places = || group.nodes.iter().map(|node| mesh.nodes[*node]);
+    let positions = || group.nodes.iter().map(|node| mesh.nodes[*node]);
     let extents = [0, 1].map(|axis| {
-        let [low, high] = extremes(places().map(|place| place[axis]));
+        let [low, high] = extremes(positions().map(|position| position[axis]));
         high - low
     });
     if extents == [0.0; 2] {
@@ -375,17 +383,17 @@ fn normal(mesh: &Mesh, group: &Group) -> Result<[f64; 2], SupportMisfit> {
     }
     // Through the ends along the axis of the larger extent.
     let order = |a: &[f64; 2], b: &[f64; 2]| a[1 - across].total_cmp(&b[1 - across]);
-    let (first, last) = (places().min_by(order), places().max_by(order));
+    let (first, last) = (positions().min_by(order), positions().max_by(order));
     let (Some(first), Some(last)) = (first, last) else {
         return Err(SupportMisfit::NoNodes);
     };
     let along = [0, 1].map(|axis| last[axis] - first[axis]);
     let length = along[0].hypot(along[1]);
     let normal = [-along[1] / length, along[0] / length];
-    let distance = |place: [f64; 2]| {
-        (normal[0] * (place[0] - first[0]) + normal[1] * (place[1] - first[1])).abs()
+    let distance = |position: [f64; 2]| {
+        (normal[0] * (position[0] - first[0]) + normal[1] * (position[1] - first[1])).abs()
     };
-    if places().any(|place| distance(place) > STRAIGHT * length) {
+    if positions().any(|position| distance(position) > STRAIGHT * length) {
         return Err(SupportMisfit::NotStraight);
     }
     Ok(normal)

@@ -48,8 +48,8 @@ pub fn contradictions(
     }
     let mut found: BTreeMap<(usize, usize, Conflict), Vec<usize>> = BTreeMap::new();
     for (unknown, demands) in &demands {
-        for (place, (later, demand)) in demands.iter().enumerate() {
-            for (earlier, other) in &demands[..place] {
+        for (position, (later, demand)) in demands.iter().enumerate() {
+            for (earlier, other) in &demands[..position] {
                 if let Some(conflict) = conflict(*other, *demand, rounding) {
                     let pair = (*earlier, *later, conflict);
                     found.entry(pair).or_default().push(*unknown);
@@ -96,7 +96,7 @@ fn tell(
         let what = describe(support);
         format!("support {} on the group `{group}` ({what})", number + 1)
     });
-    let place = mesh.describe_unknown(unknowns[0]);
+    let position = mesh.describe_unknown(unknowns[0]);
     let more = match unknowns.len() - 1 {
         0 => String::new(),
         1 => " and at 1 more node".to_owned(),
@@ -104,17 +104,17 @@ fn tell(
     };
     let (message, hint) = match conflict {
         Conflict::Motions => (
-            format!("{one} and {other} contradict each other at {place}{more}"),
+            format!("{one} and {other} contradict each other at {position}{more}"),
             "leave out one of them, give both the same motion, or leave the shared nodes out of one of the groups",
         ),
         Conflict::GripAndSupport => (
             format!(
-                "{one} shares {place}{more} with another support, {other}: one of them is a grip with a force"
+                "{one} shares {position}{more} with another support, {other}: one of them is a grip with a force"
             ),
             "leave the node out of one of the groups, or give the grip a displacement there",
         ),
         Conflict::Grips => (
-            format!("{one} shares {place}{more} with another grip, {other}"),
+            format!("{one} shares {position}{more} with another grip, {other}"),
             "leave the node out of one of the groups",
         ),
     };

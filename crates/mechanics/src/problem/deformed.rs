@@ -105,10 +105,10 @@ impl DeformedSheet {
     /// # Errors
     /// [`PointFault`].
     pub fn principal_stretches_at(&self, point: [f64; 2]) -> Result<[f64; 3], PointFault> {
-        let place = self.locate(point)?;
-        let kinematics = self.kinematics_in(place, point)?;
+        let position = self.locate(point)?;
+        let kinematics = self.kinematics_in(position, point)?;
         let [larger, smaller] = kinematics.principal_stretches();
-        let thickness = self.laws.of(place.0).thickness_stretch(&kinematics);
+        let thickness = self.laws.of(position.0).thickness_stretch(&kinematics);
         Ok([larger, smaller, thickness])
     }
 
@@ -117,10 +117,13 @@ impl DeformedSheet {
     /// # Errors
     /// [`PointFault`].
     pub fn stress_at(&self, point: [f64; 2]) -> Result<Stress, PointFault> {
-        let place = self.locate(point)?;
-        let kinematics = self.kinematics_in(place, point)?;
-        let past = self.past.iter().map(|field| self.gradient_in(place, field));
-        let law = self.laws.of(place.0);
+        let position = self.locate(point)?;
+        let kinematics = self.kinematics_in(position, point)?;
+        let past = self
+            .past
+            .iter()
+            .map(|field| self.gradient_in(position, field));
+        let law = self.laws.of(position.0);
         let StressAfter { stress, .. } = StressAfter::new(law, &kinematics, past);
         Ok(Stress {
             first_piola_kirchhoff: stress.into(),
@@ -128,8 +131,8 @@ impl DeformedSheet {
         })
     }
 
-    fn kinematics_in(&self, place: Place, [x, y]: [f64; 2]) -> Result<Kinematics, PointFault> {
-        let gradient = self.gradient_in(place, &self.displacement);
+    fn kinematics_in(&self, position: Place, [x, y]: [f64; 2]) -> Result<Kinematics, PointFault> {
+        let gradient = self.gradient_in(position, &self.displacement);
         Kinematics::new(&gradient).map_err(|_| PointFault::Inverted { x, y })
     }
 

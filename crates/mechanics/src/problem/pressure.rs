@@ -66,13 +66,13 @@ impl Pressures {
     pub fn add(&mut self, mesh: &Mesh, group: &Group, line_load: f64) {
         let centre = mesh.middle();
         for nodes in &group.edges {
-            let place = |node: &usize| [0, 1].map(|axis| mesh.nodes[*node][axis] - centre[axis]);
+            let position = |node: &usize| [0, 1].map(|axis| mesh.nodes[*node][axis] - centre[axis]);
             self.edges.push(Edge {
                 unknowns: nodes
                     .iter()
                     .flat_map(|node| [2 * node, 2 * node + 1])
                     .collect(),
-                rest: nodes.iter().flat_map(place).collect(),
+                rest: nodes.iter().flat_map(position).collect(),
                 line_load,
             });
         }
@@ -142,7 +142,8 @@ impl Pressures {
             sum.force[0] += force[0];
             sum.force[1] += force[1];
             sum.size += force[0].hypot(force[1]);
-            let squares = |place: [f64; 2]| place[0] * place[0] + place[1] * place[1];
+            let squares =
+                |position: [f64; 2]| position[0] * position[0] + position[1] * position[1];
             sum.moment += 0.5 * by * (squares(to) - squares(from));
         }
         sum
@@ -183,10 +184,12 @@ impl Edge {
     /// The edge's part of s p t A, less that at rest; the true nodal forces, and the stiffness of A alone.
     fn evaluate(&self, factor: f64, u: &[f64], local: Local<'_>) -> f64 {
         let by = factor * self.line_load;
-        let place: Vec<f64> = self.rest.iter().zip(u).map(|(rest, u)| rest + u).collect();
-        let count = place.len() / 2;
+        let position: Vec<f64> = self.rest.iter().zip(u).map(|(rest, u)| rest + u).collect();
+        let count = position.len() / 2;
         // Forces depend only on differences of places, which keep all digits relative to the edge's first node.
-        let relative: Vec<f64> = (0..place.len()).map(|i| place[i] - place[i % 2]).collect();
+        let relative: Vec<f64> = (0..position.len())
+            .map(|i| position[i] - position[i % 2])
+            .collect();
         for (i, j, share) in pairs(count) {
             let (a, b) = (&relative[2 * i..2 * i + 2], &relative[2 * j..2 * j + 2]);
             local.residual[2 * i] += by * share * b[1];
@@ -208,7 +211,7 @@ impl Edge {
                 }
             }
         }
-        by * (enclosed(&place) - enclosed(&self.rest))
+        by * (enclosed(&position) - enclosed(&self.rest))
     }
 }
 
@@ -231,10 +234,10 @@ impl End {
 /// two nodes     ½ (a × b)
 /// three nodes   ½ (⅔ (2 a × m + 2 m × b) − ⅓ a × b),   m the middle
 /// ```
-fn enclosed(place: &[f64]) -> f64 {
-    let pairs = pairs(place.len() / 2).iter();
+fn enclosed(position: &[f64]) -> f64 {
+    let pairs = pairs(position.len() / 2).iter();
     let crosses = pairs.map(|(i, j, share)| {
-        share * (place[2 * i] * place[2 * j + 1] - place[2 * i + 1] * place[2 * j])
+        share * (position[2 * i] * position[2 * j + 1] - position[2 * i + 1] * position[2 * j])
     });
     crosses.sum()
 }

@@ -18,7 +18,7 @@ pub struct GroupState {
     /// Moment of that force about `place` in N·mm, counter-clockwise; in a linear theory about the same point of the body at rest.
     pub moment: f64,
     /// Mean deformed place in mm: over the length of its edges at rest, else over its cells, lines or nodes.
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// Mean displacement over the length of its edges in mm.
     pub displacement: [f64; 2],
     /// The sum of the magnitudes of the forces on its nodes in N, of which `force` is the resultant.
@@ -104,9 +104,9 @@ impl Reactions<'_> {
             0.0
         };
         let arm = |node: usize, axis: usize| mesh.nodes[node][axis] + turning * u[2 * node + axis];
-        let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
+        let position = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
         let shares = shares(mesh, group);
-        let (middle, about) = (mean(&shares, &place), mean(&shares, &arm));
+        let (middle, about) = (mean(&shares, &position), mean(&shares, &arm));
         let moment = |(node, force): (&usize, &[f64; 2])| {
             let [x, y] = [0, 1].map(|axis| arm(*node, axis) - about[axis]);
             x * force[1] - y * force[0]
@@ -116,7 +116,7 @@ impl Reactions<'_> {
             rounding: self.rounding(),
             force: [0, 1].map(|axis| forces.values().map(|force| force[axis]).sum()),
             moment: forces.iter().map(moment).sum(),
-            place: middle,
+            position: middle,
             displacement: mean(&shares, &|node, axis| u[2 * node + axis]),
         }
     }

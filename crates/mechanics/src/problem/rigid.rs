@@ -30,8 +30,8 @@ pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for group in bodies.groups(constraints) {
         let motions = bodies.free(&group, constraints);
-        for (place, body) in group.iter().enumerate() {
-            let own = motions.rows(3 * place, 3).into_owned();
+        for (position, body) in group.iter().enumerate() {
+            let own = motions.rows(3 * position, 3).into_owned();
             if let Some(motion) = bodies.describe(&own) {
                 found.push(bodies.tell(*body, &motion));
             }
@@ -122,12 +122,12 @@ impl<'a> Bodies<'a> {
     /// The motions of some bodies that satisfy all conditions: 3 rows for each body, a column for each motion.
     fn free(&self, group: &[usize], constraints: &Constraints) -> DMatrix<f64> {
         let count = 3 * group.len();
-        let place = |body: &usize| group.binary_search(body).ok();
+        let position = |body: &usize| group.binary_search(body).ok();
         let row = |unknown: usize, body: usize| {
             let mut row = DVector::zeros(count);
-            if let Some(place) = place(&body) {
+            if let Some(position) = position(&body) {
                 let entries = self.displacement(unknown);
-                (0..3).for_each(|i| row[3 * place + i] = entries[i]);
+                (0..3).for_each(|i| row[3 * position + i] = entries[i]);
             }
             row
         };

@@ -30,17 +30,17 @@ impl SheetEnergy {
         let (mut energy, mut stiffness) = (0.0, Vec::new());
         let tangents = take.is_some();
         self.in_blocks(u, tangents, |points, cells| {
-            let mut place = 0;
+            let mut position = 0;
             for cell in cells {
-                let own = (place..).zip(self.cell_points(cell));
+                let own = (position..).zip(self.cell_points(cell));
                 let terms = own.map(|(index, point)| point.volume() * points.responses[0][index]);
                 energy += terms.sum::<f64>();
-                points.add_forces(self, cell, place, forces);
+                points.add_forces(self, cell, position, forces);
                 if let Some(take) = &mut take {
-                    points.stiffness(self, cell, place, &mut stiffness);
+                    points.stiffness(self, cell, position, &mut stiffness);
                     take(cell, &stiffness);
                 }
-                place += self.cell_points(cell).len();
+                position += self.cell_points(cell).len();
             }
         })?;
         Ok(energy)
@@ -126,11 +126,17 @@ impl Points {
     }
 
     /// Adds the forces of a cell whose points begin at a place.
-    fn add_forces(&mut self, energy: &SheetEnergy, cell: usize, place: usize, forces: &mut [f64]) {
+    fn add_forces(
+        &mut self,
+        energy: &SheetEnergy,
+        cell: usize,
+        position: usize,
+        forces: &mut [f64],
+    ) {
         let unknowns = energy.element_unknowns(cell);
         self.cell.clear();
         self.cell.resize(unknowns.len(), 0.0);
-        for (index, point) in (place..).zip(energy.cell_points(cell)) {
+        for (index, point) in (position..).zip(energy.cell_points(cell)) {
             let stress = [1, 2, 3, 4].map(|own| self.responses[own][index]);
             point.add_force(&stress.into(), &mut self.cell);
         }
@@ -140,11 +146,17 @@ impl Points {
     }
 
     /// Writes the stiffness of a cell whose points begin at a place.
-    fn stiffness(&self, energy: &SheetEnergy, cell: usize, place: usize, stiffness: &mut Vec<f64>) {
+    fn stiffness(
+        &self,
+        energy: &SheetEnergy,
+        cell: usize,
+        position: usize,
+        stiffness: &mut Vec<f64>,
+    ) {
         let size = energy.element_unknowns(cell).len();
         stiffness.clear();
         stiffness.resize(size * size, 0.0);
-        for (index, point) in (place..).zip(energy.cell_points(cell)) {
+        for (index, point) in (position..).zip(energy.cell_points(cell)) {
             point.add_stiffness(&self.tangent(index), stiffness);
         }
     }
@@ -206,9 +218,9 @@ mod tests {
                 let mut take = |element: usize, own: &[f64]| lower.push((element, own.to_vec()));
                 let take = Some(&mut take as &mut dyn FnMut(usize, &[f64]));
                 let energy = evaluate_by_elements(&*potential, &u, &mut with_energy, take).unwrap();
-                let (mut together, mut place) = (vec![0.0; u.len()], 0);
+                let (mut together, mut position) = (vec![0.0; u.len()], 0);
                 let mut take = |element: usize, own: &[f64]| {
-                    let (other_element, other) = &lower[place];
+                    let (other_element, other) = &lower[position];
                     assert_eq!(element, *other_element);
                     let size = other.len().isqrt();
                     for row in 0..size {
@@ -217,11 +229,11 @@ mod tests {
                             assert!(far < 1e-13, "{kind:?}, {element}, {entry}: {far}");
                         }
                     }
-                    place += 1;
+                    position += 1;
                 };
                 let found = potential.evaluate(&u, &mut together, Some(&mut take));
                 assert!((found.unwrap() / energy - 1.0).abs() < 1e-13);
-                assert_eq!(place, lower.len());
+                assert_eq!(position, lower.len());
                 for (unknown, other) in with_energy.iter().enumerate() {
                     let far = (together[unknown] - other).abs();
                     assert!(far < 1e-13, "{kind:?}, {unknown}: {far}");

@@ -198,13 +198,13 @@ fn suction_stretches_a_strip_as_far_as_it_must() {
             let iterations = state.convergence.iterations();
             assert!(iterations <= 7, "{shape:?}: {iterations}");
         }
-        for (place, u) in mesh.nodes.iter().zip(states[1].displacement.chunks(2)) {
+        for (position, u) in mesh.nodes.iter().zip(states[1].displacement.chunks(2)) {
             let exact = [
-                (stretch - 1.0) * place[0],
-                (stretch.powf(-0.5) - 1.0) * (place[1] + 5.0),
+                (stretch - 1.0) * position[0],
+                (stretch.powf(-0.5) - 1.0) * (position[1] + 5.0),
             ];
             let off = (u[0] - exact[0]).hypot(u[1] - exact[1]);
-            assert!(off < 1e-8, "{shape:?} {place:?}: {off}");
+            assert!(off < 1e-8, "{shape:?} {position:?}: {off}");
         }
     }
 }
@@ -251,13 +251,16 @@ fn linear_and_radial_displacements_are_those_of_the_place() {
         mesh.name_boundary("boundary", |_| true);
         let problem = problem(&[("boundary", Support::LinearDisplacement(fields))], &[]);
         let found = solved(&problem, &mesh, &[]);
-        for (place, u) in mesh
+        for (position, u) in mesh
             .nodes
             .iter()
             .zip(found.state.displacement.chunks_exact(2))
         {
             for (u, field) in u.iter().zip(fields) {
-                assert!((u - field.unwrap().at(*place)).abs() < 1e-11, "{shape:?}");
+                assert!(
+                    (u - field.unwrap().at(*position)).abs() < 1e-11,
+                    "{shape:?}"
+                );
             }
         }
         assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);

@@ -14,7 +14,7 @@ pub struct TiedPotential<'a> {
     potential: Box<dyn Potential + 'a>,
     connectivity: Connectivity,
     /// For each element with tied unknowns: the position of each unknown of the untied element among its own, and its share.
-    places: BTreeMap<usize, Vec<(usize, f64)>>,
+    positions: BTreeMap<usize, Vec<(usize, f64)>>,
     ties: &'a BTreeMap<usize, Tie>,
 }
 
@@ -31,22 +31,22 @@ impl<'a> TiedPotential<'a> {
                 connectivity.push(own);
                 continue;
             }
-            let (mut unknowns, mut places) = (Vec::new(), Vec::new());
+            let (mut unknowns, mut positions) = (Vec::new(), Vec::new());
             for unknown in own {
                 let (unknown, share) = followed(ties, unknown);
                 let known = unknowns.iter().position(|known| *known == unknown);
-                places.push((known.unwrap_or(unknowns.len()), share));
+                positions.push((known.unwrap_or(unknowns.len()), share));
                 if known.is_none() {
                     unknowns.push(unknown);
                 }
             }
             connectivity.push(unknowns);
-            tied.insert(element, places);
+            tied.insert(element, positions);
         }
         Self {
             connectivity: connectivity.with_places_of(potential.connectivity()),
             potential,
-            places: tied,
+            positions: tied,
             ties,
         }
     }
@@ -59,10 +59,10 @@ fn followed(ties: &BTreeMap<usize, Tie>, unknown: usize) -> (usize, f64) {
 }
 
 /// The values of an element's untied unknowns.
-fn spread(places: &[(usize, f64)], u: &[f64]) -> Vec<f64> {
-    places
+fn spread(positions: &[(usize, f64)], u: &[f64]) -> Vec<f64> {
+    positions
         .iter()
-        .map(|(place, share)| share * u[*place])
+        .map(|(position, share)| share * u[*position])
         .collect()
 }
 
@@ -90,10 +90,10 @@ impl TiedPotential<'_> {
 }
 
 /// Adds Tᵀ K T of an element, whose unknowns have these positions among its remaining ones; elements may fill the lower triangle alone.
-fn fold(places: &[(usize, f64)], stiffness: &[f64], folded: &mut [f64]) {
-    let (own, size) = (places.len(), folded.len().isqrt());
-    for (row, (to_row, of_row)) in places.iter().enumerate() {
-        for (column, (to_column, of_column)) in places.iter().enumerate() {
+fn fold(positions: &[(usize, f64)], stiffness: &[f64], folded: &mut [f64]) {
+    let (own, size) = (positions.len(), folded.len().isqrt());
+    for (row, (to_row, of_row)) in positions.iter().enumerate() {
+        for (column, (to_column, of_column)) in positions.iter().enumerate() {
             let value = stiffness[row.max(column) * own + row.min(column)];
             folded[to_row * size + to_column] += of_row * of_column * value;
         }
@@ -120,10 +120,10 @@ impl Potential for TiedPotential<'_> {
     }
 
     fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
-        let Some(places) = self.places.get(&element) else {
+        let Some(positions) = self.positions.get(&element) else {
             return self.potential.evaluate_element(element, u, local);
         };
-        let own = places.len();
+        let own = positions.len();
         let mut residual = vec![0.0; own];
         let mut matrix = vec![0.0; local.stiffness.as_ref().map_or(0, |_| own * own)];
         let inner = Local {
@@ -132,12 +132,12 @@ impl Potential for TiedPotential<'_> {
         };
         let energy = self
             .potential
-            .evaluate_element(element, &spread(places, u), inner)?;
-        for ((place, share), r) in places.iter().zip(residual) {
-            local.residual[*place] += share * r;
+            .evaluate_element(element, &spread(positions, u), inner)?;
+        for ((position, share), r) in positions.iter().zip(residual) {
+            local.residual[*position] += share * r;
         }
         if let Some(stiffness) = local.stiffness {
-            fold(places, &matrix, stiffness);
+            fold(positions, &matrix, stiffness);
         }
         Ok(energy)
     }
@@ -150,13 +150,13 @@ impl Potential for TiedPotential<'_> {
         };
         let mut folded = Vec::new();
         let mut take = |element: usize, stiffness: &[f64]| {
-            let Some(places) = self.places.get(&element) else {
+            let Some(positions) = self.positions.get(&element) else {
                 return take(element, stiffness);
             };
             let size = self.element_unknowns(element).len();
             folded.clear();
             folded.resize(size * size, 0.0);
-            fold(places, stiffness, &mut folded);
+            fold(positions, stiffness, &mut folded);
             take(element, &folded);
         };
         self.untied(u, forces, |u, untied| {
@@ -165,8 +165,8 @@ impl Potential for TiedPotential<'_> {
     }
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        match self.places.get(&element) {
-            Some(places) => self.potential.instability(element, &spread(places, u)),
+        match self.positions.get(&element) {
+            Some(positions) => self.potential.instability(element, &spread(positions, u)),
             None => self.potential.instability(element, u),
         }
     }

@@ -61,8 +61,8 @@ fn is_rigid(mesh: &Mesh, constraints: &Constraints, factor: f64) -> bool {
     let size = (high[0] - low[0]).hypot(high[1] - low[1]);
     let prescribed = constraints.held.iter().map(|(unknown, motion)| {
         let at = mesh.nodes[unknown / 2];
-        let place = [0, 1].map(|axis| (at[axis] - middle[axis]) / size);
-        (place, unknown % 2, motion.at(factor) / size)
+        let position = [0, 1].map(|axis| (at[axis] - middle[axis]) / size);
+        (position, unknown % 2, motion.at(factor) / size)
     });
     let prescribed: Vec<_> = prescribed.collect();
     let mut turns = constraints.held.values().map(|motion| motion.angle());

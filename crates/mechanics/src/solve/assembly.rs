@@ -65,10 +65,10 @@ impl Assembly {
     }
 
     /// The place of each free unknown, if all are known.
-    pub fn places(&self) -> Option<impl Iterator<Item = [f64; 2]> + Clone> {
+    pub fn positions(&self) -> Option<impl Iterator<Item = [f64; 2]> + Clone> {
         let last = self.free.last().map_or(0, |unknown| unknown / 2);
-        let places = self.free.iter().map(|unknown| self.nodes[unknown / 2]);
-        (last < self.nodes.len()).then_some(places)
+        let positions = self.free.iter().map(|unknown| self.nodes[unknown / 2]);
+        (last < self.nodes.len()).then_some(positions)
     }
 
     /// Pattern of the stiffness over the free unknowns.
@@ -83,7 +83,7 @@ impl Assembly {
     /// The largest entry on the diagonal of a stiffness.
     pub fn stiffest(&self, stiffness: &[f64]) -> f64 {
         let diagonal = self.pattern().diagonal().iter();
-        diagonal.fold(0.0, |most: f64, place| most.max(stiffness[*place].abs()))
+        diagonal.fold(0.0, |most: f64, entry| most.max(stiffness[*entry].abs()))
     }
 
     /// Analyses the pattern of the stiffness, in an order by places where the system is large and the places are known.
@@ -91,10 +91,10 @@ impl Assembly {
     /// # Errors
     /// [`FactorFault`] when the pattern cannot be analysed because memory runs out.
     pub fn analyse(&self) -> Result<Cholesky, FactorFault> {
-        match self.places() {
-            Some(places) if self.free.len() >= WORTH_DISSECTION => {
-                let places: Vec<[f64; 2]> = places.collect();
-                let order = dissection(self.pattern(), &places);
+        match self.positions() {
+            Some(positions) if self.free.len() >= WORTH_DISSECTION => {
+                let positions: Vec<[f64; 2]> = positions.collect();
+                let order = dissection(self.pattern(), &positions);
                 Cholesky::analyse_in_order(self.pattern().clone(), &order)
             }
             _ => Cholesky::analyse(self.pattern().clone()),
@@ -156,12 +156,12 @@ impl Assembly {
         stiffness.resize(pattern.entries(), 0.0);
         let mut take = |element: usize, own: &[f64]| {
             let size = potential.element_unknowns(element).len();
-            let mut places = scatter.of(element).iter();
+            let mut entries = scatter.of(element).iter();
             for row in 0..size {
                 let values = &own[row * size..=row * size + row];
-                for (value, place) in values.iter().zip(&mut places) {
-                    if *place != NOWHERE {
-                        stiffness[*place as usize] += value;
+                for (value, entry) in values.iter().zip(&mut entries) {
+                    if *entry != NOWHERE {
+                        stiffness[*entry as usize] += value;
                     }
                 }
             }

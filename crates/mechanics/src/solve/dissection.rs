@@ -13,10 +13,10 @@ const LEAF: usize = 9;
 ///
 /// # References
 /// A. George, SIAM J. Numer. Anal. 10, 345 (1973), doi:10.1137/0710032
-pub fn dissection(pattern: &SymmetricPattern, places: &[[f64; 2]]) -> Vec<usize> {
-    let mut graph = Graph::new(pattern, places);
-    let mut order = Vec::with_capacity(graph.places.len());
-    let mut vertices: Vec<usize> = (0..graph.places.len()).collect();
+pub fn dissection(pattern: &SymmetricPattern, positions: &[[f64; 2]]) -> Vec<usize> {
+    let mut graph = Graph::new(pattern, positions);
+    let mut order = Vec::with_capacity(graph.positions.len());
+    let mut vertices: Vec<usize> = (0..graph.positions.len()).collect();
     graph.dissect(&mut vertices, &mut order);
     let unknowns = order
         .into_iter()
@@ -36,7 +36,7 @@ enum Half {
 struct Graph {
     /// Where the unknowns of each vertex begin.
     starts: Vec<usize>,
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     /// For each vertex the later ones that it is coupled with.
     later: Vec<Vec<u32>>,
     halves: Vec<Half>,
@@ -44,15 +44,15 @@ struct Graph {
 }
 
 impl Graph {
-    fn new(pattern: &SymmetricPattern, places: &[[f64; 2]]) -> Self {
+    fn new(pattern: &SymmetricPattern, positions: &[[f64; 2]]) -> Self {
         let size = pattern.size();
         let mut starts: Vec<usize> = (0..size)
-            .filter(|unknown| *unknown == 0 || places[*unknown] != places[unknown - 1])
+            .filter(|unknown| *unknown == 0 || positions[*unknown] != positions[unknown - 1])
             .collect();
-        let places: Vec<[f64; 2]> = starts.iter().map(|start| places[*start]).collect();
+        let positions: Vec<[f64; 2]> = starts.iter().map(|start| positions[*start]).collect();
         starts.push(size);
         let mut vertex_of = vec![0_u32; size];
-        for vertex in 0..places.len() {
+        for vertex in 0..positions.len() {
             vertex_of[starts[vertex]..starts[vertex + 1]].fill(vertex as u32);
         }
         let later = |vertex: usize| {
@@ -66,11 +66,11 @@ impl Graph {
             later
         };
         Self {
-            later: (0..places.len()).map(later).collect(),
-            halves: vec![Half::Outside; places.len()],
-            at_cut: vec![false; places.len()],
+            later: (0..positions.len()).map(later).collect(),
+            halves: vec![Half::Outside; positions.len()],
+            at_cut: vec![false; positions.len()],
             starts,
-            places,
+            positions,
         }
     }
 
@@ -100,20 +100,24 @@ impl Graph {
             return None;
         }
         let extent = |axis: usize| {
-            let places = vertices.iter().map(|vertex| self.places[*vertex][axis]);
-            let [low, high] = extremes(places);
+            let positions = vertices.iter().map(|vertex| self.positions[*vertex][axis]);
+            let [low, high] = extremes(positions);
             high - low
         };
         let axis = usize::from(extent(1) > extent(0));
-        let place = |vertex: usize| self.places[vertex][axis];
+        let position = |vertex: usize| self.positions[vertex][axis];
         let half = vertices.len() / 2;
-        let by_place = |a: &usize, b: &usize| place(*a).total_cmp(&place(*b));
-        let middle = place(*vertices.select_nth_unstable_by(half, by_place).1);
+        let by_place = |a: &usize, b: &usize| position(*a).total_cmp(&position(*b));
+        let middle = position(*vertices.select_nth_unstable_by(half, by_place).1);
         // All vertices of one line fall into one half.
         let mut lower: Vec<usize> = Vec::with_capacity(vertices.len());
-        lower.extend(vertices.iter().filter(|vertex| place(**vertex) < middle));
+        lower.extend(vertices.iter().filter(|vertex| position(**vertex) < middle));
         let count = lower.len();
-        lower.extend(vertices.iter().filter(|vertex| place(**vertex) >= middle));
+        lower.extend(
+            vertices
+                .iter()
+                .filter(|vertex| position(**vertex) >= middle),
+        );
         vertices.copy_from_slice(&lower);
         (count > 0).then_some(count)
     }
@@ -173,33 +177,33 @@ mod tests {
                 columns[*column].extend_from_slice(&unknowns);
             }
         }
-        let place = |unknown: usize| [(unknown / 2 / side) as f64, (unknown / 2 % side) as f64];
-        let places = (0..columns.len()).map(place).collect();
-        (SymmetricPattern::new(columns.into_iter()), places)
+        let position = |unknown: usize| [(unknown / 2 / side) as f64, (unknown / 2 % side) as f64];
+        let positions = (0..columns.len()).map(position).collect();
+        (SymmetricPattern::new(columns.into_iter()), positions)
     }
 
     #[test]
     fn every_unknown_comes_once_and_the_first_cut_is_one_line_of_nodes() {
         // The middle falls on a boundary of biquadratic elements and into one.
         for (cells, degree) in [(12, 1), (12, 2), (13, 2)] {
-            let (pattern, places) = grid(cells, degree);
-            let order = dissection(&pattern, &places);
+            let (pattern, positions) = grid(cells, degree);
+            let order = dissection(&pattern, &positions);
             let mut sorted = order.clone();
             sorted.sort_unstable();
             let each = sorted.iter().enumerate();
             assert!(each.into_iter().all(|(index, unknown)| index == *unknown));
             let line = 2 * (cells * degree + 1);
             let cut = &order[order.len() - line..];
-            let first = places[cut[0]][0];
-            assert!(cut.iter().all(|unknown| places[*unknown][0] == first));
+            let first = positions[cut[0]][0];
+            assert!(cut.iter().all(|unknown| positions[*unknown][0] == first));
             // Before it one half comes as a whole, then the other one, and none reaches over the cut.
             let rest = &order[..order.len() - line];
-            let below = |unknown: &usize| places[*unknown][0] < first;
+            let below = |unknown: &usize| positions[*unknown][0] < first;
             let lower = rest.iter().take_while(|unknown| below(unknown)).count();
             assert!(lower > 0 && !rest[lower..].iter().any(below));
             for column in rest {
                 let rows = pattern.column(*column).iter();
-                let beyond = rows.filter(|row| places[**row][0] != first);
+                let beyond = rows.filter(|row| positions[**row][0] != first);
                 beyond.for_each(|row| assert_eq!(below(row), below(column)));
             }
         }

@@ -68,18 +68,18 @@ pub fn diagnose(
     if let Some((least, mode)) = at_rest.flatten()
         && least < 0.0
     {
-        let place = place_of(&mode);
-        return SolveFault::UnstableAtRest { place };
+        let position = place_of(&mode);
+        return SolveFault::UnstableAtRest { position };
     }
     let Some((_, mode)) = newton.tangent.softest_mode(&*potential, &u) else {
         return fault;
     };
-    let place = place_of(&mode);
+    let position = place_of(&mode);
     if !is_driven(newton, loading, stage, &u, &mode) {
-        return SolveFault::Buckling { place };
+        return SolveFault::Buckling { position };
     }
     let factor = previous.map_or(0.0, |state| state.factor);
-    SolveFault::LoadMaximum { factor, place }
+    SolveFault::LoadMaximum { factor, position }
 }
 
 /// A state at or near the last equilibrium in which a direction has lost its stiffness.

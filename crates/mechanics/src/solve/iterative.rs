@@ -70,7 +70,7 @@ impl Iterative {
     /// Prepares the tangent of a potential; `None` where the places of its nodes are not known, or where it has a part that is not
     /// symmetric.
     pub fn new(assembly: &Assembly, potential: &dyn Potential) -> Option<Self> {
-        let nodes = Nodes::new(assembly.free(), assembly.places()?);
+        let nodes = Nodes::new(assembly.free(), assembly.positions()?);
         let free = |unknown| assembly.free_index(unknown).is_some();
         let couplings = potential.skew_couplings();
         let mut skew = couplings

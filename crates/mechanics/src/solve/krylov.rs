@@ -62,7 +62,7 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
 /// preconditioner.
 pub fn solve_by_diagonal(pattern: &SymmetricPattern, values: &[f64], b: &[f64]) -> Vec<f64> {
     let precondition = |r: &[f64]| -> Vec<f64> {
-        let diagonal = pattern.diagonal().iter().map(|place| values[*place]);
+        let diagonal = pattern.diagonal().iter().map(|position| values[*position]);
         r.iter().zip(diagonal).map(|(r, d)| r / d).collect()
     };
     let (mut x, mut r) = (vec![0.0; b.len()], b.to_vec());

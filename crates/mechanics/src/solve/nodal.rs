@@ -16,7 +16,7 @@ pub struct Nodes {
     /// For each unknown: its node, and 0 or 1.
     of: Vec<(u32, u8)>,
     /// The place of each node, relative to the middle of all and to their extent.
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     /// Which components of each node are unknowns.
     free: Vec<[bool; 2]>,
 }
@@ -26,34 +26,38 @@ impl Nodes {
     pub fn new(unknowns: &[usize], all_places: impl Iterator<Item = [f64; 2]>) -> Self {
         let mut of = Vec::with_capacity(unknowns.len());
         let count = unknowns.chunk_by(|a, b| a / 2 == b / 2).count();
-        let mut places = Vec::with_capacity(count);
+        let mut positions = Vec::with_capacity(count);
         let mut free = Vec::<[bool; 2]>::with_capacity(count);
         let mut last = usize::MAX;
-        for (unknown, place) in unknowns.iter().zip(all_places) {
+        for (unknown, position) in unknowns.iter().zip(all_places) {
             if unknown / 2 != last {
                 last = unknown / 2;
-                places.push(place);
+                positions.push(position);
                 free.push([false; 2]);
             }
             let node = free.len() - 1;
             free[node][unknown % 2] = true;
             of.push((node as u32, (unknown % 2) as u8));
         }
-        let extent = [0, 1].map(|axis| extremes(places.iter().map(|place| place[axis])));
+        let extent = [0, 1].map(|axis| extremes(positions.iter().map(|position| position[axis])));
         let size = extent
             .iter()
             .fold(f64::MIN_POSITIVE, |size, [low, high]| size.max(high - low));
-        for place in &mut places {
-            for (x, [low, high]) in place.iter_mut().zip(extent) {
+        for position in &mut positions {
+            for (x, [low, high]) in position.iter_mut().zip(extent) {
                 *x = (*x - 0.5 * (low + high)) / size;
             }
         }
-        Self { of, places, free }
+        Self {
+            of,
+            positions,
+            free,
+        }
     }
 
     /// The number of nodes.
     pub fn count(&self) -> usize {
-        self.places.len()
+        self.positions.len()
     }
 
     /// The node of an unknown, and 0 or 1.
@@ -64,7 +68,7 @@ impl Nodes {
 
     /// Translations and rotation of the components that are unknowns.
     pub fn motions(&self) -> Vec<Motions<2>> {
-        let nodes = self.places.iter().zip(&self.free);
+        let nodes = self.positions.iter().zip(&self.free);
         let motion = |([x, y], free): (&[f64; 2], &[bool; 2])| {
             let rows = [[1.0, 0.0, -y], [0.0, 1.0, *x]];
             [0, 1].map(|axis| if free[axis] { rows[axis] } else { [0.0; 3] })
@@ -74,7 +78,7 @@ impl Nodes {
 
     /// The components of all nodes, zero where there is no unknown.
     pub fn spread(&self, entries: &[f64]) -> Vec<[f64; 2]> {
-        let mut all = vec![[0.0; 2]; self.places.len()];
+        let mut all = vec![[0.0; 2]; self.positions.len()];
         for ((node, component), entry) in self.of.iter().zip(entries) {
             all[*node as usize][usize::from(*component)] = *entry;
         }
@@ -83,9 +87,9 @@ impl Nodes {
 
     /// Forces without any symmetry, with a large part of every smooth mode and some part of every other.
     pub fn uneven(&self) -> Vec<[f64; 2]> {
-        let rough = irregular(2 * self.places.len(), 1);
+        let rough = irregular(2 * self.positions.len(), 1);
         let nodes = self
-            .places
+            .positions
             .iter()
             .zip(rough.chunks_exact(2))
             .zip(&self.free);

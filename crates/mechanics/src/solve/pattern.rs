@@ -62,7 +62,7 @@ impl SymmetricPattern {
         column_rows
             .binary_search(&row)
             .ok()
-            .map(|place| start + place)
+            .map(|position| start + position)
     }
 
     /// Where the diagonal entries are stored.
@@ -89,7 +89,7 @@ impl SymmetricPattern {
         let sum: f64 = self
             .diagonal()
             .iter()
-            .map(|place| values[*place].abs())
+            .map(|position| values[*position].abs())
             .sum();
         sum / self.size().max(1) as f64
     }
@@ -97,8 +97,8 @@ impl SymmetricPattern {
     /// The stored entries with their values: (row, column, value), row ≥ column.
     fn triplets<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
         (0..self.size()).flat_map(move |column| {
-            let places = self.column_starts[column]..self.column_starts[column + 1];
-            let entries = self.rows[places.clone()].iter().zip(&values[places]);
+            let positions = self.column_starts[column]..self.column_starts[column + 1];
+            let entries = self.rows[positions.clone()].iter().zip(&values[positions]);
             entries.map(move |(row, value)| (*row, column, *value))
         })
     }

@@ -147,7 +147,11 @@ mod tests {
         b.push([(2, 3.0), (1, 1.0), (2, 1.0)]);
         b.push([(3, 5.0)]);
         let (pattern, values) = b.normal_matrix(&[1.0, 2.0, 4.0, 1.0]);
-        let entry = |row, column| pattern.position(row, column).map(|place| values[place]);
+        let entry = |row, column| {
+            pattern
+                .position(row, column)
+                .map(|position| values[position])
+        };
         assert_eq!(entry(0, 0), Some(2.0));
         assert_eq!(entry(0, 1), Some(-2.0));
         assert_eq!(entry(1, 1), Some(4.5));

@@ -11,7 +11,7 @@ pub const NOWHERE: u32 = u32::MAX;
 #[derive(Debug, Default)]
 pub struct Scatter {
     /// For each element, for each entry of its lower triangle, row by row: its place, or [`NOWHERE`].
-    places: Vec<u32>,
+    positions: Vec<u32>,
     starts: Vec<usize>,
 }
 
@@ -25,7 +25,7 @@ impl Scatter {
         let free = elements.unknowns();
         let around = Around::of(elements);
         let mut own = Self {
-            places: Vec::new(),
+            positions: Vec::new(),
             starts: vec![0],
         };
         let mut size = 0;
@@ -34,7 +34,7 @@ impl Scatter {
             size += unknowns * (unknowns + 1) / 2;
             own.starts.push(size);
         }
-        own.places = vec![NOWHERE; size];
+        own.positions = vec![NOWHERE; size];
         let (mut starts, mut rows) = (vec![0], Vec::new());
         // The column in which a row was seen last, and where it is stored there.
         let mut seen = vec![(NOWHERE, NOWHERE); free];
@@ -52,8 +52,8 @@ impl Scatter {
                 }
             }
             rows[first..].sort_unstable();
-            for (place, row) in (first as u32..).zip(&rows[first..]) {
-                seen[*row].1 = place;
+            for (position, row) in (first as u32..).zip(&rows[first..]) {
+                seen[*row].1 = position;
             }
             for (element, local) in around.of_unknown(column) {
                 let [element, local] = [*element, *local].map(|own| own as usize);
@@ -78,14 +78,14 @@ impl Scatter {
         for (other, row) in unknowns.iter().enumerate() {
             if *row != NOWHERE && *row >= column {
                 let (high, low) = (local.max(other), local.min(other));
-                self.places[start + high * (high + 1) / 2 + low] = seen[*row as usize].1;
+                self.positions[start + high * (high + 1) / 2 + low] = seen[*row as usize].1;
             }
         }
     }
 
     /// The places of the lower triangle of an element, row by row.
     pub fn of(&self, element: usize) -> &[u32] {
-        &self.places[self.starts[element]..self.starts[element + 1]]
+        &self.positions[self.starts[element]..self.starts[element + 1]]
     }
 }
 

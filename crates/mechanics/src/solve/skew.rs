@@ -39,8 +39,8 @@ impl SkewPart {
         let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
         let mut couplings = DMatrix::zeros(coupled.len(), coupled.len());
         for own in all {
-            let place = |unknown| coupled.binary_search(&unknown).expect("coupled");
-            let (row, column) = (place(own.row), place(own.column));
+            let position = |unknown| coupled.binary_search(&unknown).expect("coupled");
+            let (row, column) = (position(own.row), position(own.column));
             couplings[(row, column)] += own.stiffness;
             couplings[(column, row)] -= own.stiffness;
         }

@@ -114,8 +114,8 @@ impl Cholesky {
         order: &[usize],
     ) -> Result<Self, FactorFault> {
         let mut position = vec![0; order.len()];
-        for (place, unknown) in order.iter().enumerate() {
-            position[*unknown] = place;
+        for (rank, unknown) in order.iter().enumerate() {
+            position[*unknown] = rank;
         }
         let permutation = PermRef::new_checked(order, &position, pattern.size());
         Self::analyse_by(pattern, SymmetricOrdering::Custom(permutation))
@@ -300,7 +300,7 @@ mod tests {
         pattern
             .diagonal()
             .iter()
-            .for_each(|place| values[*place] = 2.0);
+            .for_each(|entry| values[*entry] = 2.0);
         (pattern, values)
     }
 

@@ -283,8 +283,8 @@ impl Tangent {
             if mean.is_nan() || next >= 1e3 * mean {
                 return Err(SolveFault::Singular);
             }
-            for place in self.assembly.pattern().diagonal() {
-                stiffness[*place] += next - shift;
+            for position in self.assembly.pattern().diagonal() {
+                stiffness[*position] += next - shift;
             }
             shift = next;
             outcome = self.analysed()?.factorise(stiffness);

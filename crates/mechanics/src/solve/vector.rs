@@ -40,15 +40,15 @@ pub fn scale(x: &mut [f64], factor: f64) {
 }
 
 /// Chosen entries of a vector.
-pub fn gather(places: &[usize], x: &[f64]) -> Vec<f64> {
-    places.iter().map(|place| x[*place]).collect()
+pub fn gather(positions: &[usize], x: &[f64]) -> Vec<f64> {
+    positions.iter().map(|position| x[*position]).collect()
 }
 
 /// A vector of so many entries: the given ones at their places, zero elsewhere.
-pub fn spread(places: &[usize], entries: &[f64], count: usize) -> Vec<f64> {
+pub fn spread(positions: &[usize], entries: &[f64], count: usize) -> Vec<f64> {
     let mut all = vec![0.0; count];
-    for (place, entry) in places.iter().zip(entries) {
-        all[*place] = *entry;
+    for (position, entry) in positions.iter().zip(entries) {
+        all[*position] = *entry;
     }
     all
 }

@@ -82,7 +82,7 @@ impl ModelFields {
 #[derive(Clone, Debug)]
 pub struct Sites {
     /// Places in mm.
-    pub places: Vec<[f64; 2]>,
+    pub positions: Vec<[f64; 2]>,
     weights: Vec<f64>,
     /// ux, uy of place after place in mm.
     pub expected: Vec<f64>,
@@ -98,7 +98,7 @@ pub struct Difference {
     /// The largest difference in mm.
     pub largest: f64,
     /// The place of the largest difference, in mm.
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// The factor by which the imported displacements come nearest to the model's: Σ A u·v / Σ A v².
     pub factor: f64,
     /// The remaining difference in relative L2 in % after multiplication by this factor.
@@ -162,12 +162,12 @@ pub enum Mismatch {
         ratio: f64,
     },
     /// A place that only one of the two has.
-    #[error("{what} at ({}, {}) mm", decimals(.place[0], 4), decimals(.place[1], 4))]
+    #[error("{what} at ({}, {}) mm", decimals(.position[0], 4), decimals(.position[1], 4))]
     Outside {
         /// The part that does not cover the other.
         what: &'static str,
         /// The place in mm.
-        place: [f64; 2],
+        position: [f64; 2],
     },
     /// A field that is zero, so that no deviation can be related to it.
     #[error("is zero everywhere")]
@@ -200,7 +200,7 @@ impl ExternalField {
     pub fn describe(&self) -> String {
         match self {
             Self::OnMesh(field) => format!("{} on {} cells", field.part, field.mesh.cell_count()),
-            Self::AtPoints(points) => format!("{} points", points.places.len()),
+            Self::AtPoints(points) => format!("{} points", points.positions.len()),
         }
     }
 
@@ -223,21 +223,21 @@ impl ExternalField {
                     "the specimen does not reach the field's node",
                 )?;
                 Ok(Sites {
-                    places: lattice.nodes.clone(),
+                    positions: lattice.nodes.clone(),
                     weights: lattice.corner_areas(),
                     expected: field.mesh.displacement_on(&field.displacement, lattice),
                     lattice: Some(lattice.clone()),
                 })
             }
             Self::AtPoints(Points {
-                places,
+                positions,
                 displacement,
             }) => {
-                covers(lattice, places, "the specimen does not reach the point")?;
-                near_in_size(places, lattice)?;
+                covers(lattice, positions, "the specimen does not reach the point")?;
+                near_in_size(positions, lattice)?;
                 Ok(Sites {
-                    places: places.clone(),
-                    weights: vec![1.0; places.len()],
+                    positions: positions.clone(),
+                    weights: vec![1.0; positions.len()],
                     expected: displacement.clone(),
                     lattice: None,
                 })
@@ -252,20 +252,20 @@ impl Sites {
         if let Some(lattice) = &self.lattice {
             return field.mesh.displacement_on(&field.displacement, lattice);
         }
-        let places = self.places.iter();
-        places
-            .flat_map(|place| field.mesh.displacement_at(&field.displacement, *place))
+        let positions = self.positions.iter();
+        positions
+            .flat_map(|position| field.mesh.displacement_at(&field.displacement, *position))
             .collect()
     }
 
     /// What is to be said of sites that cover a window of the specimen alone.
     pub fn window(&self, specimen: &Mesh) -> Option<String> {
         const WHOLE: f64 = 0.9;
-        let sides = |places: &[[f64; 2]]| {
-            let [low, high] = bounding_box(places.iter().copied());
+        let sides = |positions: &[[f64; 2]]| {
+            let [low, high] = bounding_box(positions.iter().copied());
             [0, 1].map(|axis| high[axis] - low[axis])
         };
-        let [own, whole] = [&self.places, &specimen.nodes].map(|places| sides(places));
+        let [own, whole] = [&self.positions, &specimen.nodes].map(|positions| sides(positions));
         let is_window = (0..2).any(|axis| own[axis] < WHOLE * whole[axis]);
         is_window.then(|| {
             format!(
@@ -286,7 +286,7 @@ impl Sites {
         if size == 0.0 {
             return Err(Mismatch::Zero);
         }
-        let (largest, place) = found.largest_distance(&self.expected);
+        let (largest, position) = found.largest_distance(&self.expected);
         let scaled = |factor: f64| -> Vec<f64> {
             let scaled = self.expected.iter();
             scaled.map(|expected| factor * expected).collect()
@@ -307,7 +307,7 @@ impl Sites {
                 / (factor.abs() * size),
             percent: 100.0 * found.weighted_distance(&self.expected, &self.weights) / size,
             largest,
-            place: self.places[place],
+            position: self.positions[position],
         })
     }
 
@@ -315,15 +315,15 @@ impl Sites {
     /// moved.
     fn shifted_to(&self, found: &[f64]) -> (RigidMotion, Vec<f64>) {
         let now = |u: &[f64], site: usize| {
-            [0, 1].map(|axis| self.places[site][axis] + u[2 * site + axis])
+            [0, 1].map(|axis| self.positions[site][axis] + u[2 * site + axis])
         };
         let pairs = self.weights.iter().enumerate();
         let pairs =
             pairs.map(|(site, weight)| (*weight, now(&self.expected, site), now(found, site)));
         let (middle, motion) = RigidMotion::nearest(&pairs.collect::<Vec<_>>());
-        let moved = (0..self.places.len()).flat_map(|site| {
-            let place = now(&self.expected, site);
-            let more = motion.at([0, 1].map(|axis| place[axis] - middle[axis]));
+        let moved = (0..self.positions.len()).flat_map(|site| {
+            let position = now(&self.expected, site);
+            let more = motion.at([0, 1].map(|axis| position[axis] - middle[axis]));
             [0, 1].map(|axis| self.expected[2 * site + axis] + more[axis])
         });
         (motion, moved.collect())
@@ -345,12 +345,12 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
 
 /// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A
 /// field on a small window is not a fault.
-fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
-    let size = |places: &[[f64; 2]]| {
-        let [low, high] = bounding_box(places.iter().copied());
+fn near_in_size(positions: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
+    let size = |positions: &[[f64; 2]]| {
+        let [low, high] = bounding_box(positions.iter().copied());
         (high[0] - low[0]).hypot(high[1] - low[1])
     };
-    let (found, expected) = (size(places), size(&specimen.nodes));
+    let (found, expected) = (size(positions), size(&specimen.nodes));
     match unit_ratio(expected / found).filter(|ratio| *ratio >= 100.0) {
         Some(ratio) => Err(Mismatch::Unit {
             found,
@@ -362,14 +362,14 @@ fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
 }
 
 /// Checks that all places lie in a mesh.
-fn covers(mesh: &Mesh, places: &[[f64; 2]], what: &'static str) -> Result<(), Mismatch> {
-    match places
+fn covers(mesh: &Mesh, positions: &[[f64; 2]], what: &'static str) -> Result<(), Mismatch> {
+    match positions
         .iter()
-        .find(|place| mesh.outside(**place) > NEAR_CELLS)
+        .find(|position| mesh.outside(**position) > NEAR_CELLS)
     {
-        Some(place) => Err(Mismatch::Outside {
+        Some(position) => Err(Mismatch::Outside {
             what,
-            place: *place,
+            position: *position,
         }),
         None => Ok(()),
     }

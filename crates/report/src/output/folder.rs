@@ -30,7 +30,7 @@ mod manifest;
 mod unfinished;
 
 pub use identity::identity;
-use inputs::{places, refuse_input};
+use inputs::{positions, refuse_input};
 pub use inputs::{refuse_inputs, relative};
 use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
 pub use unfinished::{BrokenOff, Left, Unfinished};
@@ -92,7 +92,7 @@ impl ResultFolder {
         refuse_file(path)?;
         fs::create_dir_all(path).map_err(fault)?;
         let mut manifest = Locked::open(path)?;
-        let inputs = places(inputs);
+        let inputs = positions(inputs);
         let mut before = manifest.read();
         if let Some(moving) = before.moving.take_if(|moving| moving.is_sound()) {
             moving.settle(path, &inputs)?;
@@ -179,7 +179,7 @@ impl ResultFolder {
     /// A warning for each file that is somebody else's and in the way of one that was added since the last time.
     pub fn in_the_way(&mut self) -> Vec<Diagnostic> {
         let new = &self.names[self.looked_at..];
-        let told = foreign(&self.path, new, &self.before).map(|place| kept(&place));
+        let told = foreign(&self.path, new, &self.before).map(|position| kept(&position));
         let others = self.of_another_command(new);
         let told = told.chain(others).collect();
         self.looked_at = self.names.len();
@@ -196,8 +196,11 @@ impl ResultFolder {
             1 => String::new(),
             count => format!(" and {} more", count - 1),
         };
-        let place = self.path.join(name);
-        let message = format!("{}{rest} of `gelbench {by}` are replaced", place.display());
+        let position = self.path.join(name);
+        let message = format!(
+            "{}{rest} of `gelbench {by}` are replaced",
+            position.display()
+        );
         Some(Diagnostic::warning("", message).hint(ANOTHER_FOLDER))
     }
 
@@ -212,8 +215,8 @@ impl ResultFolder {
         let note = postcard::to_allocvec(&(files, record)).map_err(fault)?;
         let name = format!("{PARTS}/{part}");
         let whole = self.write_aside(&format!("{name}.new"), &note)?;
-        let place = self.unfinished.partial.join(&name);
-        fs::rename(whole, &place).map_err(|cause| Error::write(place, cause))?;
+        let position = self.unfinished.partial.join(&name);
+        fs::rename(whole, &position).map_err(|cause| Error::write(position, cause))?;
         self.kept = self.names.len();
         Ok(())
     }
@@ -280,8 +283,9 @@ impl ResultFolder {
         };
         // Nobody who breaks the run off does so between the first file and the last.
         let mut stage = unfinished.growing()?;
-        for place in in_the_way {
-            fs::rename(&place, free_name(&place)).map_err(|cause| Error::write(&place, cause))?;
+        for position in in_the_way {
+            fs::rename(&position, free_name(&position))
+                .map_err(|cause| Error::write(&position, cause))?;
         }
         manifest.moving = Some(moving.clone());
         self.manifest.write(&manifest)?;
@@ -328,16 +332,16 @@ fn foreign<'a>(
     let others = names
         .iter()
         .filter(|name| !before.files.contains_key(*name));
-    let places = others.map(|name| path.join(name));
-    places.filter(|place| place.is_file())
+    let positions = others.map(|name| path.join(name));
+    positions.filter(|position| position.is_file())
 }
 
 /// The warning that a file is kept under another name.
-pub fn kept(place: &Path) -> Diagnostic {
+pub fn kept(position: &Path) -> Diagnostic {
     let message = format!(
         "{} existed and was not written by gelbench: it is kept as {}",
-        place.display(),
-        free_name(place).display()
+        position.display(),
+        free_name(position).display()
     );
     Diagnostic::warning("", message).hint("name another place for results with --output")
 }

@@ -128,8 +128,8 @@ fn inline(words: &str) -> Markup {
         return html! { (words) };
     }
     html! {
-        @for (place, part) in parts.iter().enumerate() {
-            @if place % 2 == 1 { code { (part) } } @else { (part) }
+        @for (position, part) in parts.iter().enumerate() {
+            @if position % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
 }

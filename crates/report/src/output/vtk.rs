@@ -38,9 +38,9 @@ pub fn files(series: &GridSeries) -> impl Iterator<Item = (String, Vec<u8>)> {
 
 /// A grid as a `.vtu` file.
 pub fn grid(grid: &Grid) -> Vec<u8> {
-    let places = grid.points.iter();
+    let positions = grid.points.iter();
     let piece = UnstructuredGridPiece {
-        points: IOBuffer::F64(places.flat_map(|[x, y]| [*x, *y, 0.0]).collect()),
+        points: IOBuffer::F64(positions.flat_map(|[x, y]| [*x, *y, 0.0]).collect()),
         cells: cells(grid),
         data: Attributes {
             point: grid.at_points.iter().map(attribute).collect(),

@@ -142,12 +142,12 @@ fn cell_outline(mesh: &Mesh, cell: usize) -> Vec<[f64; 2]> {
         .iter()
         .map(|edge| edge.iter().map(|node| nodes[*node]).collect());
     let edges: Vec<Vec<usize>> = edges.collect();
-    let mut places: Vec<[f64; 2]> = Vec::new();
+    let mut positions: Vec<[f64; 2]> = Vec::new();
     for line in edge_lines(&edges, &mesh.nodes) {
-        places.extend(&line[..line.len() - 1]);
+        positions.extend(&line[..line.len() - 1]);
     }
-    places.extend(places.first().copied());
-    places
+    positions.extend(positions.first().copied());
+    positions
 }
 
 #[cfg(test)]

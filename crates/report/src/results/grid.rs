@@ -58,9 +58,9 @@ impl Grid {
     }
 
     /// Scattered points.
-    pub fn scattered(places: &[[f64; 2]], displacement: &[f64]) -> Self {
-        let cells = vec![GridCell::Vertex; places.len()];
-        let grid = Self::new(places, cells, (0..places.len()).collect());
+    pub fn scattered(positions: &[[f64; 2]], displacement: &[f64]) -> Self {
+        let cells = vec![GridCell::Vertex; positions.len()];
+        let grid = Self::new(positions, cells, (0..positions.len()).collect());
         grid.with([Array::displacement(displacement)])
     }
 

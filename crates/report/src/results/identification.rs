@@ -51,13 +51,13 @@ fn secants(own: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> Vec<[
 }
 
 fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Line> {
-    let places = function.places(POINTS);
-    let edge = |side: usize| places.iter().map(move |x| [*x, function.band(*x)[side]]);
+    let positions = function.positions(POINTS);
+    let edge = |side: usize| positions.iter().map(move |x| [*x, function.band(*x)[side]]);
     let end = |side: usize| {
-        let places = places.iter();
-        places.map(move |x| [*x, function.at(*x).interval[side]])
+        let positions = positions.iter();
+        positions.map(move |x| [*x, function.at(*x).interval[side]])
     };
-    let curve = places.iter().map(|x| [*x, function.at(*x).value]);
+    let curve = positions.iter().map(|x| [*x, function.at(*x).value]);
     let darker = colour.map(|part| part / 2);
     let mut lines = vec![Line::new(
         "from force and motion",
@@ -111,7 +111,7 @@ fn residuals(found: &Identification, recording: &Recording) -> LineChart {
 /// All numbers of an identification. Numbers that do not exist are `null`.
 pub fn identification_json(found: &Identification, recording: &Recording, file: &str) -> Value {
     let function = |(symbol, unit, function): (&str, &str, &Function)| {
-        let curve = function.places(41).into_iter().map(|x| {
+        let curve = function.positions(41).into_iter().map(|x| {
             let estimate = function.at(x);
             json!({
                 "at": x,

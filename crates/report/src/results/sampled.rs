@@ -75,8 +75,8 @@ mod tests {
             let stress = along * along - 1.0 / along;
             for (point, values) in points.iter().zip(&sampled[..2]) {
                 let of = |field: SheetField| {
-                    let place = SheetField::NAMES.iter().position(|(_, own)| *own == field);
-                    values.unwrap()[place.unwrap()]
+                    let index = SheetField::NAMES.iter().position(|(_, own)| *own == field);
+                    values.unwrap()[index.unwrap()]
                 };
                 let expected = [
                     (SheetField::CauchyXx, stress),

@@ -190,13 +190,13 @@ fn states<'a>(
     gradients: impl Fn(&[f64]) -> Vec<[f64; 4]>,
 ) -> Vec<LocalState> {
     let gradients: Vec<_> = fields.iter().map(|field| gradients(field)).collect();
-    let state = |place: usize| {
-        let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[place]).collect();
-        let viscous = viscous.get(place).copied().unwrap_or_default();
-        LocalState::of(law(place), &own, viscous)
+    let state = |position: usize| {
+        let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[position]).collect();
+        let viscous = viscous.get(position).copied().unwrap_or_default();
+        LocalState::of(law(position), &own, viscous)
     };
-    let places = gradients.last().map_or(0, Vec::len);
-    (0..places).map(state).collect()
+    let positions = gradients.last().map_or(0, Vec::len);
+    (0..positions).map(state).collect()
 }
 
 /// The displacement gradients in the centres of the cells.

@@ -103,8 +103,8 @@ mod tests {
         let cells: Vec<usize> = (0..mesh.cell_count()).collect();
         let card = |range| Card::of_law("gel", Arc::new(NeoHooke { c10: 0.05 }), range);
         let of = |range, [along, across]: [f64; 2]| {
-            let places = mesh.nodes.iter();
-            let u: Vec<f64> = places
+            let positions = mesh.nodes.iter();
+            let u: Vec<f64> = positions
                 .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
                 .collect();
             Stretches::new(&card(range), (&mesh, &cells), &u)

@@ -207,7 +207,7 @@ fn divided_triangle(across: u32) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
 }
 
 /// Lines along edges with their nodes at `places`, curved ones in short pieces.
-pub fn edge_lines(edges: &[Vec<usize>], places: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+pub fn edge_lines(edges: &[Vec<usize>], positions: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let line = |edge: &Vec<usize>| match edge[..] {
         [from, to, middle] => {
             let at = |step: i32| {
@@ -215,12 +215,14 @@ pub fn edge_lines(edges: &[Vec<usize>], places: &[[f64; 2]]) -> Vec<Vec<[f64; 2]
                 let shares = [0.5 * s * (s - 1.0), 0.5 * s * (s + 1.0), 1.0 - s * s];
                 [0, 1].map(|axis| {
                     let nodes = [from, to, middle].into_iter().zip(shares);
-                    nodes.map(|(node, share)| share * places[node][axis]).sum()
+                    nodes
+                        .map(|(node, share)| share * positions[node][axis])
+                        .sum()
                 })
             };
             (0..=8).map(at).collect()
         }
-        _ => edge.iter().map(|node| places[*node]).collect(),
+        _ => edge.iter().map(|node| positions[*node]).collect(),
     };
     edges.iter().map(line).collect()
 }

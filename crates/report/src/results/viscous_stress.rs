@@ -30,23 +30,26 @@ impl ViscousStress {
         if material.is_none() {
             return vec![Self::default(); motion.len()];
         }
-        let places = [cell_gradients, nodal_gradients];
-        let mut memories = places.map(|_| Vec::new());
+        let positions = [cell_gradients, nodal_gradients];
+        let mut memories = positions.map(|_| Vec::new());
         let mut last = times.first().copied().unwrap_or_default();
         let at_instant = |(time, fields): (&f64, &[&[f64]; 2])| {
             let elapsed = time - last;
             last = *time;
-            let mut places = places.iter().zip(&mut memories).map(|(gradients, memory)| {
-                let [now, rate] = fields.map(|field| gradients(mesh, field));
-                memory.resize_with(now.len(), Vec::new);
-                let pairs = now.iter().zip(&rate).zip(memory);
-                pairs
-                    .map(|((now, rate), memory)| {
-                        stress(law, material, [now, rate], memory, elapsed)
-                    })
-                    .collect()
-            });
-            let mut next = || places.next().expect("cells and nodes");
+            let mut positions = positions
+                .iter()
+                .zip(&mut memories)
+                .map(|(gradients, memory)| {
+                    let [now, rate] = fields.map(|field| gradients(mesh, field));
+                    memory.resize_with(now.len(), Vec::new);
+                    let pairs = now.iter().zip(&rate).zip(memory);
+                    pairs
+                        .map(|((now, rate), memory)| {
+                            stress(law, material, [now, rate], memory, elapsed)
+                        })
+                        .collect()
+                });
+            let mut next = || positions.next().expect("cells and nodes");
             Self {
                 in_cells: next(),
                 at_nodes: next(),

@@ -61,7 +61,7 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
         }
         Err(Error::Input(found)) => {
             for fault in found {
-                match fault.place {
+                match fault.position {
                     Some(_) => section.add(fault),
                     None => section.fault(KEY, &fault.message, fault.hint.as_deref().unwrap_or("")),
                 }

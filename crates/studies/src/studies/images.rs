@@ -170,8 +170,8 @@ impl ImageRequest<'_> {
         };
         let up = (size[1] - 1) as f64;
         let mut lines = read_lines(outline, Some(pixel))?;
-        for place in lines.iter_mut().flatten() {
-            *place = [place[0] / pixel, up - place[1] / pixel];
+        for position in lines.iter_mut().flatten() {
+            *position = [position[0] / pixel, up - position[1] / pixel];
         }
         Region::of_lines(&lines, size)
     }
@@ -268,6 +268,6 @@ impl TrackedImages {
 
     /// The number of points that are followed at all.
     pub fn points(&self) -> usize {
-        self.tracker.places().len()
+        self.tracker.positions().len()
     }
 }

@@ -249,8 +249,8 @@ impl Pull {
 fn side_force(problem: &BoundaryProblem, field: Field) -> f64 {
     const POINTS: usize = 200;
     let step = SIDE / POINTS as f64;
-    let places = (0..POINTS).map(|i| [SIDE, (i as f64 + 0.5) * step]);
-    let stresses = places.map(|place| stress(&*problem.law, field.gradient(place))[0]);
+    let positions = (0..POINTS).map(|i| [SIDE, (i as f64 + 0.5) * step]);
+    let stresses = positions.map(|position| stress(&*problem.law, field.gradient(position))[0]);
     problem.thickness * step * stresses.sum::<f64>()
 }
 
@@ -260,7 +260,7 @@ impl Errors {
         let Solved { mesh, state, field } = Solved::new(shape, cells, amplitude)?;
         let u = &state.displacement;
         let (mut values, mut gradients) = (Squares::default(), Squares::default());
-        each_point(&mesh, |cell, local, place, volume| {
+        each_point(&mesh, |cell, local, position, volume| {
             let weights = mesh.shape(cell).values(local);
             let found = [0, 1].map(|axis| -> f64 {
                 let nodes = mesh.cell(cell).iter().zip(&weights);
@@ -268,9 +268,9 @@ impl Errors {
                     .map(|(node, weight)| weight * u[2 * node + axis])
                     .sum()
             });
-            values.add(volume, &found, &field.displacement(place));
+            values.add(volume, &found, &field.displacement(position));
             let found = mesh.gradient_at(u, cell, local);
-            gradients.add(volume, &found, &field.gradient(place));
+            gradients.add(volume, &found, &field.gradient(position));
         });
         Ok(Self {
             l2: values.relative(),
@@ -302,8 +302,8 @@ impl Squares {
 /// Nodal forces in N of the body force.
 fn forces(mesh: &Mesh, problem: &BoundaryProblem, field: Field) -> Vec<f64> {
     let mut forces = vec![0.0; 2 * mesh.nodes.len()];
-    each_point(mesh, |cell, local, place, area| {
-        let density = field.body_force(problem, place);
+    each_point(mesh, |cell, local, position, area| {
+        let density = field.body_force(problem, position);
         let values = mesh.shape(cell).values(local);
         for (node, value) in mesh.cell(cell).iter().zip(values) {
             for axis in 0..2 {
@@ -320,7 +320,7 @@ fn each_point(mesh: &Mesh, mut call: impl FnMut(usize, [f64; 2], [f64; 2], f64))
         let shape = mesh.shape(cell);
         for (local, weight) in shape.product_quadrature(&GAUSS_5) {
             let area = weight * mesh.gradients(cell, local).1;
-            call(cell, local, mesh.place(cell, local), area);
+            call(cell, local, mesh.position(cell, local), area);
         }
     }
 }

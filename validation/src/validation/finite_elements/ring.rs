@@ -174,9 +174,9 @@ impl Inflated {
 /// The deformed distances of a group's nodes from the centre in mm.
 fn deformed_radii(mesh: &Mesh, group: &str, state: &State) -> Vec<f64> {
     let radius = |node: &usize| {
-        let place =
+        let position =
             [0, 1].map(|axis| mesh.nodes[*node][axis] + state.displacement[2 * node + axis]);
-        place[0].hypot(place[1])
+        position[0].hypot(position[1])
     };
     mesh.groups()[group].nodes.iter().map(radius).collect()
 }

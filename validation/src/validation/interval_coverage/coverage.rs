@@ -97,7 +97,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     for (length, name, wrong) in [white].into_iter().chain(correlated).chain(wrong) {
         progress.tell(&name);
         let subject = if wrong == Wrong::Edge { &plate } else { &strip };
-        let draws = CorrelatedDraws::new(subject.places(), length);
+        let draws = CorrelatedDraws::new(subject.positions(), length);
         let trial = |seed: u64| settings.trial(subject, &draws, seed, wrong);
         let all: Result<Vec<CoverageTrial>, Error> =
             (0..settings.seeds).into_par_iter().map(trial).collect();
@@ -216,7 +216,7 @@ impl Settings {
         let cells = [(PART * along as f64) as usize, across];
         let grid = Grid::new([PART * length, width], cells, 2.0);
         let mesh = Mesh::of_grid(grid, CellShape::Quad9);
-        markers.retain(|marker| marker.place[0] < PART * length);
+        markers.retain(|marker| marker.position[0] < PART * length);
         let mut knowledge = unknown_grips();
         for (name, condition) in &mut knowledge.edges {
             if name == "right" {

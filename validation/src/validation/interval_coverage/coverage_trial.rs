@@ -63,11 +63,11 @@ impl CoverageTrial {
         let [low, high] = mesh.bounding_box();
         let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
         for (cell, own) in found.cells.iter().enumerate() {
-            let place = mesh.place(cell, mesh.shape(cell).centre());
-            let Some(exact) = truth.stress(place).filter(|_| is_away(truth, place)) else {
+            let position = mesh.position(cell, mesh.shape(cell).centre());
+            let Some(exact) = truth.stress(position).filter(|_| is_away(truth, position)) else {
                 continue;
             };
-            let distance = (place[0] - middle[0]).hypot(place[1] - middle[1]);
+            let distance = (position[0] - middle[0]).hypot(position[1] - middle[1]);
             let stress = own.first_piola_kirchhoff_stress.iter();
             for (exact, (stress, error)) in exact.iter().zip(stress.zip(&own.stress_error)) {
                 let held = (exact - stress).abs() <= found.reach * error;

@@ -14,16 +14,16 @@ pub struct CorrelatedDraws {
 
 impl CorrelatedDraws {
     /// Noise at places that correlates as e^(−d/ℓ), ℓ so many times the mean spacing of the places.
-    pub fn new(places: &[[f64; 2]], length: Option<f64>) -> Self {
+    pub fn new(positions: &[[f64; 2]], length: Option<f64>) -> Self {
         let distance = |i: usize, j: usize| {
-            let [a, b]: [[f64; 2]; 2] = [places[i], places[j]];
+            let [a, b]: [[f64; 2]; 2] = [positions[i], positions[j]];
             (a[0] - b[0]).hypot(a[1] - b[1])
         };
-        let nearest = nearest(places, 1).into_iter().enumerate();
+        let nearest = nearest(positions, 1).into_iter().enumerate();
         let spacing = mean(nearest.map(|(i, others)| distance(i, others[0])));
         let root = length.and_then(|length| {
             let correlation = |i: usize, j: usize| (-distance(i, j) / (length * spacing)).exp();
-            let all = DMatrix::from_fn(places.len(), places.len(), correlation);
+            let all = DMatrix::from_fn(positions.len(), positions.len(), correlation);
             all.cholesky().map(|factor| factor.unpack())
         });
         Self { root }

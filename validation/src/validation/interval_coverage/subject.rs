@@ -77,7 +77,7 @@ pub struct Subject {
     pub truth: Truth,
     /// The mesh of the estimate.
     pub mesh: Mesh,
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     thickness: f64,
 }
 
@@ -121,7 +121,7 @@ impl Subject {
         let truth = Truth::new(fine, problem, data.plate.stretch())?;
         Ok(Self {
             name,
-            places: truth.places(data.markers),
+            positions: truth.positions(data.markers),
             truth,
             mesh,
             thickness: problem.thickness,
@@ -130,24 +130,24 @@ impl Subject {
 
     /// The same with markers that end half a spacing inside of the edges.
     pub fn with_markers_inside(mut self, counts: [usize; 2]) -> Self {
-        self.places = self.truth.places_inside(counts);
+        self.positions = self.truth.places_inside(counts);
         self
     }
 
     /// The places of the markers.
-    pub fn places(&self) -> &[[f64; 2]] {
-        &self.places
+    pub fn positions(&self) -> &[[f64; 2]] {
+        &self.positions
     }
 
     /// Markers without noise.
     pub fn exact_markers(&self) -> Vec<Marker> {
-        self.truth.markers(&self.places, 0.0, 0.0, 0).markers
+        self.truth.markers(&self.positions, 0.0, 0.0, 0).markers
     }
 
     /// Disturbed markers.
     pub fn data(&self, disturbance: Disturbance, seed: u64) -> Markers {
         let Disturbance { noise, outliers } = disturbance;
-        self.truth.markers(&self.places, noise, outliers, seed)
+        self.truth.markers(&self.positions, noise, outliers, seed)
     }
 
     /// The truth's force on the right grip, so many standard deviations off; these are a share of it.

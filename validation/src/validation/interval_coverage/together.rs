@@ -122,7 +122,7 @@ impl Test {
             })
             .collect();
         let truths = truths?;
-        let exact = |truth: &Truth| truth.markers(subject.places(), 0.0, 0.0, 0).markers;
+        let exact = |truth: &Truth| truth.markers(subject.positions(), 0.0, 0.0, 0).markers;
         Ok(Self {
             markers: truths.iter().map(exact).collect(),
             forces: truths.iter().map(|truth| truth.force).collect(),
@@ -131,7 +131,7 @@ impl Test {
     }
 
     fn trial(&self, settings: &Settings, kind: Kind, seed: u64) -> Result<Trial, Error> {
-        let draws = CorrelatedDraws::new(self.subject.places(), kind.length);
+        let draws = CorrelatedDraws::new(self.subject.positions(), kind.length);
         let mut markers = self.markers.clone();
         for (index, markers) in markers.iter_mut().enumerate() {
             draws.disturb(markers, settings.noise, 1000 * seed + index as u64);

@@ -87,8 +87,8 @@ impl Trial {
         let (mut before, mut after) = (0.0, 0.0);
         let markers = data.markers.iter().zip(&data.wrong).zip(&found.markers);
         for ((marker, wrong), estimate) in markers {
-            let exact = truth.displacement(marker.place);
-            let there = mesh.displacement_at(&found.displacement, marker.place);
+            let exact = truth.displacement(marker.position);
+            let there = mesh.displacement_at(&found.displacement, marker.position);
             for axis in [0, 1] {
                 before += (marker.displacement[axis] - exact[axis]).powi(2);
                 after += (there[axis] - exact[axis]).powi(2);
@@ -108,7 +108,7 @@ impl Trial {
     fn compare_stress(&mut self, truth: &Truth, mesh: &Mesh, found: &FieldEstimate) {
         let (mut squares, mut covered, mut count) = (Squares::default(), 0.0, 0.0);
         for (cell, estimate) in found.cells.iter().enumerate() {
-            let centre = mesh.place(cell, mesh.shape(cell).centre());
+            let centre = mesh.position(cell, mesh.shape(cell).centre());
             let Some(exact) = truth.stress(centre).filter(|_| is_away(truth, centre)) else {
                 continue;
             };
@@ -136,12 +136,12 @@ fn displacement_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 
 }
 
 /// Whether a place is farther than a fifth of the width from all corners.
-pub fn is_away(truth: &Truth, place: [f64; 2]) -> bool {
+pub fn is_away(truth: &Truth, position: [f64; 2]) -> bool {
     let [low, high] = truth.mesh.bounding_box();
     let far = AWAY * (high[1] - low[1]);
     let x = [low[0], high[0]].into_iter();
     let mut corners = x.flat_map(|x| [[x, low[1]], [x, high[1]]]);
-    corners.all(|[x, y]| (place[0] - x).hypot(place[1] - y) > far)
+    corners.all(|[x, y]| (position[0] - x).hypot(position[1] - y) > far)
 }
 
 /// Deviation in % of the stress from mean differences of four neighbouring markers, in the middle between them; where these
@@ -175,30 +175,30 @@ struct Square<'a> {
 impl<'a> Square<'a> {
     /// The one whose lower left corner a marker is.
     fn at(first: &'a Marker, markers: &'a [Marker]) -> Option<Self> {
-        let next = |axis: usize, place: [f64; 2]| {
+        let next = |axis: usize, position: [f64; 2]| {
             let other = 1 - axis;
             let row = markers
                 .iter()
-                .filter(|marker| (marker.place[other] - place[other]).abs() < 1e-6);
-            let beyond = row.filter(|marker| marker.place[axis] > place[axis] + 1e-6);
-            beyond.min_by(|a, b| a.place[axis].total_cmp(&b.place[axis]))
+                .filter(|marker| (marker.position[other] - position[other]).abs() < 1e-6);
+            let beyond = row.filter(|marker| marker.position[axis] > position[axis] + 1e-6);
+            beyond.min_by(|a, b| a.position[axis].total_cmp(&b.position[axis]))
         };
-        let (right, above) = (next(0, first.place)?, next(1, first.place)?);
-        let last = next(1, right.place)?;
-        let is_square = (last.place[1] - above.place[1]).abs() < 1e-6;
+        let (right, above) = (next(0, first.position)?, next(1, first.position)?);
+        let last = next(1, right.position)?;
+        let is_square = (last.position[1] - above.position[1]).abs() < 1e-6;
         is_square.then_some(Self {
             corners: [first, right, above, last],
         })
     }
 
     fn size(&self) -> [f64; 2] {
-        let [first, right, above, _] = self.corners.map(|marker| marker.place);
+        let [first, right, above, _] = self.corners.map(|marker| marker.position);
         [right[0] - first[0], above[1] - first[1]]
     }
 
     fn centre(&self) -> [f64; 2] {
-        let (place, size) = (self.corners[0].place, self.size());
-        [0, 1].map(|axis| place[axis] + 0.5 * size[axis])
+        let (position, size) = (self.corners[0].position, self.size());
+        [0, 1].map(|axis| position[axis] + 0.5 * size[axis])
     }
 
     /// Displacement gradient, components 11, 12, 21, 22.

@@ -70,13 +70,13 @@ impl Truth {
     }
 
     /// The displacement at a place in mm.
-    pub fn displacement(&self, place: [f64; 2]) -> [f64; 2] {
-        self.mesh.displacement_at(&self.displacement, place)
+    pub fn displacement(&self, position: [f64; 2]) -> [f64; 2] {
+        self.mesh.displacement_at(&self.displacement, position)
     }
 
     /// First Piola–Kirchhoff stress at a place in MPa.
-    pub fn stress(&self, place: [f64; 2]) -> Option<[f64; 4]> {
-        let (cell, local) = self.mesh.locate(place);
+    pub fn stress(&self, position: [f64; 2]) -> Option<[f64; 4]> {
+        let (cell, local) = self.mesh.locate(position);
         self.stress_of(self.mesh.gradient_at(&self.displacement, cell, local))
     }
 
@@ -87,7 +87,7 @@ impl Truth {
     }
 
     /// The places of a grid of markers over the specimen; those in a hole are left out.
-    pub fn places(&self, counts: [usize; 2]) -> Vec<[f64; 2]> {
+    pub fn positions(&self, counts: [usize; 2]) -> Vec<[f64; 2]> {
         self.grid(counts, &|index, count| index / (count - 1.0))
     }
 
@@ -104,16 +104,16 @@ impl Truth {
         };
         let grid = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
         grid.map(|(i, j)| [line(0, i), line(1, j)])
-            .filter(|place| self.mesh.outside(*place) < 1e-6)
+            .filter(|position| self.mesh.outside(*position) < 1e-6)
             .collect()
     }
 
     /// Markers with normal noise in mm, a share of them with a gross error of 6 to 40 times the noise in any direction.
-    pub fn markers(&self, places: &[[f64; 2]], noise: f64, outliers: f64, seed: u64) -> Markers {
+    pub fn markers(&self, positions: &[[f64; 2]], noise: f64, outliers: f64, seed: u64) -> Markers {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let (mut markers, mut wrong) = (Vec::new(), Vec::new());
-        for (number, place) in places.iter().enumerate() {
-            let mut displacement = self.displacement(*place);
+        for (number, position) in positions.iter().enumerate() {
+            let mut displacement = self.displacement(*position);
             for value in &mut displacement {
                 let draw: f64 = StandardNormal.sample(&mut random);
                 *value += noise * draw;
@@ -128,7 +128,7 @@ impl Truth {
             wrong.push(is_wrong);
             markers.push(Marker {
                 number,
-                place: *place,
+                position: *position,
                 displacement,
                 standard_deviation: None,
             });

@@ -271,7 +271,7 @@ mod tests {
         let length = scene.size[0];
         let bodies = Bodies::of(scene).unwrap();
         let nodes = bodies.lattice.nodes.iter().enumerate();
-        let right = nodes.filter(|(_, place)| (place[0] - length).abs() < 1e-9);
+        let right = nodes.filter(|(_, position)| (position[0] - length).abs() < 1e-9);
         let moved: Vec<f32> = right
             .map(|(node, _)| frame.displacement[2 * node])
             .collect();

@@ -102,9 +102,9 @@ fn on_the_way(
 /// What the grip's motion changes, falling to zero at the left grip in proportion to X.
 fn between_grips(body: &Body, sheet: &Sheet, before: Grip, grip: Grip) -> Vec<f64> {
     let [earlier, later] = [before, grip].map(|grip| grip.lines(sheet.axis));
-    let change = |place: &[f64; 2]| {
-        let share = place[0] / sheet.length;
-        [0, 1].map(|axis| share * (later[axis].at(*place) - earlier[axis].at(*place)))
+    let change = |position: &[f64; 2]| {
+        let share = position[0] / sheet.length;
+        [0, 1].map(|axis| share * (later[axis].at(*position) - earlier[axis].at(*position)))
     };
     body.mesh.nodes.iter().flat_map(change).collect()
 }

@@ -103,10 +103,10 @@ pub fn written(edges: &BTreeMap<String, Edge>, edge_gap: &str) -> String {
 }
 
 /// The edge that is nearest to a place in mm, where one is within reach.
-pub fn nearest(figure: &MeshFigure, place: [f64; 2], reach: f64) -> Option<&str> {
+pub fn nearest(figure: &MeshFigure, position: [f64; 2], reach: f64) -> Option<&str> {
     let distances = figure.groups.iter().flat_map(|group| {
         let parts = group.lines.iter().flat_map(|line| line.windows(2));
-        parts.map(|part| (distance(place, [part[0], part[1]]), &group.name))
+        parts.map(|part| (distance(position, [part[0], part[1]]), &group.name))
     });
     let (distance, name) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (distance <= reach).then_some(name)
@@ -125,11 +125,13 @@ fn distance([x, y]: [f64; 2], [[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> f64 {
 
 /// Where the name of an edge is written: the place on it that is nearest to the middle of all its places.
 pub fn middle(lines: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
-    let places = || lines.iter().flatten();
-    let count = places().count().max(1) as f64;
-    let mean = [0, 1].map(|axis| places().map(|place| place[axis]).sum::<f64>() / count);
-    let far = |place: &[f64; 2]| (place[0] - mean[0]).hypot(place[1] - mean[1]);
-    places().copied().min_by(|a, b| far(a).total_cmp(&far(b)))
+    let positions = || lines.iter().flatten();
+    let count = positions().count().max(1) as f64;
+    let mean = [0, 1].map(|axis| positions().map(|position| position[axis]).sum::<f64>() / count);
+    let far = |position: &[f64; 2]| (position[0] - mean[0]).hypot(position[1] - mean[1]);
+    positions()
+        .copied()
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 #[cfg(test)]
@@ -152,7 +154,7 @@ mod tests {
     #[test]
     fn the_nearest_edge_is_hit_and_none_from_far_away() {
         let figure = strip();
-        for (place, name) in [
+        for (position, name) in [
             ([0.5, 0.3], Some("left")),
             ([31.0, -1.0], Some("right")),
             ([12.0, 5.5], Some("top")),
@@ -160,7 +162,7 @@ mod tests {
             ([15.0, 0.0], None),
             ([50.0, 0.0], None),
         ] {
-            assert_eq!(nearest(&figure, place, 1.2), name, "{place:?}");
+            assert_eq!(nearest(&figure, position, 1.2), name, "{position:?}");
         }
         assert_eq!(nearest(&figure, [f64::NAN; 2], 1.2), None);
         let left = figure.groups.iter().find(|group| group.name == "left");

@@ -49,7 +49,7 @@ impl Workbench {
             match self.table.moving() {
                 None => {
                     let response = ui.button("release").on_hover_text(hint);
-                    self.places
+                    self.positions
                         .insert("release".to_owned(), response.rect.center());
                     if response.clicked() {
                         self.lets_go = true;

@@ -35,7 +35,7 @@ impl Workbench {
                 " …"
             };
             let response = ui.button(format!("{name}{asks}"));
-            self.places.insert(name, response.rect.center());
+            self.positions.insert(name, response.rect.center());
             if response.clicked() {
                 self.told = "writing …".to_owned();
                 self.exports.ask(wanted);

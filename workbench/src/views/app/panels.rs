@@ -53,7 +53,8 @@ impl Workbench {
             ui.label(RichText::new("gelbench").strong());
             for (name, tab) in Tab::ALL {
                 let response = ui.selectable_value(&mut self.tab, tab, name);
-                self.places.insert(name.to_owned(), response.rect.center());
+                self.positions
+                    .insert(name.to_owned(), response.rect.center());
             }
             ui.separator();
             if self.tab == Tab::Sheet {
@@ -85,7 +86,7 @@ impl Workbench {
             }
             self.file_menu(ui);
             let export = ui.menu_button("export", |ui| self.offered(ui)).response;
-            self.places
+            self.positions
                 .insert("export".to_owned(), export.rect.center());
             ui.separator();
             let dark = ui.visuals().dark_mode;
@@ -161,7 +162,7 @@ impl Workbench {
             }
         });
         let at = menu.response.rect.center();
-        self.places.insert("file".to_owned(), at);
+        self.positions.insert("file".to_owned(), at);
     }
 
     /// What is dropped is opened, and what is saved is downloaded.
@@ -184,9 +185,9 @@ impl Workbench {
     }
 
     pub(super) fn guide(&mut self, ui: &mut Ui) {
-        let places = &mut self.places;
+        let positions = &mut self.positions;
         let note = |name: &str, at| {
-            places.insert(name.to_owned(), at);
+            positions.insert(name.to_owned(), at);
         };
         let Some(number) = guide::show(ui, self.guided, note) else {
             return;

@@ -60,7 +60,7 @@ impl Fields {
         });
         markers(ui, view, area, preview);
         let reach = view.way(vec2(REACH, 0.0))[0];
-        let at = |pointer: Pos2| nearest(figure, view.place(pointer), reach);
+        let at = |pointer: Pos2| nearest(figure, view.position(pointer), reach);
         let under = response.hover_pos().and_then(at);
         for name in &preview.edges {
             let asked = self.asked.as_ref().is_some_and(|(asked, _)| asked == name);
@@ -83,7 +83,7 @@ impl Fields {
 
     /// Asks what is known of the edge that was clicked.
     fn ask_of_edge(&mut self, ui: &Ui, response: &Response) {
-        let Some((name, place)) = self.asked.clone() else {
+        let Some((name, position)) = self.asked.clone() else {
             return;
         };
         let edge = self.question.edges.entry(name.clone()).or_default();
@@ -91,7 +91,7 @@ impl Fields {
         let popup = Popup::new(
             Id::unique(("edge is asked about", &name)),
             ui.ctx().clone(),
-            PopupAnchor::Position(place),
+            PopupAnchor::Position(position),
             response.layer_id,
         );
         popup
@@ -182,8 +182,8 @@ fn draw(ui: &Ui, view: View, figure: &MeshFigure, name: &str, said: Option<&Edge
     };
     if pointed {
         for line in &group.lines {
-            let places = line.iter().map(|place| view.at(*place)).collect();
-            painter.add(Shape::line(places, Stroke::new(7.0, ink)));
+            let positions = line.iter().map(|position| view.at(*position)).collect();
+            painter.add(Shape::line(positions, Stroke::new(7.0, ink)));
         }
     }
     let Some(middle) = middle(&group.lines) else {
@@ -195,8 +195,8 @@ fn draw(ui: &Ui, view: View, figure: &MeshFigure, name: &str, said: Option<&Edge
     };
     let letters = painter.layout_no_wrap(text, FontId::proportional(12.0), Color32::PLACEHOLDER);
     let clip = ui.clip_rect().shrink(2.0);
-    let place = Align2::CENTER_CENTER.anchor_size(view.at(middle), letters.size());
-    let inside = place.min.max(clip.min).min(clip.max - letters.size());
+    let position = Align2::CENTER_CENTER.anchor_size(view.at(middle), letters.size());
+    let inside = position.min.max(clip.min).min(clip.max - letters.size());
     let paper = ui.visuals().panel_fill.gamma_multiply(0.85);
     let back = Rect::from_min_size(inside, letters.size()).expand(2.0);
     painter.rect_filled(back, 3.0, paper);

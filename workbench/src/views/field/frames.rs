@@ -14,9 +14,13 @@ impl Fields {
     pub(super) fn frames(&mut self, ui: &mut Ui, frames: &[CorrectedFrame]) {
         self.frame = self.frame.min(frames.len().saturating_sub(1));
         if frames.len() > 1 {
-            let number = |place: f64| frames.get(place as usize).map_or(0, |frame| frame.number);
+            let number = |position: f64| {
+                frames
+                    .get(position as usize)
+                    .map_or(0, |frame| frame.number)
+            };
             let slider = Slider::new(&mut self.frame, 0..=frames.len() - 1)
-                .custom_formatter(|place, _| number(place).to_string())
+                .custom_formatter(|position, _| number(position).to_string())
                 .text("frame");
             ui.add(slider);
         }
@@ -68,25 +72,29 @@ impl Fields {
 
 /// What is left of every marker, enlarged; those that are far off in another colour.
 fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
-    let places: Vec<[f64; 2]> = frame.residuals.iter().map(|(place, ..)| *place).collect();
+    let positions: Vec<[f64; 2]> = frame
+        .residuals
+        .iter()
+        .map(|(position, ..)| *position)
+        .collect();
     let sizes = frame.residuals.iter().filter(|(.., trust)| *trust > 0.5);
     let largest = sizes
         .map(|(_, left, _)| left[0].hypot(left[1]))
         .fold(0.0, f64::max);
-    let Some([low, high]) = range(places.iter().map(|place| place[0])) else {
+    let Some([low, high]) = range(positions.iter().map(|position| position[0])) else {
         return;
     };
     let enlarged = 0.04 * (high - low) / largest.max(1e-12);
     ui.label(format!("residuals of the markers at their rest positions, magnified {enlarged:.1} times; outliers in the colour of faults"));
-    let (view, area) = report::room(ui, places.iter());
+    let (view, area) = report::room(ui, positions.iter());
     let painter = ui.painter().with_clip_rect(area);
-    for (place, left, trust) in &frame.residuals {
+    for (position, left, trust) in &frame.residuals {
         let ink = match *trust > 0.5 {
             true => ui.visuals().text_color(),
             false => ui.visuals().error_fg_color,
         };
-        let to = [0, 1].map(|axis| place[axis] + enlarged * left[axis]);
-        painter.circle_filled(view.at(*place), 1.5, ink);
-        painter.line_segment([view.at(*place), view.at(to)], Stroke::new(1.0, ink));
+        let to = [0, 1].map(|axis| position[axis] + enlarged * left[axis]);
+        painter.circle_filled(view.at(*position), 1.5, ink);
+        painter.line_segment([view.at(*position), view.at(to)], Stroke::new(1.0, ink));
     }
 }

@@ -245,12 +245,12 @@ impl Placed {
     /// The first file at a path, the others beside it.
     fn at(path: &Path, outgoing: Outgoing) -> Self {
         let others = outgoing.written.files.iter().enumerate();
-        let place = |(number, (name, content)): (usize, &(String, Vec<u8>))| match number {
+        let position = |(number, (name, content)): (usize, &(String, Vec<u8>))| match number {
             0 => (path.to_owned(), content.clone()),
             _ => (path.with_file_name(name), content.clone()),
         };
         Self {
-            files: others.map(place).collect(),
+            files: others.map(position).collect(),
             outgoing,
         }
     }

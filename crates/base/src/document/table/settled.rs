@@ -22,17 +22,17 @@ impl Table {
     /// The same if these are names as `accepted`.
     fn name_by_remark_if(&mut self, accepted: fn(&[&str]) -> bool) {
         let unnamed = self.columns.iter().all(|column| column.name.is_empty());
-        let first_row = self.rows.first().map_or(0, |(_, place)| place.start);
-        let Some(place) = remark_above(&self.source.text, first_row).filter(|_| unnamed) else {
+        let first_row = self.rows.first().map_or(0, |(_, position)| position.start);
+        let Some(position) = remark_above(&self.source.text, first_row).filter(|_| unnamed) else {
             return;
         };
-        let remark = self.source.text[place.clone()]
+        let remark = self.source.text[position.clone()]
             .trim_start_matches('#')
             .trim();
         let names = names_in_remark(remark, self.columns.len());
         if let Some(names) = names.filter(|names| accepted(names)) {
             self.columns = names.into_iter().map(Column::new).collect();
-            self.columns_place = place;
+            self.columns_place = position;
         }
     }
 

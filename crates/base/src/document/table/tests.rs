@@ -71,9 +71,9 @@ fn fields_that_are_no_numbers_are_told_by_their_column() {
     ] {
         let table = Table::parse("a.csv", text).unwrap();
         let found = table.check_numbers([1], "").unwrap_err().to_string();
-        let place = format!("a.csv:{line}: column `b`: ");
+        let position = format!("a.csv:{line}: column `b`: ");
         assert!(
-            found.contains(&place) && found.contains(reason),
+            found.contains(&position) && found.contains(reason),
             "{text:?}: {found}"
         );
         assert!(table.check_numbers([0], "").is_ok(), "{text:?}");

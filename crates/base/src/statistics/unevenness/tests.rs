@@ -7,28 +7,32 @@ use rand_distr::{Distribution, StandardNormal};
 use super::*;
 
 fn grid([columns, rows]: [usize; 2]) -> Vec<[f64; 2]> {
-    let places = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
-    places
+    let positions = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
+    positions
         .map(|(i, j)| [1e3 + 2.0 * i as f64, 3.0 * j as f64])
         .collect()
 }
 
-fn noise(seed: u64, places: &[[f64; 2]], size: impl Fn([f64; 2]) -> f64) -> Vec<Option<[f64; 2]>> {
+fn noise(
+    seed: u64,
+    positions: &[[f64; 2]],
+    size: impl Fn([f64; 2]) -> f64,
+) -> Vec<Option<[f64; 2]>> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-    places
+    positions
         .iter()
-        .map(|place| Some([normal(), normal()].map(|value| value * size(*place))))
+        .map(|position| Some([normal(), normal()].map(|value| value * size(*position))))
         .collect()
 }
 
 #[test]
 fn even_noise_is_hardly_ever_uneven() {
     for cells in [[8, 5], [20, 10], [40, 20]] {
-        let places = grid(cells);
+        let positions = grid(cells);
         let alarms = (0..400).filter(|seed| {
-            let z = noise(*seed, &places, |_| 0.3);
-            Unevenness::found(&places, &z).is_some()
+            let z = noise(*seed, &positions, |_| 0.3);
+            Unevenness::found(&positions, &z).is_some()
         });
         let alarms = alarms.count();
         assert!(alarms <= 1, "{cells:?}: {alarms} of 400");
@@ -38,7 +42,7 @@ fn even_noise_is_hardly_ever_uneven() {
 /// Noise that grows fourfold along the sheet, or towards its edges, is found with its size.
 #[test]
 fn noise_that_grows_is_found() {
-    let places = grid([40, 20]);
+    let positions = grid([40, 20]);
     let along = |[x, _]: [f64; 2]| 4.0_f64.powf((x - 1e3) / 78.0);
     let outwards = |[x, y]: [f64; 2]| {
         let [x, y] = [(x - 1039.0) / 39.0, (y - 28.5) / 28.5];
@@ -48,10 +52,12 @@ fn noise_that_grows_is_found() {
     let sizes: [&dyn Fn([f64; 2]) -> f64; 3] = [&along, &outwards, &margin];
     for size in sizes {
         for seed in 0..20 {
-            let z = noise(seed, &places, size);
-            let found = Unevenness::found(&places, &z).expect("uneven");
-            let pairs = places.iter().zip(&found.factors);
-            let mut far: Vec<f64> = pairs.map(|(place, [x, _])| x / size(*place)).collect();
+            let z = noise(seed, &positions, size);
+            let found = Unevenness::found(&positions, &z).expect("uneven");
+            let pairs = positions.iter().zip(&found.factors);
+            let mut far: Vec<f64> = pairs
+                .map(|(position, [x, _])| x / size(*position))
+                .collect();
             far.sort_by(f64::total_cmp);
             let [low, high] = [far[40], far[760]];
             assert!(high / low < 2.0, "{seed}: {low} {high}");
@@ -62,11 +68,11 @@ fn noise_that_grows_is_found() {
 /// Few markers tell of noise that is fourfold at both ends, most times.
 #[test]
 fn few_places_tell_of_noise_that_grows_much() {
-    let places = grid([15, 6]);
+    let positions = grid([15, 6]);
     let outwards = |[x, _]: [f64; 2]| 1.0 + 3.0 * ((x - 1014.0) / 14.0).powi(2);
     let found = (0..200).filter(|seed| {
-        let z = noise(*seed, &places, outwards);
-        Unevenness::found(&places, &z).is_some()
+        let z = noise(*seed, &positions, outwards);
+        Unevenness::found(&positions, &z).is_some()
     });
     let found = found.count();
     assert!(found >= 120, "{found} of 200");
@@ -75,11 +81,11 @@ fn few_places_tell_of_noise_that_grows_much() {
 /// As of ultrasound, which sees along its beam better than across.
 #[test]
 fn components_of_different_noise_are_found() {
-    let places = grid([20, 10]);
+    let positions = grid([20, 10]);
     for seed in 0..20 {
-        let mut z = noise(seed, &places, |_| 1.0);
+        let mut z = noise(seed, &positions, |_| 1.0);
         z.iter_mut().flatten().for_each(|own| own[1] *= 0.2);
-        let found = Unevenness::found(&places, &z).expect("uneven");
+        let found = Unevenness::found(&positions, &z).expect("uneven");
         let [x, y] = found.factors[0];
         assert!((x / y / 5.0 - 1.0).abs() < 0.3, "{seed}: {x} {y}");
     }
@@ -88,14 +94,14 @@ fn components_of_different_noise_are_found() {
 /// A smooth misfit much larger than the noise is not taken for noise.
 #[test]
 fn a_misfit_is_not_taken_for_noise() {
-    let places = grid([40, 20]);
+    let positions = grid([40, 20]);
     for seed in 0..20 {
-        let mut z = noise(seed, &places, |_| 1.0);
-        for (own, [x, y]) in z.iter_mut().flatten().zip(&places) {
+        let mut z = noise(seed, &positions, |_| 1.0);
+        for (own, [x, y]) in z.iter_mut().flatten().zip(&positions) {
             own[0] += 6.0 * (-((x - 1e3) / 25.0).powi(2)).exp();
             own[1] += 3.0 * (y / 30.0).sin();
         }
-        assert_eq!(Unevenness::found(&places, &z), None, "{seed}");
+        assert_eq!(Unevenness::found(&positions, &z), None, "{seed}");
     }
 }
 
@@ -103,7 +109,7 @@ fn a_misfit_is_not_taken_for_noise() {
 #[test]
 fn noise_that_correlates_is_not_uneven() {
     const REACH: usize = 8;
-    let places = grid([40, 20]);
+    let positions = grid([40, 20]);
     let wide = grid([40 + 2 * REACH, 20 + 2 * REACH]);
     let rows = 20 + 2 * REACH;
     for length in [0.5_f64, 1.0, 1.5, 2.5] {
@@ -125,7 +131,7 @@ fn noise_that_correlates_is_not_uneven() {
                     Some(sum)
                 });
             let smooth: Vec<_> = smooth.collect();
-            Unevenness::found(&places, &smooth).is_some()
+            Unevenness::found(&positions, &smooth).is_some()
         });
         let alarms = alarms.count();
         assert!(alarms <= 2, "{length}: {alarms} of 40");
@@ -135,14 +141,14 @@ fn noise_that_correlates_is_not_uneven() {
 /// As of noise in proportion to each component of a displacement that grows along the sheet.
 #[test]
 fn noise_that_grows_in_one_component_alone_is_found_in_that_one() {
-    let places = grid([40, 20]);
+    let positions = grid([40, 20]);
     let along = |[x, _]: [f64; 2]| 10.0_f64.powf((x - 1e3) / 78.0);
     for seed in 0..20 {
-        let mut z = noise(seed, &places, |_| 1.0);
-        for (own, place) in z.iter_mut().flatten().zip(&places) {
-            own[0] *= along(*place);
+        let mut z = noise(seed, &positions, |_| 1.0);
+        for (own, position) in z.iter_mut().flatten().zip(&positions) {
+            own[0] *= along(*position);
         }
-        let found = Unevenness::found(&places, &z).expect("uneven");
+        let found = Unevenness::found(&positions, &z).expect("uneven");
         let (first, last) = (found.factors[0], found.factors[799]);
         let [x, y] = [0, 1].map(|axis| last[axis] / first[axis]);
         assert!(x > 4.0 && x < 20.0, "{seed}: {x}");
@@ -155,9 +161,9 @@ fn places_in_a_line_at_one_place_or_without_noise_are_answered() {
     let line: Vec<[f64; 2]> = (0..50).map(|i| [f64::from(i), 0.0]).collect();
     let one = vec![[3.0, 4.0]; 50];
     let repeated: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i / 10), 0.0]).collect();
-    for places in [&line, &one, &repeated] {
-        let z = noise(1, places, |_| 1.0);
-        assert_eq!(Unevenness::found(places, &z), None);
+    for positions in [&line, &one, &repeated] {
+        let z = noise(1, positions, |_| 1.0);
+        assert_eq!(Unevenness::found(positions, &z), None);
     }
     let grid = grid([10, 10]);
     assert_eq!(Unevenness::found(&grid, &vec![Some([0.0; 2]); 100]), None);
@@ -165,9 +171,9 @@ fn places_in_a_line_at_one_place_or_without_noise_are_answered() {
 
 #[test]
 fn factors_have_a_geometric_mean_of_one() {
-    let places = grid([40, 20]);
-    let z = noise(1, &places, |[x, _]| 0.1 + ((x - 1e3) / 20.0).powi(2));
-    let found = Unevenness::found(&places, &z).expect("uneven");
+    let positions = grid([40, 20]);
+    let z = noise(1, &positions, |[x, _]| 0.1 + ((x - 1e3) / 20.0).powi(2));
+    let found = Unevenness::found(&positions, &z).expect("uneven");
     let logarithms = found.factors.iter().flatten().map(|factor| factor.ln());
     assert!(logarithms.sum::<f64>().abs() < 1e-9);
 }

@@ -118,7 +118,7 @@ pub fn stresses(
         Some(other) => {
             let message = format!("the direction {other} is not 1 or 2");
             let hint = "1 is the axis of the strain column, 2 the one across";
-            return Err(head.fault(head.place("direction"), message, hint));
+            return Err(head.fault(head.position("direction"), message, hint));
         }
     };
     let mut columns = Vec::new();
@@ -187,7 +187,11 @@ pub fn area(head: &Head, roles: &[Role], axis: Option<usize>) -> Faulty<f64> {
         }
         (Some(_), ..) => {
             let message = "the area is stated, and width or thickness too";
-            Err(head.fault(head.place("area"), message, "state the area, or both sides"))
+            Err(head.fault(
+                head.position("area"),
+                message,
+                "state the area, or both sides",
+            ))
         }
     }
 }
@@ -225,8 +229,8 @@ fn no_column(head: &Head, what: &str, names: &str) -> Box<Diagnostic> {
         Quantity::EXAMPLE,
         columns.join(", ")
     );
-    let place = head.table.columns_place.clone();
-    head.fault(place, format!("there is no column of {what}"), &hint)
+    let position = head.table.columns_place.clone();
+    head.fault(position, format!("there is no column of {what}"), &hint)
 }
 
 /// ε₂/ε₁ of nominal strains, for a biaxial test without a second column.
@@ -238,7 +242,11 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
     let number = ratio.parse::<f64>().ok().filter(|ratio| ratio.is_finite());
     number.ok_or_else(|| {
         let message = format!("the strain ratio {ratio} is not a number");
-        head.fault(head.place(KEY), message, "it is ε₂/ε₁ of nominal strains")
+        head.fault(
+            head.position(KEY),
+            message,
+            "it is ε₂/ε₁ of nominal strains",
+        )
     })
 }
 

@@ -41,7 +41,7 @@ impl Cycle {
         let message = || format!("the cycle `{text}` is not known");
         cycle
             .map(Some)
-            .ok_or_else(|| head.fault(head.place(CYCLE), message(), hint))
+            .ok_or_else(|| head.fault(head.position(CYCLE), message(), hint))
     }
 }
 
@@ -56,7 +56,7 @@ pub fn preconditioned(head: &Head, test: Test, far: f64) -> Faulty<Option<f64>> 
     let Some(stretch) = head.quantity(PRECONDITIONED, Dimension::Ratio)? else {
         return Ok(None);
     };
-    let fault = |message: &str, hint| Err(head.fault(head.place(PRECONDITIONED), message, hint));
+    let fault = |message: &str, hint| Err(head.fault(head.position(PRECONDITIONED), message, hint));
     if test == Test::Biaxial {
         let message = "one earlier stretch does not state the earlier state of a biaxial test";
         let hint = "state it for uniaxial, planar and equibiaxial tests; or give the record from the first loading on";

@@ -172,13 +172,13 @@ impl Layout {
         let ends = [rows[0], rows[rows.len() - 1]];
         let (mut kept, mut left_out) = (Vec::new(), Vec::new());
         let mut along = Vec::new();
-        for (index, (row, place)) in table.rows.iter().enumerate() {
+        for (index, (row, position)) in table.rows.iter().enumerate() {
             let [first, second] = self.strains_of(row, &part);
             let is_stretched = self.test != Test::SimpleShear;
             if is_stretched && [first, second].iter().any(|x| *x <= -1.0) {
                 let message = format!("the stretch is {}", 1.0 + first.min(second));
                 let hint = "stretches are greater than zero; is the column a strain?";
-                return Err(head.fault(place.clone(), message, hint));
+                return Err(head.fault(position.clone(), message, hint));
             }
             let is_kept = rows.binary_search(&index).is_ok();
             if part.remarks.is_empty() && is_kept {
@@ -325,7 +325,7 @@ fn flip(head: &Head, measure: StrainColumn) -> Faulty<[f64; 2]> {
     if signs[0] < 0.0 && measure == StrainColumn::Stretch {
         let message = "a stretch has no sign that could be reversed";
         return Err(head.fault(
-            head.place(FLIP),
+            head.position(FLIP),
             message,
             "--flip stress reverses the stresses",
         ));

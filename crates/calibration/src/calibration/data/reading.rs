@@ -114,11 +114,11 @@ impl TestData {
 fn left_out(table: &Table, rows: &[usize], what: &str) -> Option<Diagnostic> {
     let message = format!("{what}: {}", rows.len());
     let hint = "they are left out; `--rows 1..` keeps all rows";
-    let place = table.rows[*rows.first()?].1.clone();
+    let position = table.rows[*rows.first()?].1.clone();
     Some(
         Diagnostic::warning("", message)
             .hint(hint)
-            .at(&table.source, place),
+            .at(&table.source, position),
     )
 }
 

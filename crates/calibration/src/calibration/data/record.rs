@@ -108,7 +108,7 @@ impl Part {
         if branches.only_unloads && cycle != Cycle::All {
             let message = "these rows have no loading branch: the specimen is only unloaded";
             let hint = "take rows that begin before a loading branch; `--cycle all` fits the unloading as it is in the file";
-            return Err(head.fault(head.place(ROWS), message, hint));
+            return Err(head.fault(head.position(ROWS), message, hint));
         }
         if count == 0 {
             return Ok(());
@@ -116,7 +116,7 @@ impl Part {
         let Some(rows) = branches.rows(cycle) else {
             let message = format!("there is no such cycle: {}", cycles(count));
             let hint = "first, last, all, or a number up to that";
-            return Err(head.fault(head.place(CYCLE), message, hint));
+            return Err(head.fault(head.position(CYCLE), message, hint));
         };
         self.rows = rows;
         if branches.is_one_pull {
@@ -131,8 +131,8 @@ impl Part {
         let more = if count > 5 { ", …" } else { "" };
         let found = format!("{} found (to {}{more})", cycles(count), ends.join(", "));
         let line = |row: usize| {
-            let place = &head.table.rows[row.min(head.table.rows.len() - 1)].1;
-            head.table.source.line(place.start)
+            let position = &head.table.rows[row.min(head.table.rows.len() - 1)].1;
+            head.table.source.line(position.start)
         };
         let taken = match cycle {
             Cycle::All => "all rows are fitted".to_owned(),
@@ -168,13 +168,19 @@ impl Part {
             Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
             Zero::Displacement(u) => {
                 let found = FoundZero::Stress { area: machine.area };
-                let place = either(x, u / machine.length);
-                self.take_stated(head, machine, [x, y], place, found)?;
+                let position = either(x, u / machine.length);
+                self.take_stated(head, machine, [x, y], position, found)?;
             }
             Zero::Force(f) => {
                 let length = machine.length;
-                let place = either(y, f / machine.area);
-                self.take_stated(head, machine, [x, y], place, FoundZero::Strain { length })?;
+                let position = either(y, f / machine.area);
+                self.take_stated(
+                    head,
+                    machine,
+                    [x, y],
+                    position,
+                    FoundZero::Strain { length },
+                )?;
             }
         }
         // Rows before the zero are not fitted.
@@ -196,15 +202,15 @@ impl Part {
         head: &Head,
         machine: Machine,
         [x, y]: [&[f64]; 2],
-        place: Option<(usize, f64)>,
+        position: Option<(usize, f64)>,
         found: FoundZero,
     ) -> Faulty<()> {
-        let Some(place) = place else {
+        let Some(position) = position else {
             let message = "the loading branch does not pass the stated zero";
             let hint = "give a displacement or a force that it passes through, or none";
-            return Err(head.fault(head.place(ZERO), message, hint));
+            return Err(head.fault(head.position(ZERO), message, hint));
         };
-        (self.zero, self.offset) = (at(x, place), at(y, place));
+        (self.zero, self.offset) = (at(x, position), at(y, position));
         self.found_zero = Some(found);
         self.remarks.push(format!(
             "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is subtracted",
@@ -291,7 +297,8 @@ impl Zero {
         let Some(text) = head.setting(ZERO, None)? else {
             return Ok(Self::Automatic);
         };
-        let fault = |message: String, hint: &str| Err(head.fault(head.place(ZERO), message, hint));
+        let fault =
+            |message: String, hint: &str| Err(head.fault(head.position(ZERO), message, hint));
         if machine.is_none() {
             let message = "the zero is found only in tables of displacements and forces".to_owned();
             return fault(message, "leave it out, or shift the strains in the file");

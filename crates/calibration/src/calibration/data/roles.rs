@@ -200,7 +200,7 @@ pub fn of_kind(roles: &[Role], kind: Kind) -> impl Iterator<Item = (usize, &Role
 
 /// Refuses columns that are not consistent: all strains have one measure, and so have all stresses.
 pub fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
-    let place = || head.table.columns_place.clone();
+    let position = || head.table.columns_place.clone();
     for (kind, what) in [(Kind::Strain, "strain"), (Kind::Stress, "stress")] {
         let first = of_kind(roles, kind).next();
         let other = |(_, role): &(usize, &Role)| {
@@ -210,20 +210,20 @@ pub fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
             let name = &head.table.columns[column].name;
             let message = format!("`{name}` has another measure than the column before it");
             let hint = format!("give every {what} in the same measure");
-            return Err(head.fault(place(), message, &hint));
+            return Err(head.fault(position(), message, &hint));
         }
     }
     let strains = of_kind(roles, Kind::Strain).count();
     if strains > 1 && test != Test::Biaxial {
         let message = format!("the strains of a {} test have one column", test.name());
         let hint = "choose one with --columns strain=NAME, or call the test biaxial";
-        return Err(head.fault(place(), message, hint));
+        return Err(head.fault(position(), message, hint));
     }
     let numbered = of_kind(roles, Kind::Stress).any(|(_, role)| role.axis() == 1);
     if numbered && head.setting("direction", None)?.is_some() {
         let hint = "leave the direction out";
         let message = "the columns of stress name their axes, and a direction is given too";
-        return Err(head.fault(head.place("direction"), message, hint));
+        return Err(head.fault(head.position("direction"), message, hint));
     }
     Ok(())
 }

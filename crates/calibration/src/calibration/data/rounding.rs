@@ -43,18 +43,20 @@ impl WrittenColumn {
         const MOST: f64 = 1e15;
         let finest = self.steps.iter().copied().filter(|step| *step > 0.0);
         let finest = finest.fold(f64::INFINITY, f64::min);
-        let place = |value: &f64| (value / finest).round();
-        let places: Vec<f64> = self.values.iter().map(place).collect();
-        if places.iter().any(|place| place.abs() > MOST) {
+        let position = |value: &f64| (value / finest).round();
+        let positions: Vec<f64> = self.values.iter().map(position).collect();
+        if positions.iter().any(|position| position.abs() > MOST) {
             return false;
         }
-        let mut rows: Vec<usize> = (0..places.len()).collect();
-        rows.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
-        let again: Vec<&[usize]> = rows.chunk_by(|a, b| places[*a] == places[*b]).collect();
+        let mut rows: Vec<usize> = (0..positions.len()).collect();
+        rows.sort_by(|a, b| positions[*a].total_cmp(&positions[*b]));
+        let again: Vec<&[usize]> = rows
+            .chunk_by(|a, b| positions[*a] == positions[*b])
+            .collect();
         let [rises, falls] = measured.ways(&again);
         match (rises, falls) {
             (true, true) => true,
-            (false, false) => is_regular(again.iter().map(|rows| places[rows[0]] as i64)),
+            (false, false) => is_regular(again.iter().map(|rows| positions[rows[0]] as i64)),
             _ => false,
         }
     }
@@ -79,9 +81,9 @@ impl WrittenColumn {
 }
 
 /// Whether ascending numbers follow one another at equal distances, or at multiples of more than one.
-fn is_regular(places: impl Iterator<Item = i64>) -> bool {
-    let places: Vec<i64> = places.collect();
-    let gaps: Vec<i64> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
+fn is_regular(positions: impl Iterator<Item = i64>) -> bool {
+    let positions: Vec<i64> = positions.collect();
+    let gaps: Vec<i64> = positions.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let divisor = gaps.iter().fold(0, |known, gap| divisor(known, *gap));
     gaps.windows(2).all(|pair| pair[0] == pair[1]) || divisor > 1
 }

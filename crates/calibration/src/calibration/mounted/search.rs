@@ -39,11 +39,15 @@ impl MountedSheet {
             .max(1);
         // Neighbours begin at each other's states: from ratio to ratio, the smallest strains first.
         let mut order: Vec<usize> = (0..strains.len()).collect();
-        let place = |number: &usize| {
+        let position = |number: &usize| {
             let [x, y] = strains[*number];
             ((8.0 * y.atan2(x)).round(), x.hypot(y))
         };
-        order.sort_by(|a, b| place(a).partial_cmp(&place(b)).expect("finite strains"));
+        order.sort_by(|a, b| {
+            position(a)
+                .partial_cmp(&position(b))
+                .expect("finite strains")
+        });
         let chunks = order.par_chunks(size).map(|chunk| {
             let mut search = Search::new(self, &bodies)?;
             let mut solved: Vec<(usize, Vec<SheetState>)> = Vec::new();

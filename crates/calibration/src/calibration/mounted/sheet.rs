@@ -122,8 +122,8 @@ impl MountedSheet {
         let least = self.mounting.lengths[0].min(self.mounting.lengths[1]);
         let side = self.mounting.markers.unwrap_or(USUAL * least);
         let at = |signs: [f64; 2]| {
-            let place = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis] + signs[axis] * side));
-            self.mesh.displacement_at(field, place)
+            let position = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis] + signs[axis] * side));
+            self.mesh.displacement_at(field, position)
         };
         [0, 1].map(|axis| {
             let pair = |other: f64| {

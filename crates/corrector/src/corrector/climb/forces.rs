@@ -89,7 +89,7 @@ struct Columns {
 /// Neighbours in a column that are evaluated together.
 struct Run {
     /// The number of the column among those of its kind.
-    place: usize,
+    position: usize,
     first: usize,
     count: usize,
     /// Where they begin in the block.
@@ -99,12 +99,12 @@ struct Run {
 impl Columns {
     /// The runs of a block of elements, column by column.
     fn runs(self, block: Range<usize>) -> impl Iterator<Item = Run> {
-        let places = block.start / self.elements..block.end.div_ceil(self.elements);
-        places.map(move |place| {
-            let begin = place * self.elements;
+        let positions = block.start / self.elements..block.end.div_ceil(self.elements);
+        positions.map(move |position| {
+            let begin = position * self.elements;
             let from = block.start.max(begin);
             Run {
-                place,
+                position,
                 first: from - begin,
                 count: block.end.min(begin + self.elements) - from,
                 lane: from - block.start,
@@ -114,7 +114,7 @@ impl Columns {
 
     /// The column of a run.
     fn column(self, run: &Run) -> usize {
-        self.first + 2 * run.place
+        self.first + 2 * run.position
     }
 }
 
@@ -139,13 +139,13 @@ struct Workspace<const NODES: usize> {
 
 /// The numbers of a vector that begin at a place.
 #[inline(always)]
-fn load<S: Simd>(numbers: &[f64], place: usize) -> S::f64s {
-    S::as_simd_f64s(&numbers[place..place + S::F64_LANES]).0[0]
+fn load<S: Simd>(numbers: &[f64], position: usize) -> S::f64s {
+    S::as_simd_f64s(&numbers[position..position + S::F64_LANES]).0[0]
 }
 
 #[inline(always)]
-fn store<S: Simd>(numbers: &mut [f64], place: usize, vector: S::f64s) {
-    S::as_mut_simd_f64s(&mut numbers[place..place + S::F64_LANES]).0[0] = vector;
+fn store<S: Simd>(numbers: &mut [f64], position: usize, vector: S::f64s) {
+    S::as_mut_simd_f64s(&mut numbers[position..position + S::F64_LANES]).0[0] = vector;
 }
 
 /// Σ cₖ xₖ.
@@ -257,7 +257,7 @@ impl<const NODES: usize> Workspace<NODES> {
     /// wherever blocks begin.
     fn add(&self, width: usize, run: &Run, forces: &mut [&mut [f64]; 2]) {
         let order = NODES - 1;
-        let column = 2 * run.place * order * width + run.first * order;
+        let column = 2 * run.position * order * width + run.first * order;
         for (axis, forces) in forces.iter_mut().enumerate() {
             for line in 0..NODES {
                 let target = &mut forces[column + line * width..][..run.count * order + 1];
@@ -310,11 +310,11 @@ impl<const NODES: usize> WithSimd for Gradients<'_, NODES> {
                         means[node] = combine(simd, &values[across], u);
                     }
                     for along in 0..NODES {
-                        let place = (across * NODES + along) * self.padded + first;
+                        let position = (across * NODES + along) * self.padded + first;
                         let x = combine(simd, &values[along], slopes);
                         let y = combine(simd, &derivatives[along], means);
-                        store::<S>(h_x, place, simd.mul_f64s(by_width, x));
-                        store::<S>(h_y, place, simd.mul_f64s(by_height, y));
+                        store::<S>(h_x, position, simd.mul_f64s(by_width, x));
+                        store::<S>(h_y, position, simd.mul_f64s(by_height, y));
                     }
                 }
             }
@@ -351,9 +351,9 @@ impl<const NODES: usize> WithSimd for NodalForces<'_, NODES> {
                     for across in 0..NODES {
                         let (mut along_x, mut along_y) = ([zero; NODES], [zero; NODES]);
                         for along in 0..NODES {
-                            let place = (across * NODES + along) * self.padded + first;
-                            along_x[along] = load::<S>(p_x, place);
-                            along_y[along] = load::<S>(p_y, place);
+                            let position = (across * NODES + along) * self.padded + first;
+                            along_x[along] = load::<S>(p_x, position);
+                            along_y[along] = load::<S>(p_y, position);
                         }
                         x[across] = simd.mul_f64s(by_x, combine(simd, &values[node], along_x));
                         y[across] = simd.mul_f64s(by_y, combine(simd, &derivatives[node], along_y));

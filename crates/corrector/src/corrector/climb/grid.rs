@@ -68,16 +68,18 @@ impl Grid {
 
     /// Cells along X and Y.
     pub fn cells(&self) -> [usize; 2] {
-        self.coordinates.each_ref().map(|places| places.len() - 1)
+        self.coordinates
+            .each_ref()
+            .map(|positions| positions.len() - 1)
     }
 
     /// Whether the cells are equal along both axes.
     pub fn is_even(&self) -> bool {
-        self.coordinates.iter().all(|places| {
-            let last = places.len() - 1;
-            let step = (places[last] - places[0]) / last as f64;
+        self.coordinates.iter().all(|positions| {
+            let last = positions.len() - 1;
+            let step = (positions[last] - positions[0]) / last as f64;
             let off = |pair: &[f64]| (pair[1] - pair[0] - step).abs();
-            places.windows(2).all(|pair| off(pair) <= SAME * step)
+            positions.windows(2).all(|pair| off(pair) <= SAME * step)
         })
     }
 
@@ -208,7 +210,7 @@ impl Field {
         let component = |component: &Vec<f64>| {
             lines
                 .iter()
-                .map(|place| line(component, *place))
+                .map(|position| line(component, *position))
                 .sum::<f64>()
         };
         let sum: f64 = self.components.iter().map(component).sum();
@@ -224,11 +226,11 @@ impl Field {
     /// the four nodes around each.
     pub fn onto(&self, grid: &Grid, finer: &Grid) -> Self {
         let [along_x, along_y] = [0, 1].map(|axis| {
-            let [nodes, places] = [grid, finer].map(|grid| &grid.coordinates[axis]);
+            let [nodes, positions] = [grid, finer].map(|grid| &grid.coordinates[axis]);
             if grid.has_cubics() {
-                Interpolation::of_elements(nodes, places, grid.degree)
+                Interpolation::of_elements(nodes, positions, grid.degree)
             } else {
-                Interpolation::cubic(nodes, places)
+                Interpolation::cubic(nodes, positions)
             }
         });
         let mut field = Self::zeros(finer);
@@ -237,8 +239,8 @@ impl Field {
             let part = Part::all(finer.lines());
             part.sweep([to], [], &|part, [to], []| {
                 let mut between = vec![0.0; own];
-                for (place, to) in to.chunks_exact_mut(width).enumerate() {
-                    let (first, shares) = along_x.at(part.first / width + place);
+                for (position, to) in to.chunks_exact_mut(width).enumerate() {
+                    let (first, shares) = along_x.at(part.first / width + position);
                     between.fill(0.0);
                     for (share, from) in shares.iter().zip(from[first * own..].chunks_exact(own)) {
                         for (sum, value) in between.iter_mut().zip(from) {

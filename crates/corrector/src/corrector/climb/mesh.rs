@@ -36,7 +36,7 @@ impl Grid {
         if !self.has_cubics() {
             return (self.clone(), field.clone());
         }
-        let lines = self.coordinates.each_ref().map(|places| &places[..]);
+        let lines = self.coordinates.each_ref().map(|positions| &positions[..]);
         let halved = Self::new(lines, 2);
         let between = field.onto(self, &halved);
         (halved, between)
@@ -79,20 +79,20 @@ mod tests {
             ]
         };
         let [x, y] = &grid.coordinates;
-        let places = x.iter().flat_map(|x| y.iter().map(|y| cubic([*x, *y])));
-        let values: Vec<f64> = places.flatten().collect();
+        let positions = x.iter().flat_map(|x| y.iter().map(|y| cubic([*x, *y])));
+        let values: Vec<f64> = positions.flatten().collect();
         climbed.field = Field::of_nodes(&grid, &values);
         let sheet = climb.deformed(&climbed);
-        for (place, u) in sheet
+        for (position, u) in sheet
             .mesh()
             .nodes
             .iter()
             .zip(sheet.displacement().chunks_exact(2))
         {
-            let expected = cubic(*place);
+            let expected = cubic(*position);
             assert!(
                 (0..2).all(|axis| (u[axis] - expected[axis]).abs() < 1e-13),
-                "{place:?}"
+                "{position:?}"
             );
         }
         assert_eq!(sheet.mesh().cell_count(), 12 * 6);

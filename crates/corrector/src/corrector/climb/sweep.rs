@@ -67,10 +67,10 @@ fn halves<T: Default, const COUNT: usize>(
     divide: impl Fn(T) -> (T, T),
 ) -> ([T; COUNT], [T; COUNT]) {
     let mut after = std::array::from_fn(|_| T::default());
-    let mut places = after.iter_mut();
+    let mut positions = after.iter_mut();
     let before = slices.map(|slice| {
         let (before, rest) = divide(slice);
-        *places.next().expect("as many") = rest;
+        *positions.next().expect("as many") = rest;
         before
     });
     (before, after)
@@ -83,8 +83,8 @@ const LANES: usize = 8;
 #[inline(always)]
 pub fn sum<const SUMS: usize>(count: usize, term: impl Fn(usize) -> [f64; SUMS]) -> [f64; SUMS] {
     let mut sums = [[0.0; SUMS]; LANES];
-    let add = |sums: &mut [f64; SUMS], place: usize| {
-        let terms = term(place);
+    let add = |sums: &mut [f64; SUMS], position: usize| {
+        let terms = term(position);
         sums.iter_mut()
             .zip(terms)
             .for_each(|(sum, term)| *sum += term);
@@ -95,8 +95,8 @@ pub fn sum<const SUMS: usize>(count: usize, term: impl Fn(usize) -> [f64; SUMS])
             add(sums, first + lane);
         }
     }
-    for (lane, place) in (whole..count).enumerate() {
-        add(&mut sums[lane], place);
+    for (lane, position) in (whole..count).enumerate() {
+        add(&mut sums[lane], position);
     }
     std::array::from_fn(|k| sums.iter().map(|lane| lane[k]).sum())
 }

@@ -48,7 +48,7 @@ pub fn linearise(
                 let ratio = thickness * grid.span(1, first + cell, first + cell + 1) / width;
                 let inverse = thickness * thickness / ratio;
                 let quarter = 0.25 * thickness;
-                let place = first + cell + 1;
+                let position = first + cell + 1;
                 let values = [
                     ratio * a0[cell],
                     ratio * a2[cell],
@@ -62,7 +62,7 @@ pub fn linearise(
                     quarter * a8[cell],
                 ];
                 for (array, value) in target.0.iter_mut().zip(values) {
-                    array[place] = value as f32;
+                    array[position] = value as f32;
                 }
             }
         }

@@ -32,7 +32,10 @@ fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
 /// Whether a cell is turned by a right angle or more, which no cell of a clamped plate is: F₁₁ + F₂₂ ≤ 0 in its middle.
 fn is_turned(field: &Field, grid: &Grid) -> bool {
     let [x, y] = &field.components;
-    let cells = grid.coordinates.each_ref().map(|places| places.len() - 1);
+    let cells = grid
+        .coordinates
+        .each_ref()
+        .map(|positions| positions.len() - 1);
     let turned = |column: usize, row: usize| {
         let at = |u: &[f64], [i, j]: [usize; 2]| u[(column + i) * field.width + row + j];
         let along = at(x, [1, 0]) + at(x, [1, 1]) - at(x, [0, 0]) - at(x, [0, 1]);
@@ -218,11 +221,11 @@ fn it_stops_at_a_tenth_of_the_discretisation_error_and_knows_how_large_that_is()
 fn graded_grids_have_the_equations_of_finite_elements_on_them() {
     let problem = problem("neo-hooke", [90.0, 30.0], 0.4);
     let graded = |length: f64, elements: usize| -> Vec<f64> {
-        let place = |i: usize| {
+        let position = |i: usize| {
             let x = i as f64 / elements as f64;
             length * (x - 0.6 * (std::f64::consts::TAU * x).sin() / std::f64::consts::TAU)
         };
-        (0..=elements).map(place).collect()
+        (0..=elements).map(position).collect()
     };
     let boundaries = [graded(90.0, 24), graded(30.0, 10)];
     let mut climb = Climb::new(&problem, boundaries, DifferenceScheme::Gauss, TIGHT);

@@ -106,8 +106,8 @@ fn internal_forces(
 
 /// The longer side of a box around the free unknowns in mm; 1 where their places are not known.
 fn extent(assembly: &Assembly) -> f64 {
-    assembly.places().map_or(1.0, |places| {
-        let [low, high] = bounding_box(places);
+    assembly.positions().map_or(1.0, |positions| {
+        let [low, high] = bounding_box(positions);
         (high[0] - low[0]).max(high[1] - low[1])
     })
 }

@@ -237,7 +237,9 @@ impl EquationOfMotion<'_> {
             return 0.0;
         };
         let diagonal = self.assembly.pattern().diagonal().iter();
-        diagonal.fold(0.0, |most: f64, place| most.max(frame.stiffness[*place]))
+        diagonal.fold(0.0, |most: f64, position| {
+            most.max(frame.stiffness[*position])
+        })
     }
 
     /// The largest force in N: elastic, including reactions, or inertial.

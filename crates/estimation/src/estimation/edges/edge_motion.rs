@@ -51,7 +51,7 @@ enum Part {
 /// The displacements of all edges that are not free, as a function u_B(p) of parameters p in mm and rad.
 #[derive(Clone, Debug)]
 pub struct EdgeMotion {
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     parts: Vec<Part>,
     parameters: usize,
 }
@@ -67,7 +67,7 @@ impl EdgeMotion {
         spacing: f64,
     ) -> Self {
         let mut motion = Self {
-            places: mesh.nodes.clone(),
+            positions: mesh.nodes.clone(),
             parts: Vec::new(),
             parameters: 0,
         };
@@ -122,8 +122,8 @@ impl EdgeMotion {
             .into_iter()
             .for_each(|axis| hold(&nodes, axis, moved));
         let centre = [0, 1].map(|axis| {
-            let places = nodes.iter().map(|node| self.places[*node][axis]);
-            places.sum::<f64>() / nodes.len() as f64
+            let positions = nodes.iter().map(|node| self.positions[*node][axis]);
+            positions.sum::<f64>() / nodes.len() as f64
         });
         let first = self.take(3);
         self.parts.push(Part::Rigid {
@@ -156,8 +156,8 @@ impl EdgeMotion {
             coefficients.push(end(self, last));
             coefficients
         });
-        let along = segment.nodes.iter().zip(&segment.places);
-        let nodes = along.map(|(node, place)| (*node, place / length));
+        let along = segment.nodes.iter().zip(&segment.positions);
+        let nodes = along.map(|(node, position)| (*node, position / length));
         self.parts.push(Part::Smooth {
             name: segment.name.clone(),
             spline,
@@ -198,9 +198,9 @@ impl EdgeMotion {
                 } => {
                     for axis in [0, 1] {
                         let q = combinations(&unknowns, &coefficients[axis], p);
-                        for (node, place) in nodes {
+                        for (node, position) in nodes {
                             unknowns.entry(2 * node + axis).or_insert_with(|| {
-                                Combination::sum(&q, spline.derivatives(*place, 0))
+                                Combination::sum(&q, spline.derivatives(*position, 0))
                             });
                         }
                     }
@@ -220,7 +220,7 @@ impl EdgeMotion {
     ) {
         let (sine, cosine) = p[first + 2].sin_cos();
         for node in nodes {
-            let [x, y] = [0, 1].map(|axis| self.places[*node][axis] - centre[axis]);
+            let [x, y] = [0, 1].map(|axis| self.positions[*node][axis] - centre[axis]);
             let turned = [cosine * x - sine * y - x, sine * x + cosine * y - y];
             let slope = [-sine * x - cosine * y, cosine * x - sine * y];
             for axis in [0, 1] {

@@ -35,9 +35,9 @@ impl BodyForce {
         });
         let count = splines[0].count() * splines[1].count();
         let mut columns = vec![vec![0.0; held.len()]; 2 * count];
-        for (node, place) in mesh.nodes.iter().enumerate() {
-            for (i, x) in splines[0].derivatives(place[0], 0) {
-                for (j, y) in splines[1].derivatives(place[1], 0) {
+        for (node, position) in mesh.nodes.iter().enumerate() {
+            for (i, x) in splines[0].derivatives(position[0], 0) {
+                for (j, y) in splines[1].derivatives(position[1], 0) {
                     let function = i * splines[1].count() + j;
                     for axis in [0, 1].into_iter().filter(|axis| !held[2 * node + axis]) {
                         columns[axis * count + function][2 * node + axis] = areas[node] * x * y;
@@ -73,15 +73,18 @@ impl BodyForce {
         let count = self.columns.len() / 2;
         let first = parameters.len() - self.columns.len();
         let along = |axis: usize| {
-            let places = first + axis * count..first + (axis + 1) * count;
+            let positions = first + axis * count..first + (axis + 1) * count;
             let mut slopes = DMatrix::zeros(count, parameters.len());
-            for (row, place) in places.clone().enumerate() {
-                slopes[(row, place)] = self.scale;
+            for (row, position) in positions.clone().enumerate() {
+                slopes[(row, position)] = self.scale;
             }
             Roughness {
                 edge: "forces on the interior".into(),
                 axis,
-                values: parameters[places].iter().map(|c| self.scale * c).collect(),
+                values: parameters[positions]
+                    .iter()
+                    .map(|c| self.scale * c)
+                    .collect(),
                 slopes,
                 rank: count,
             }

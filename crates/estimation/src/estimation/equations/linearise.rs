@@ -26,16 +26,16 @@ impl Equations<'_> {
     /// The equations and the observations about a place.
     pub(in crate::estimation) fn linearise(
         &mut self,
-        place: &SearchState,
+        state: &SearchState,
     ) -> Result<Linear, Error> {
-        let (mesh, field) = (self.task.specimen.mesh, &place.field);
+        let (mesh, field) = (self.task.specimen.mesh, &state.field);
         let describe = |cell: usize| mesh.describe_cell(cell);
         let residual =
             self.with_potential(|newton, potential| newton.tangent.at(potential, field, &describe));
         let residual = residual.map_err(solve)?;
-        let motions = self.motion.at(&place.parameters);
+        let motions = self.motion.at(&state.parameters);
         let motions = motions.motions(self.motion.parameters(), field.len());
-        let slopes = self.law_slopes(&place.parameters, field)?;
+        let slopes = self.law_slopes(&state.parameters, field)?;
         let mut forces = vec![residual.clone()];
         for motion in &motions {
             let mut force = vec![0.0; field.len()];

@@ -21,7 +21,7 @@ pub struct Observations {
     /// Index of each marker that lies on the mesh.
     pub chosen: Vec<usize>,
     /// Their places in mm.
-    pub places: Vec<[f64; 2]>,
+    pub positions: Vec<[f64; 2]>,
     /// Their displacements in mm.
     pub displacements: Vec<[f64; 2]>,
     /// The weights of their components, two numbers per marker: 1/variance in 1/mm² where the noise is known, otherwise 1.
@@ -58,7 +58,7 @@ impl Observations {
         let mut all = Self {
             markers: markers.len(),
             chosen: Vec::new(),
-            places: Vec::new(),
+            positions: Vec::new(),
             displacements: Vec::new(),
             weights: Vec::new(),
             known_noise: known > 0,
@@ -93,11 +93,11 @@ impl Observations {
     ) -> Result<(), Diagnostic> {
         let Marker {
             number,
-            place,
+            position,
             displacement,
             ..
         } = *marker;
-        let numbers = place.iter().chain(&displacement);
+        let numbers = position.iter().chain(&displacement);
         if numbers.chain(&deviation).any(|value| !value.is_finite()) {
             let fault = format!("marker {number} has a value that is not a number");
             return Err(Diagnostic::error("", fault).hint("leave the marker out of the frame"));
@@ -107,7 +107,7 @@ impl Observations {
             let fault = format!("marker {number} has the standard deviation {deviation} mm");
             return Err(Diagnostic::error("", fault).hint("give a positive one, or none"));
         }
-        let (cell, local) = mesh.locate(place);
+        let (cell, local) = mesh.locate(position);
         let shape = mesh.shape(cell);
         let size = if shape.is_triangle() { 1.0 } else { 2.0 };
         if shape.outside(local) / size > OUTSIDE {
@@ -120,7 +120,7 @@ impl Observations {
                 .push(nodes.map(|(node, value)| (2 * node + axis, *value)));
         }
         self.chosen.push(index);
-        self.places.push(place);
+        self.positions.push(position);
         self.displacements.push(displacement);
         self.weights.extend([deviation.powi(-2); 2]);
         Ok(())
@@ -152,7 +152,7 @@ impl Observations {
     /// Places and displacements.
     pub fn points(&self) -> Points<'_> {
         Points {
-            places: &self.places,
+            positions: &self.positions,
             displacements: &self.displacements,
         }
     }

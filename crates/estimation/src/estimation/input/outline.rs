@@ -22,13 +22,13 @@ pub struct Segment {
     /// first node is repeated as the last.
     pub nodes: Vec<usize>,
     /// Length along the boundary from the first node to each one in mm; zeros for a pad.
-    pub places: Vec<f64>,
+    pub positions: Vec<f64>,
 }
 
 impl Segment {
     /// Its length in mm.
     pub fn length(&self) -> f64 {
-        self.places[self.places.len() - 1]
+        self.positions[self.positions.len() - 1]
     }
 
     /// Both end nodes; they are the same for a closed one.
@@ -67,7 +67,7 @@ pub fn parts(mesh: &Mesh, edges: &[(String, EdgeCondition)]) -> Result<Vec<Segme
                 condition: Some(number),
                 outer: false,
                 inside: true,
-                places: vec![0.0; inner.len()],
+                positions: vec![0.0; inner.len()],
                 nodes: inner,
             });
         }
@@ -185,7 +185,7 @@ fn divide(
             None => starts[0] + count,
         };
         let edges = (*start..end).map(|edge| chain[edge % count]);
-        let (nodes, places) = walk(mesh, edges);
+        let (nodes, positions) = walk(mesh, edges);
         let condition = label(*start);
         let name = match condition {
             Some(number) => groups[number].to_owned(),
@@ -197,14 +197,14 @@ fn divide(
             outer,
             inside: false,
             nodes,
-            places,
+            positions,
         });
     }
 }
 
 /// Nodes along edges and their places in mm.
 fn walk<'a>(mesh: &Mesh, edges: impl Iterator<Item = &'a Vec<usize>>) -> (Vec<usize>, Vec<f64>) {
-    let (mut nodes, mut places, mut length) = (Vec::new(), vec![0.0], 0.0);
+    let (mut nodes, mut positions, mut length) = (Vec::new(), vec![0.0], 0.0);
     for edge in edges {
         if nodes.is_empty() {
             nodes.push(edge[0]);
@@ -212,10 +212,10 @@ fn walk<'a>(mesh: &Mesh, edges: impl Iterator<Item = &'a Vec<usize>>) -> (Vec<us
         for node in edge[2..].iter().chain([&edge[1]]) {
             length += distance(mesh.nodes[nodes[nodes.len() - 1]], mesh.nodes[*node]);
             nodes.push(*node);
-            places.push(length);
+            positions.push(length);
         }
     }
-    (nodes, places)
+    (nodes, positions)
 }
 
 /// Numbers parts that no group names and that would have one name, as they follow each other; numbers that named ones have are left out.

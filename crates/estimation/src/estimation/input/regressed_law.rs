@@ -21,7 +21,7 @@ pub struct RegressedLaw {
     plane: PlaneState,
     all: Vec<Parameter>,
     chosen: Vec<Parameter>,
-    places: Vec<usize>,
+    positions: Vec<usize>,
 }
 
 /// A law with one parameter a little smaller and larger, and the width between.
@@ -64,7 +64,7 @@ impl RegressedLaw {
                 .chain(resistance(card))
                 .collect(),
             chosen: Vec::new(),
-            places: Vec::new(),
+            positions: Vec::new(),
         };
         let known: Vec<&str> = law.all.iter().map(|parameter| parameter.key).collect();
         let own: Vec<&str> = match keys {
@@ -72,21 +72,21 @@ impl RegressedLaw {
             _ => keys.to_vec(),
         };
         for key in &own {
-            let Some(place) = known.iter().position(|known| known == key) else {
+            let Some(position) = known.iter().position(|known| known == key) else {
                 let message = format!("the card `{}` has no parameter `{key}`", card.name);
                 return fault(message, &suggestion(key, &known, "its parameters are"));
             };
-            if law.places.contains(&place) || law.all[place].value == 0.0 {
+            if law.positions.contains(&position) || law.all[position].value == 0.0 {
                 let message = format!("the parameter `{key}` is given twice, or zero on the card");
                 return fault(
                     message,
                     "name each once, with a non-zero initial value on the card",
                 );
             }
-            law.places.push(place);
-            law.chosen.push(law.all[place].clone());
+            law.positions.push(position);
+            law.chosen.push(law.all[position].clone());
         }
-        if law.places.is_empty() {
+        if law.positions.is_empty() {
             let hint = "name those to be estimated, or all";
             return fault("no parameter is to be estimated".into(), hint);
         }
@@ -195,8 +195,8 @@ impl RegressedLaw {
     /// The law with other values.
     pub fn at(&self, values: &[f64]) -> Arc<dyn HyperelasticLaw> {
         let mut all: Vec<f64> = self.all.iter().map(|one| one.value).collect();
-        for (place, value) in self.places.iter().zip(values) {
-            all[*place] = *value;
+        for (position, value) in self.positions.iter().zip(values) {
+            all[*position] = *value;
         }
         let (law, _) = self.law.with_values(&all, self.measures.0, self.measures.1);
         let law: Arc<dyn HyperelasticLaw> = Arc::from(law);

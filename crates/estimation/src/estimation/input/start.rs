@@ -23,7 +23,7 @@ pub struct Polynomial {
 /// Places and displacements of markers in mm.
 pub struct Points<'a> {
     /// Places.
-    pub places: &'a [[f64; 2]],
+    pub positions: &'a [[f64; 2]],
     /// Displacements.
     pub displacements: &'a [[f64; 2]],
 }
@@ -44,7 +44,7 @@ impl Polynomial {
     pub fn trimmed(points: &Points, degree: usize) -> Option<Self> {
         const SAMPLES: usize = 300;
         const KEPT: usize = 10;
-        let stride = points.places.len().div_ceil(3000).max(1);
+        let stride = points.positions.len().div_ceil(3000).max(1);
         let rows = Rows::new(points, degree, stride);
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let samples: Vec<_> = (0..SAMPLES)
@@ -62,16 +62,16 @@ impl Polynomial {
     }
 
     /// The displacement at a place in mm.
-    pub fn at(&self, place: [f64; 2]) -> [f64; 2] {
-        let terms = DVector::from_vec(terms(local(place, self.centre, self.size), self.degree));
+    pub fn at(&self, position: [f64; 2]) -> [f64; 2] {
+        let terms = DVector::from_vec(terms(local(position, self.centre, self.size), self.degree));
         [0, 1].map(|axis| self.coefficients.column(axis).dot(&terms))
     }
 
     fn distances(&self, points: &Points) -> Vec<f64> {
-        let pairs = points.places.iter().zip(points.displacements);
+        let pairs = points.positions.iter().zip(points.displacements);
         pairs
-            .map(|(place, displacement)| {
-                let [x, y] = self.at(*place);
+            .map(|(position, displacement)| {
+                let [x, y] = self.at(*position);
                 (displacement[0] - x).hypot(displacement[1] - y)
             })
             .collect()
@@ -104,13 +104,13 @@ struct Rows {
 impl Rows {
     /// Every so many of the markers.
     fn new(points: &Points, degree: usize, stride: usize) -> Self {
-        let [centre, [size, _]] = frame(points.places);
-        let places = points.places.iter().step_by(stride);
+        let [centre, [size, _]] = frame(points.positions);
+        let positions = points.positions.iter().step_by(stride);
         let displacements = points.displacements.iter().step_by(stride);
         Self {
             count: terms([0.0; 2], degree).len(),
-            terms: places
-                .flat_map(|place| terms(local(*place, centre, size), degree))
+            terms: positions
+                .flat_map(|position| terms(local(*position, centre, size), degree))
                 .collect(),
             displacements: displacements.copied().collect(),
             centre,
@@ -197,16 +197,16 @@ impl Rows {
 }
 
 /// The middle of the box around places, and half its longer side (twice).
-fn frame(places: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let limits = [0, 1].map(|axis| extremes(places.iter().map(|place| place[axis])));
+fn frame(positions: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let limits = [0, 1].map(|axis| extremes(positions.iter().map(|position| position[axis])));
     let size = limits
         .iter()
         .fold(0.0_f64, |size, [low, high]| size.max(0.5 * (high - low)));
     [limits.map(|[low, high]| 0.5 * (low + high)), [size; 2]]
 }
 
-fn local(place: [f64; 2], centre: [f64; 2], size: f64) -> [f64; 2] {
-    [0, 1].map(|axis| (place[axis] - centre[axis]) / size)
+fn local(position: [f64; 2], centre: [f64; 2], size: f64) -> [f64; 2] {
+    [0, 1].map(|axis| (position[axis] - centre[axis]) / size)
 }
 
 /// All xᵃyᵇ with a + b up to the degree.
@@ -234,18 +234,18 @@ mod tests {
 
     #[test]
     fn a_third_of_wrong_markers_does_not_move_it() {
-        let places = grid();
-        let mut displacements: Vec<_> = places.iter().map(|place| field(*place)).collect();
-        for index in (0..places.len()).step_by(3) {
+        let positions = grid();
+        let mut displacements: Vec<_> = positions.iter().map(|position| field(*position)).collect();
+        for index in (0..positions.len()).step_by(3) {
             displacements[index] = [30.0 + index as f64, -20.0];
         }
         let points = Points {
-            places: &places,
+            positions: &positions,
             displacements: &displacements,
         };
         let found = Polynomial::trimmed(&points, DEGREE).unwrap();
-        for place in &places {
-            let (a, b) = (found.at(*place), field(*place));
+        for position in &positions {
+            let (a, b) = (found.at(*position), field(*position));
             assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8);
         }
         let plain = Polynomial::nearest(&points, DEGREE).unwrap();
@@ -254,10 +254,10 @@ mod tests {
 
     #[test]
     fn too_few_markers_determine_nothing() {
-        let places = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
+        let positions = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
         let displacements = [[0.0; 2]; 3];
         let points = Points {
-            places: &places,
+            positions: &positions,
             displacements: &displacements,
         };
         assert!(Polynomial::nearest(&points, 1).is_none());

@@ -31,7 +31,7 @@ pub struct Frame<'a> {
 /// The state of a frame's search.
 #[derive(Clone)]
 pub struct State {
-    place: SearchState,
+    state: SearchState,
     variances: VarianceComponents,
     /// Sₖ.
     pub information: DMatrix<f64>,
@@ -138,7 +138,7 @@ impl<'a> Frame<'a> {
         settled: bool,
     ) -> Result<State, Error> {
         let nearest = self.nearest(law, from, settled)?;
-        let (place, variances) = (nearest.place(), nearest.variances.clone());
+        let (state, variances) = (nearest.state(), nearest.variances.clone());
         let Reduced {
             information,
             score,
@@ -149,7 +149,7 @@ impl<'a> Frame<'a> {
             information,
             score,
             misfit,
-            place,
+            state,
             variances,
         })
     }
@@ -161,12 +161,12 @@ impl<'a> Frame<'a> {
     pub fn information(&self, law: &RegressedLaw, from: &State) -> Result<FrameInformation, Error> {
         let nearest = self.nearest(law, Some(from), true)?;
         let observations = &self.observations;
-        let sites = Sites::new(observations.places.clone());
+        let sites = Sites::new(observations.positions.clone());
         let noise = correlated_noise(&nearest);
         let markers = observations.chosen.len() as f64;
         let independent = 2.0
             * noise.map_or(markers, |noise| {
-                noise.correlation.independent(sites.places())
+                noise.correlation.independent(sites.positions())
             });
         let markers_deviance = if observations.known_noise {
             nearest.misfit(&nearest) * independent / (2.0 * markers)
@@ -242,13 +242,13 @@ impl<'a> Frame<'a> {
         };
         let search = Equations::new(&task, &self.edges)?;
         let Some(State {
-            place, variances, ..
+            state, variances, ..
         }) = from
         else {
             return search.run(MOST_STEPS);
         };
         let adjusting = if settled { 0 } else { VARIANCE_STEPS };
-        search.run_from(place.clone(), variances.clone(), adjusting, MOST_STEPS)
+        search.run_from(state.clone(), variances.clone(), adjusting, MOST_STEPS)
     }
 
     /// The equations about a field, and what the law's parameters have of them.
@@ -262,7 +262,7 @@ impl<'a> Frame<'a> {
             law: Some(law.clone()),
             ..self.source.knowledge.clone()
         };
-        let mut place = nearest.place();
+        let mut state = nearest.state();
         let NearestField {
             mut equations,
             variances,
@@ -272,9 +272,9 @@ impl<'a> Frame<'a> {
         let values = law.start();
         let first = equations.motion.parameters();
         let of_law = first..first + values.len();
-        place.parameters.splice(first..first, values);
-        let linear = equations.linearise(&place)?;
-        let regression = equations.regression(&place, true, &linear);
+        state.parameters.splice(first..first, values);
+        let linear = equations.linearise(&state)?;
+        let regression = equations.regression(&state, true, &linear);
         let normal = regression.equations(&variances);
         let gain = knowledge.measured_forces().iter();
         let gain = gain.map(|one| one.common_deviation * one.force / one.standard_deviation);
@@ -282,7 +282,7 @@ impl<'a> Frame<'a> {
             .force_rows
             .0
             .tr_mul(&DVector::from_vec(gain.collect()));
-        let magnified = equations.magnified(&place.field);
+        let magnified = equations.magnified(&state.field);
         let magnified = equations.target_of(&magnified, &linear, &variances);
         Ok(LawEquations {
             reduced: Reduced::new(&normal, of_law)?,

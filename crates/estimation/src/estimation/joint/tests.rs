@@ -68,19 +68,19 @@ impl Series {
             forces: Vec::new(),
         };
         for state in &states {
-            let places = (0..21)
+            let positions = (0..21)
                 .flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
-            let marker = |(number, place): (usize, [f64; 2])| Marker {
+            let marker = |(number, position): (usize, [f64; 2])| Marker {
                 number,
-                place,
+                position,
                 displacement: fine
-                    .displacement_at(&state.displacement, place)
+                    .displacement_at(&state.displacement, position)
                     .map(|u| u + noise[0] * draw()),
                 standard_deviation: None,
             };
             series
                 .markers
-                .push(places.enumerate().map(marker).collect());
+                .push(positions.enumerate().map(marker).collect());
             let force = discretised.reaction(state, "right")[0];
             series.forces.push(force * (1.0 + noise[1] * draw()));
         }

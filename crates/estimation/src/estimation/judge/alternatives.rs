@@ -81,8 +81,8 @@ impl NearestField<'_> {
         let mesh = self.equations.task.specimen.mesh;
         let (areas, whole) = (nodal_areas(mesh), mesh.bounding_box());
         let mut forces = vec![vec![0.0; self.field.len()]; 12];
-        for (node, place) in mesh.nodes.iter().enumerate() {
-            for (shape, value) in shapes(*place, whole).into_iter().enumerate() {
+        for (node, position) in mesh.nodes.iter().enumerate() {
+            for (shape, value) in shapes(*position, whole).into_iter().enumerate() {
                 for axis in [0, 1] {
                     forces[6 * axis + shape][2 * node + axis] = areas[node] * value;
                 }
@@ -93,9 +93,9 @@ impl NearestField<'_> {
 
     fn varied_stiffness(&self) -> Vec<Vec<f64>> {
         let whole = self.equations.task.specimen.mesh.bounding_box();
-        self.stresses(5, &|cell, place, kinematics| {
+        self.stresses(5, &|cell, position, kinematics| {
             let stress = self.equations.law(cell).stress(kinematics).1;
-            let shapes = shapes(place, whole);
+            let shapes = shapes(position, whole);
             shapes[1..].iter().map(|shape| stress * *shape).collect()
         })
     }
@@ -147,7 +147,7 @@ impl NearestField<'_> {
                 .iter()
                 .flat_map(|node| [self.field[2 * node], self.field[2 * node + 1]])
                 .collect();
-            let centre = mesh.place(cell, mesh.shape(cell).centre());
+            let centre = mesh.position(cell, mesh.shape(cell).centre());
             for point in self.equations.energy.cell_points(cell) {
                 let Ok(kinematics) = Kinematics::new(&point.gradient(&own)) else {
                     continue;
@@ -168,10 +168,10 @@ impl NearestField<'_> {
 }
 
 /// 1, x, y, x², xy, y² of a place, from −1 to 1 between the lower left and the upper right corner of the specimen.
-fn shapes(place: [f64; 2], [low, high]: [[f64; 2]; 2]) -> [f64; 6] {
+fn shapes(position: [f64; 2], [low, high]: [[f64; 2]; 2]) -> [f64; 6] {
     let [x, y] = [0, 1].map(|axis| {
         let size = (high[axis] - low[axis]).max(f64::MIN_POSITIVE);
-        2.0 * (place[axis] - low[axis]) / size - 1.0
+        2.0 * (position[axis] - low[axis]) / size - 1.0
     });
     [1.0, x, y, x * x, x * y, y * y]
 }

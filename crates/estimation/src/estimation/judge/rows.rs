@@ -36,7 +36,7 @@ impl Rows {
     /// The rows; `None` where there are few, or where the residuals are no more than the mesh's own error and the rounding of numbers.
     pub fn new(found: &NearestField, sound: &[f64], own: Option<&MeshError>) -> Option<Self> {
         let observations = found.observations();
-        let count = observations.places.len();
+        let count = observations.positions.len();
         let mut chosen: Vec<usize> = (0..count).filter(|row| sound[*row] > 0.0).collect();
         // Where most are outliers, sound markers cannot be distinguished.
         if 2 * chosen.len() < count {
@@ -55,13 +55,16 @@ impl Rows {
             weights.map(|weight| (weight * trust / found.variances.sound).sqrt())
         };
         let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
-        let places: Vec<[f64; 2]> = chosen.iter().map(|row| observations.places[*row]).collect();
+        let positions: Vec<[f64; 2]> = chosen
+            .iter()
+            .map(|row| observations.positions[*row])
+            .collect();
         let extent = [0, 1].map(|axis| {
-            let [low, high] = extremes(places.iter().map(|place| place[axis]));
+            let [low, high] = extremes(positions.iter().map(|position| position[axis]));
             (high - low).max(f64::MIN_POSITIVE)
         });
         Some(Self {
-            sites: Sites::new(places),
+            sites: Sites::new(positions),
             spacing: (extent[0] * extent[1] / chosen.len() as f64).sqrt(),
             extent,
             chosen,
@@ -73,22 +76,22 @@ impl Rows {
     pub fn clusters(&self) -> Clusters {
         const MOST: usize = 3000;
         const TOGETHER: usize = 30;
-        let places = self.sites.places();
-        if places.len() <= MOST {
+        let positions = self.sites.positions();
+        if positions.len() <= MOST {
             return Clusters {
-                chosen: (0..places.len()).collect(),
+                chosen: (0..positions.len()).collect(),
                 sites: self.sites.clone(),
             };
         }
-        let around = nearest(places, TOGETHER - 1);
-        let first = (0..places.len()).step_by(places.len() * TOGETHER / MOST);
+        let around = nearest(positions, TOGETHER - 1);
+        let first = (0..positions.len()).step_by(positions.len() * TOGETHER / MOST);
         let mut chosen: Vec<usize> = first
             .flat_map(|index| around[index].iter().copied().chain([index]))
             .collect();
         chosen.sort_unstable();
         chosen.dedup();
         Clusters {
-            sites: Sites::new(chosen.iter().map(|index| places[*index]).collect()),
+            sites: Sites::new(chosen.iter().map(|index| positions[*index]).collect()),
             chosen,
         }
     }

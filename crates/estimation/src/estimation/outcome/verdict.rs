@@ -271,7 +271,7 @@ pub struct Trial {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Worst {
     /// The place in mm.
-    pub place: [f64; 2],
+    pub position: [f64; 2],
     /// The mean of measured less corrected displacement of the markers around it in mm.
     pub misfit: [f64; 2],
 }

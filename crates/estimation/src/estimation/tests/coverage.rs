@@ -120,15 +120,15 @@ fn without_noise_the_intervals_hold_the_truth() {
 fn stress_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
     let (mut inside, mut count) = (0.0, 0.0);
     for (cell, stress) in found.cells.iter().enumerate() {
-        let place = mesh.place(cell, mesh.shape(cell).centre());
-        let near = |x: f64, y: f64| (place[0] - x).hypot(place[1] - y) < 0.2 * SIZE[1];
+        let position = mesh.position(cell, mesh.shape(cell).centre());
+        let near = |x: f64, y: f64| (position[0] - x).hypot(position[1] - y) < 0.2 * SIZE[1];
         if [0.0, SIZE[0]]
             .iter()
             .any(|x| near(*x, 0.0) || near(*x, SIZE[1]))
         {
             continue;
         }
-        let (at, local) = truth.mesh.locate(place);
+        let (at, local) = truth.mesh.locate(position);
         let gradient = truth.mesh.gradient_at(truth.field(), at, local);
         let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
         let exact: [f64; 4] = law().stress(&kinematics).1.into();
@@ -173,7 +173,7 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
     let mut markers = truth.markers(0.2, 5);
     let wave = |[x, y]: [f64; 2]| 0.3 * (x / 5.0).sin() * (y / 5.0).cos();
     for marker in &mut markers {
-        let wave = wave(marker.place);
+        let wave = wave(marker.position);
         marker.displacement = marker.displacement.map(|u| u + wave);
     }
     let found = estimate(

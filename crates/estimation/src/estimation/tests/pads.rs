@@ -23,16 +23,16 @@ fn pulled(cells: [usize; 2]) -> (Mesh, Vec<f64>, [f64; 2]) {
 #[test]
 fn a_rigid_pad_inside_of_the_sheet_has_one_motion_and_one_force() {
     let (mesh, field, force) = pulled([24, 12]);
-    let places =
+    let positions =
         (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
-    let markers: Vec<Marker> = places
+    let markers: Vec<Marker> = positions
         .enumerate()
-        .map(|(number, place)| {
+        .map(|(number, position)| {
             let jitter = |axis: usize| 0.01 * (((7 * number + 3 * axis) % 11) as f64 - 5.0) / 5.0;
-            let u = mesh.displacement_at(&field, place);
+            let u = mesh.displacement_at(&field, position);
             Marker {
                 number,
-                place,
+                position,
                 displacement: [u[0] + jitter(0), u[1] + jitter(1)],
                 standard_deviation: None,
             }

@@ -79,8 +79,8 @@ impl Truth {
         &self.displacement
     }
 
-    pub(in super::super) fn at(&self, place: [f64; 2]) -> [f64; 2] {
-        self.mesh.displacement_at(&self.displacement, place)
+    pub(in super::super) fn at(&self, position: [f64; 2]) -> [f64; 2] {
+        self.mesh.displacement_at(&self.displacement, position)
     }
 
     /// 21 × 11 markers with normal noise.
@@ -89,7 +89,7 @@ impl Truth {
             (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
         noisy(
             &grid.collect::<Vec<_>>(),
-            &|place| self.at(place),
+            &|position| self.at(position),
             noise,
             seed,
         )
@@ -104,20 +104,20 @@ impl Truth {
 
 /// Markers of a field with normal noise.
 pub(super) fn noisy(
-    places: &[[f64; 2]],
+    positions: &[[f64; 2]],
     field: &dyn Fn([f64; 2]) -> [f64; 2],
     noise: f64,
     seed: u64,
 ) -> Vec<Marker> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
-    let marker = |(number, place): (usize, &[f64; 2])| Marker {
+    let marker = |(number, position): (usize, &[f64; 2])| Marker {
         number,
-        place: *place,
-        displacement: field(*place).map(|u| u + noise * draw()),
+        position: *position,
+        displacement: field(*position).map(|u| u + noise * draw()),
         standard_deviation: None,
     };
-    places.iter().enumerate().map(marker).collect()
+    positions.iter().enumerate().map(marker).collect()
 }
 
 pub(super) fn estimate_mesh() -> Mesh {

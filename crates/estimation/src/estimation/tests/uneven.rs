@@ -8,9 +8,9 @@ use crate::statistics::extremes;
 
 /// 31 × 16 places, the outermost on the edges.
 fn grid() -> Vec<[f64; 2]> {
-    let places =
+    let positions =
         (0..31).flat_map(|i| (0..16).map(move |j| [2.0 * f64::from(i), 2.0 * f64::from(j)]));
-    places.collect()
+    positions.collect()
 }
 
 /// Markers of a field with noise of one size of each component at each place.
@@ -21,12 +21,12 @@ fn markers(
 ) -> Vec<Marker> {
     let mut all = noisy(&grid(), &|_| [0.0; 2], 1.0, seed);
     for Marker {
-        place,
+        position,
         displacement,
         ..
     } in &mut all
     {
-        let (u, size) = (field(*place), size(*place));
+        let (u, size) = (field(*position), size(*position));
         *displacement = [0, 1].map(|axis| u[axis] + size[axis] * displacement[axis]);
     }
     all
@@ -50,7 +50,7 @@ fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
     let (mut held, mut explained) = (0, 0);
     for size in sizes {
         for seed in 0..4 {
-            let markers = markers(&|place| truth.at(place), size, seed);
+            let markers = markers(&|position| truth.at(position), size, seed);
             let knowledge = with_grips(EdgeCondition::Rigid);
             let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
             explained += usize::from(found.verdict.answer != Answer::NotExplained);
@@ -95,7 +95,7 @@ fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals(
         ..Knowledge::default()
     };
     for seed in 0..4 {
-        let at = |place| fine.displacement_at(field, place);
+        let at = |position| fine.displacement_at(field, position);
         let markers = markers(&at, &|_| [0.01; 2], seed);
         let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
         let force = found.forces.iter().find(|force| force.edge == "right");

@@ -10,25 +10,25 @@ use super::*;
 use crate::mesh::{CellShape, Mesh};
 
 /// 31 × 18 markers on the plate.
-fn places() -> Vec<[f64; 2]> {
+fn positions() -> Vec<[f64; 2]> {
     let [along, across] = SIZE.map(|size| size * 0.98);
-    let place = |i: usize, j: usize| {
+    let position = |i: usize, j: usize| {
         [
             0.01 * SIZE[0] + along * i as f64 / 30.0,
             0.01 * SIZE[1] + across * j as f64 / 17.0,
         ]
     };
     (0..31)
-        .flat_map(|i| (0..18).map(move |j| place(i, j)))
+        .flat_map(|i| (0..18).map(move |j| position(i, j)))
         .collect()
 }
 
 /// The root of the covariance e^(−d/ℓ) of the places.
-fn root(places: &[[f64; 2]], length: f64) -> DMatrix<f64> {
+fn root(positions: &[[f64; 2]], length: f64) -> DMatrix<f64> {
     let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-    let count = places.len();
+    let count = positions.len();
     let covariance = DMatrix::from_fn(count, count, |i, j| {
-        (-far(places[i], places[j]) / length).exp()
+        (-far(positions[i], positions[j]) / length).exp()
     });
     covariance.cholesky().unwrap().unpack()
 }
@@ -36,24 +36,26 @@ fn root(places: &[[f64; 2]], length: f64) -> DMatrix<f64> {
 /// Markers with noise of a standard deviation in mm, white or with this root of its covariance.
 fn disturbed(
     truth: &Truth,
-    places: &[[f64; 2]],
+    positions: &[[f64; 2]],
     root: Option<&DMatrix<f64>>,
     noise: f64,
     seed: u64,
 ) -> Vec<Marker> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let white = DMatrix::from_fn(places.len(), 2, |_, _| StandardNormal.sample(&mut random));
+    let white = DMatrix::from_fn(positions.len(), 2, |_, _| {
+        StandardNormal.sample(&mut random)
+    });
     let values = root.map_or(white.clone(), |root| root * &white);
-    let marker = |(number, place): (usize, &[f64; 2])| {
-        let exact = truth.at(*place);
+    let marker = |(number, position): (usize, &[f64; 2])| {
+        let exact = truth.at(*position);
         Marker {
             number,
-            place: *place,
+            position: *position,
             displacement: [0, 1].map(|axis| exact[axis] + noise * values[(number, axis)]),
             standard_deviation: None,
         }
     };
-    places.iter().enumerate().map(marker).collect()
+    positions.iter().enumerate().map(marker).collect()
 }
 
 fn pva() -> Arc<dyn HyperelasticLaw> {
@@ -77,10 +79,10 @@ const LENGTH: f64 = 6.0;
 
 #[test]
 fn too_few_independent_values_leave_the_right_law_undecided_with_intervals_that_hold_the_truth() {
-    let (truth, mesh, places) = (Truth::new(), estimate_mesh(), places());
-    let root = root(&places, LENGTH);
+    let (truth, mesh, positions) = (Truth::new(), estimate_mesh(), positions());
+    let root = root(&positions, LENGTH);
     let estimated = |seed| {
-        let markers = disturbed(&truth, &places, Some(&root), 0.1, seed);
+        let markers = disturbed(&truth, &positions, Some(&root), 0.1, seed);
         found(law(), &mesh, &markers)
     };
     let all: Vec<FieldEstimate> = (0..8).into_par_iter().map(estimated).collect();
@@ -106,13 +108,13 @@ fn too_few_independent_values_leave_the_right_law_undecided_with_intervals_that_
 
 #[test]
 fn a_wrong_law_is_refuted_by_white_noise_and_never_explained_by_correlated_noise() {
-    let (truth, mesh, places) = (Truth::new(), estimate_mesh(), places());
-    let root = root(&places, LENGTH);
+    let (truth, mesh, positions) = (Truth::new(), estimate_mesh(), positions());
+    let root = root(&positions, LENGTH);
     for seed in 0..4 {
-        let white = disturbed(&truth, &places, None, 0.02, seed);
+        let white = disturbed(&truth, &positions, None, 0.02, seed);
         let white = found(pva(), &mesh, &white).verdict;
         assert_eq!(white.answer, Answer::NotExplained, "{seed} {white:?}");
-        let noisy = disturbed(&truth, &places, Some(&root), 0.02, seed);
+        let noisy = disturbed(&truth, &positions, Some(&root), 0.02, seed);
         let noisy = found(pva(), &mesh, &noisy);
         assert!(!noisy.is_explained(), "{seed} {:?}", noisy.verdict);
     }
@@ -138,8 +140,8 @@ fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
     let model = problem.on(&truth, &energy).unwrap();
     let states = model.solve(&[0.5, 1.0], NewtonSettings::default(), &|_| ());
     let field = states.unwrap().remove(1).displacement;
-    let at = |place: [f64; 2]| truth.displacement_at(&field, place);
-    let markers = noisy(&places(), &at, 0.02, 3);
+    let at = |position: [f64; 2]| truth.displacement_at(&field, position);
+    let markers = noisy(&positions(), &at, 0.02, 3);
     let roller = EdgeCondition::Known([None, Some(0.0)]);
     for stated in [EdgeCondition::Free, EdgeCondition::Rigid, roller] {
         let mut knowledge = with_grips(EdgeCondition::Rigid);

@@ -107,9 +107,9 @@ impl NearestField<'_> {
         let fine = self.refined(mesh, edges)?;
         let observations = self.equations.task.observations;
         let nearby = observations.interpolation.multiply(&self.field);
-        let places = observations.places.iter();
+        let positions = observations.positions.iter();
         let markers =
-            places.flat_map(|place| fine.mesh.displacement_at(&fine.displacement, *place));
+            positions.flat_map(|position| fine.mesh.displacement_at(&fine.displacement, *position));
         Some(MeshDifference {
             markers: markers.zip(nearby).map(|(a, b)| a - b).collect(),
             forces: self.force_differences(&fine),
@@ -293,11 +293,11 @@ fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<u
 }
 
 /// Whether a place lies on the straight line between two others, but for a tenth of its length.
-fn is_near(place: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
+fn is_near(position: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     const NEAR: f64 = 0.1;
     let side = [to[0] - from[0], to[1] - from[1]];
     let square = dot(&side, &side);
-    let along = [place[0] - from[0], place[1] - from[1]];
+    let along = [position[0] - from[0], position[1] - from[1]];
     let share = (dot(&along, &side) / square).clamp(0.0, 1.0);
     let off = [0, 1].map(|axis| along[axis] - share * side[axis]);
     dot(&off, &off) <= NEAR * NEAR * square

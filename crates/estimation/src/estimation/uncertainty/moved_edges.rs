@@ -94,7 +94,7 @@ impl NearestField<'_> {
         let [a, b] = [mesh.nodes[side[0]], mesh.nodes[side[1]]];
         let middle = [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]));
         let (cell, local) = mesh.locate(middle);
-        let centre = mesh.place(cell, mesh.shape(cell).centre());
+        let centre = mesh.position(cell, mesh.shape(cell).centre());
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let across = [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
         let inwards = [0, 1].map(|axis| across[axis] * (centre[axis] - middle[axis]));
@@ -125,8 +125,8 @@ impl NearestField<'_> {
             let length = along[0].hypot(along[1]);
             let tangent = along.map(|component| component / length);
             for share in [0.5 - HALF, 0.5 + HALF] {
-                let place = [0, 1].map(|axis| a[axis] + share * along[axis]);
-                let (cell, local) = mesh.locate(place);
+                let position = [0, 1].map(|axis| a[axis] + share * along[axis]);
+                let (cell, local) = mesh.locate(position);
                 let gradient = PlaneTensor::from(mesh.gradient_at(&self.field, cell, local));
                 let Ok(kinematics) = Kinematics::new(&gradient) else {
                     continue;
@@ -181,7 +181,7 @@ mod tests {
             .unwrap()
             .mesh(2.0, CellShape::Triangle6);
         let markers = truth.markers(noise, 5).into_iter();
-        let amid = |marker: &Marker| marker.place[1] > 2.0 && marker.place[1] < width - 2.0;
+        let amid = |marker: &Marker| marker.position[1] > 2.0 && marker.position[1] < width - 2.0;
         let markers: Vec<Marker> = markers.filter(amid).collect();
         let knowledge = with_grips(EdgeCondition::Unknown);
         let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
@@ -231,7 +231,7 @@ mod tests {
             let outline = Outline::of_lines(vec![line]).unwrap();
             let mesh = outline.mesh(2.0, CellShape::Triangle6);
             let amid = |marker: &Marker| {
-                let inside = |axis: usize| (1.0..SIZE[axis] - 1.0).contains(&marker.place[axis]);
+                let inside = |axis: usize| (1.0..SIZE[axis] - 1.0).contains(&marker.position[axis]);
                 inside(0) && inside(1)
             };
             let markers = truth.markers(0.01, 5).into_iter();

@@ -30,13 +30,13 @@ impl Equations<'_> {
     pub fn magnified(&self, field: &[f64]) -> Vec<f64> {
         let observations = self.task.observations;
         let moved = observations.interpolation.multiply(field);
-        let places = observations.places.iter().flatten();
-        let mut places: Vec<f64> = places.zip(moved).map(|(x, u)| x + u).collect();
-        let count = observations.places.len() as f64;
-        let middle = [0, 1].map(|axis| places.iter().skip(axis).step_by(2).sum::<f64>() / count);
-        let own = places.iter_mut().enumerate();
-        own.for_each(|(row, place)| *place -= middle[row % 2]);
-        places
+        let positions = observations.positions.iter().flatten();
+        let mut positions: Vec<f64> = positions.zip(moved).map(|(x, u)| x + u).collect();
+        let count = observations.positions.len() as f64;
+        let middle = [0, 1].map(|axis| positions.iter().skip(axis).step_by(2).sum::<f64>() / count);
+        let own = positions.iter_mut().enumerate();
+        own.for_each(|(row, position)| *position -= middle[row % 2]);
+        positions
     }
 }
 
@@ -94,7 +94,7 @@ mod tests {
         let mut markers = truth.markers(NOISE, seed);
         let moved = |marker: &Marker, axis: usize| {
             let middle = 0.5 * SIZE[axis];
-            error * (marker.place[axis] + marker.displacement[axis] - middle)
+            error * (marker.position[axis] + marker.displacement[axis] - middle)
         };
         for marker in &mut markers {
             let by = [moved(marker, 0), moved(marker, 1)];
@@ -148,8 +148,8 @@ mod tests {
         let mut markers = truth.markers(0.01, 3);
         for marker in &mut markers {
             for axis in [0, 1] {
-                let place = marker.place[axis] + marker.displacement[axis];
-                marker.displacement[axis] += 5e-3 * (place - 0.5 * SIZE[axis]);
+                let position = marker.position[axis] + marker.displacement[axis];
+                marker.displacement[axis] += 5e-3 * (position - 0.5 * SIZE[axis]);
             }
         }
         let mesh = Mesh::plate(SIZE, [20, 10], CellShape::Quad9);

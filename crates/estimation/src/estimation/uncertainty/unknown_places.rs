@@ -48,7 +48,7 @@ mod tests {
     /// The estimate by markers amid the plate.
     fn found(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
         let markers = truth.markers(0.3, seed).into_iter();
-        let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.place[1]);
+        let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.position[1]);
         let knowledge = Knowledge {
             edge_gap: gap,
             ..with_grips(EdgeCondition::Rigid)
@@ -62,11 +62,11 @@ mod tests {
         const BESIDE: f64 = 8.0;
         let (mut inside, mut all) = (0, 0);
         for (cell, own) in found.cells.iter().enumerate() {
-            let place = mesh.place(cell, mesh.shape(cell).centre());
-            if (BESIDE..SIZE[1] - BESIDE).contains(&place[1]) {
+            let position = mesh.position(cell, mesh.shape(cell).centre());
+            if (BESIDE..SIZE[1] - BESIDE).contains(&position[1]) {
                 continue;
             }
-            let (there, local) = truth.mesh.locate(place);
+            let (there, local) = truth.mesh.locate(position);
             let gradient = truth.mesh.gradient_at(truth.field(), there, local);
             let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
             let off = own.first_piola_kirchhoff_stress[0] - law().stress(&kinematics).1[0];

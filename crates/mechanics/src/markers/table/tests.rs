@@ -23,10 +23,10 @@ fn unit(unit: f64) -> ReadSettings {
     }
 }
 
-fn marker(number: usize, place: [f64; 2], displacement: [f64; 2]) -> Marker {
+fn marker(number: usize, position: [f64; 2], displacement: [f64; 2]) -> Marker {
     Marker {
         number,
-        place,
+        position,
         displacement,
         standard_deviation: None,
     }
@@ -38,7 +38,7 @@ fn near(found: &[Marker], expected: &[Marker]) {
         assert_eq!(found.number, expected.number);
         for axis in 0..2 {
             assert!(
-                (found.place[axis] - expected.place[axis]).abs() < 1e-12,
+                (found.position[axis] - expected.position[axis]).abs() < 1e-12,
                 "{found:?}"
             );
             let miss = found.displacement[axis] - expected.displacement[axis];
@@ -176,7 +176,7 @@ fn tables_that_only_look_like_those_of_a_program_are_read_as_they_are() {
         assert_eq!(found.understood.layout, "columns");
         let first = found.series.frames[0].markers[0];
         assert_eq!(
-            (first.place, first.standard_deviation),
+            (first.position, first.standard_deviation),
             ([1.0, 2.0], Some(0.5))
         );
     }
@@ -247,7 +247,7 @@ fn files_are_frames_by_the_numbers_of_their_names() {
             .to_string()
             .contains("frames are missing: 12")
     );
-    assert_eq!(found.series.places(), [[0.0, 0.0], [1.0, 0.0]]);
+    assert_eq!(found.series.positions(), [[0.0, 0.0], [1.0, 0.0]]);
 }
 
 #[test]
@@ -362,7 +362,10 @@ fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
             marker(1, [9.0, 0.0], [1.0, 2.0]),
         ],
     );
-    assert_eq!(found.series.places(), [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]);
+    assert_eq!(
+        found.series.positions(),
+        [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]
+    );
     let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
     assert!(
         told[1].contains("duplicate rows") && told[1].contains(": 1"),

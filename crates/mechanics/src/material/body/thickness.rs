@@ -133,8 +133,8 @@ impl<L: BodyLaw> BodySheet<L> {
             })
         };
         let area = (area_change.ln_1p() / 3.0).exp_m1();
-        let place = |step: usize| area + (1.0 + area) * THICKNESSES[step];
-        match rising(place, slope, self.expected(area_change, z)) {
+        let position = |step: usize| area + (1.0 + area) * THICKNESSES[step];
+        match rising(position, slope, self.expected(area_change, z)) {
             Some(ends) => root_between(ends, slope),
             None => f64::NAN,
         }
@@ -176,13 +176,13 @@ fn root_between([mut low, mut high]: [f64; 2], function: impl Fn(f64) -> f64) ->
 /// Of the pieces between ascending places, finds one over which a function rises through zero, and whose middle is
 /// nearest to a number. Nearer ones are checked first, and every place once.
 fn rising(
-    place: impl Fn(usize) -> f64,
+    position: impl Fn(usize) -> f64,
     function: impl Fn(f64) -> f64,
     number: f64,
 ) -> Option<[f64; 2]> {
-    let off = |piece: usize| 0.5 * (place(piece) + place(piece + 1)) - number;
+    let off = |piece: usize| 0.5 * (position(piece) + position(piece + 1)) - number;
     let mut values = vec![None; PIECES + 1];
-    let mut value = |step: usize| *values[step].get_or_insert_with(|| function(place(step)));
+    let mut value = |step: usize| *values[step].get_or_insert_with(|| function(position(step)));
     let (mut above, mut end) = (0, PIECES);
     while above < end {
         let middle = usize::midpoint(above, end);
@@ -197,7 +197,7 @@ fn rising(
         let down = below > 0 && (above == PIECES || -off(below - 1) <= off(above));
         let piece = if down { below - 1 } else { above };
         if value(piece) < 0.0 && value(piece + 1) >= 0.0 {
-            return Some([place(piece), place(piece + 1)]);
+            return Some([position(piece), position(piece + 1)]);
         }
         if down { below -= 1 } else { above += 1 }
     }
@@ -213,20 +213,20 @@ mod tests {
     /// A function that rises through zero in several pieces, and one that never does.
     #[test]
     fn the_nearest_piece_is_found_and_every_place_is_looked_at_once() {
-        let place = |step: usize| (0.01 * step as f64 - 4.8).exp_m1();
+        let position = |step: usize| (0.01 * step as f64 - 4.8).exp_m1();
         for number in [-2.0, -0.9, -0.3, 0.0, 0.7, 11.0, 200.0] {
             for frequency in [0.0, 0.3, 2.0, 9.0] {
                 let function = |x: f64| 0.1 + (frequency * x.ln_1p()).sin();
                 let seen = RefCell::new(Vec::new());
                 let found = rising(
-                    place,
+                    position,
                     |x| {
                         seen.borrow_mut().push(x);
                         function(x)
                     },
                     number,
                 );
-                let pieces = (0..PIECES).map(|piece| [place(piece), place(piece + 1)]);
+                let pieces = (0..PIECES).map(|piece| [position(piece), position(piece + 1)]);
                 let all =
                     pieces.filter(|[low, high]| function(*low) < 0.0 && function(*high) >= 0.0);
                 let off = |[low, high]: &[f64; 2]| (0.5 * (low + high) - number).abs();

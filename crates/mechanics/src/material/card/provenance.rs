@@ -141,12 +141,12 @@ fn require_provenance(root: &Section) {
             && ["title", "citation", "specimen"].contains(&key)
             && section.text(key).starts_with(UNSTATED);
         if says_nothing || !section.has(key) {
-            let place = match table {
+            let position = match table {
                 "" => "at the top".to_owned(),
                 table => format!("under [{table}]"),
             };
             let hint =
-                format!("a card that others use states it {place}, such as `{key} = {example}`");
+                format!("a card that others use states it {position}, such as `{key} = {example}`");
             section.fault(key, "is not stated", &hint);
         }
     }

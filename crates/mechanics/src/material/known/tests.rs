@@ -56,15 +56,18 @@ fn check_tangent(card: &Card, young: f64, ratio: f64) {
     let tangent = card.law.response(&Kinematics::rest()).tangent;
     let along = young / (1.0 - ratio * ratio);
     let shear = 0.5 * young / (1.0 + ratio);
-    for (place, expected) in [
+    for (position, expected) in [
         ((0, 0), along),
         ((3, 3), along),
         ((0, 3), ratio * along),
         ((1, 1), shear),
         ((1, 2), shear),
     ] {
-        let found = tangent[place];
-        let context = format!("{}, ν = {ratio}, {place:?}: {found} {expected}", card.text);
+        let found = tangent[position];
+        let context = format!(
+            "{}, ν = {ratio}, {position:?}: {found} {expected}",
+            card.text
+        );
         assert!((found - expected).abs() < 1e-10 * young, "{context}");
     }
 }

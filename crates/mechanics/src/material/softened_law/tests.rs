@@ -77,7 +77,7 @@ fn the_work_of_a_cycle_is_what_is_dissipated() {
     let gauss = |function: &dyn Fn(f64) -> f64, [low, high]: [f64; 2]| {
         let cells = 400;
         let h = (high - low) / f64::from(cells);
-        let point = |cell: i32, place: f64| low + h * (f64::from(cell) + 0.5 + place);
+        let point = |cell: i32, position: f64| low + h * (f64::from(cell) + 0.5 + position);
         let root = 0.5 / 3.0_f64.sqrt();
         let pairs = |cell| function(point(cell, -root)) + function(point(cell, root));
         (0..cells).map(|cell| 0.5 * h * pairs(cell)).sum::<f64>()

@@ -47,22 +47,24 @@ impl Exemptions {
 #[derive(Default)]
 pub struct Finding {
     pub count: usize,
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
 }
 
 impl Finding {
     pub const SHOWN: usize = 3;
 
-    pub fn add(&mut self, place: [f64; 2]) {
+    pub fn add(&mut self, position: [f64; 2]) {
         self.count += 1;
-        if self.places.len() < Self::SHOWN {
-            self.places.push(place);
+        if self.positions.len() < Self::SHOWN {
+            self.positions.push(position);
         }
     }
 
-    pub fn of(places: impl IntoIterator<Item = [f64; 2]>) -> Self {
+    pub fn of(positions: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let mut found = Self::default();
-        places.into_iter().for_each(|place| found.add(place));
+        positions
+            .into_iter()
+            .for_each(|position| found.add(position));
         found
     }
 
@@ -78,12 +80,16 @@ impl Finding {
     }
 
     pub fn near(&self) -> String {
-        let places: Vec<String> = self.places.iter().map(|place| at(*place)).collect();
-        let beyond = match self.count - self.places.len() {
+        let positions: Vec<String> = self
+            .positions
+            .iter()
+            .map(|position| at(*position))
+            .collect();
+        let beyond = match self.count - self.positions.len() {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        format!("{} mm{beyond}", places.join(", "))
+        format!("{} mm{beyond}", positions.join(", "))
     }
 }
 
@@ -96,8 +102,8 @@ fn digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".into();
     }
-    let place = 4 - value.abs().log10().floor() as i32;
-    let text = format!("{value:.*}", place.clamp(0, 12) as usize);
+    let position = 4 - value.abs().log10().floor() as i32;
+    let text = format!("{value:.*}", position.clamp(0, 12) as usize);
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {

@@ -71,7 +71,7 @@ impl<'a> Sides<'a> {
     }
 
     /// Half way between the ends of a side.
-    pub fn place(&self, side: Side) -> [f64; 2] {
+    pub fn position(&self, side: Side) -> [f64; 2] {
         let [a, b] = side.key.map(|node| self.mesh.nodes[node]);
         [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
     }
@@ -81,7 +81,7 @@ impl<'a> Sides<'a> {
         let overlapping = self.meeting().filter(|sides| {
             sides.len() > 2 || (sides.len() == 2 && sides[0].forward == sides[1].forward)
         });
-        let overlapping = Finding::of(overlapping.map(|sides| self.place(sides[0]))).error(
+        let overlapping = Finding::of(overlapping.map(|sides| self.position(sides[0]))).error(
             [
                 "side has cells that overlap: two on the same side of it",
                 "sides have cells that overlap: two on the same side of each",
@@ -91,7 +91,7 @@ impl<'a> Sides<'a> {
         let apart = self
             .meeting()
             .filter(|sides| sides.len() == 2 && sides[0].middle != sides[1].middle);
-        let apart = Finding::of(apart.map(|sides| self.place(sides[0]))).error(
+        let apart = Finding::of(apart.map(|sides| self.position(sides[0]))).error(
             [
                 "side has another node in its middle for each of its two cells",
                 "sides have another node in their middle for each of their two cells",

@@ -39,8 +39,8 @@ pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
     if !allowed.seams {
         found.extend(seam.or_else(|| boundary.doubled_alone(&doubled)));
     }
-    let places = hanging.iter().map(|node| sides.mesh.nodes[*node]);
-    found.extend(Finding::of(places).error(
+    let positions = hanging.iter().map(|node| sides.mesh.nodes[*node]);
+    found.extend(Finding::of(positions).error(
         [
             "node hangs on a cell's side without being its node",
             "nodes hang on a cell's side without being its nodes",
@@ -122,10 +122,10 @@ impl<'a> Boundary<'a> {
 
     /// The sides that a node lies on without being their node.
     fn touched(&self, node: usize) -> Vec<(Side, Contact)> {
-        let place = self.node(node);
+        let position = self.node(node);
         let around = self
             .buckets
-            .around(place)
+            .around(position)
             .iter()
             .map(|side| self.all[*side]);
         let touch = |side: Side| {
@@ -135,18 +135,18 @@ impl<'a> Boundary<'a> {
             }
             let near = NEAR * self.length(side).min(self.shortest[&node]);
             let is_near =
-                |other: [f64; 2]| (other[0] - place[0]).hypot(other[1] - place[1]) <= near;
+                |other: [f64; 2]| (other[0] - position[0]).hypot(other[1] - position[1]) <= near;
             if let Some(other) = own.into_iter().find(|other| is_near(self.node(*other))) {
                 return Some((side, Contact::Node(other)));
             }
-            let foot = self.foot(side, place)?;
+            let foot = self.foot(side, position)?;
             is_near(foot).then_some((side, Contact::Side))
         };
         around.filter_map(touch).collect()
     }
 
     /// The point of a side that is nearest to a place beside it.
-    fn foot(&self, side: Side, place: [f64; 2]) -> Option<[f64; 2]> {
+    fn foot(&self, side: Side, position: [f64; 2]) -> Option<[f64; 2]> {
         let [a, b] = side.ends().map(|node| self.node(node));
         let bow = self.bow(side);
         let chord = [b[0] - a[0], b[1] - a[1]];
@@ -157,7 +157,7 @@ impl<'a> Boundary<'a> {
         let mut t = 0.5;
         for _ in 0..20 {
             let here = at(t);
-            let miss = (0..2).map(|axis| (place[axis] - here[axis]) * chord[axis]);
+            let miss = (0..2).map(|axis| (position[axis] - here[axis]) * chord[axis]);
             t += miss.sum::<f64>() / square;
         }
         (0.0..=1.0).contains(&t).then(|| at(t))
@@ -198,7 +198,7 @@ impl<'a> Boundary<'a> {
             let count = known.entry([a.min(b), a.max(b)]).or_insert(0);
             *count += 1;
             if *count == 2 {
-                twice.push(self.sides.place(*side));
+                twice.push(self.sides.position(*side));
             }
         }
         Finding::of(twice).error(
@@ -226,14 +226,14 @@ const SEAM: &str = "join them with merge_nodes = \"1e-6 mm\" in [specimen] (--me
 /// Nodes and centres of cells inside of other cells.
 pub fn overlaps(mesh: &Mesh) -> Option<Diagnostic> {
     let corners = (0..mesh.nodes.len()).map(|node| mesh.nodes[node]);
-    let centres = (0..mesh.cell_count()).map(|cell| mesh.place(cell, mesh.shape(cell).centre()));
+    let centres = (0..mesh.cell_count()).map(|cell| mesh.position(cell, mesh.shape(cell).centre()));
     let mut found = Finding::default();
-    for (index, place) in corners.chain(centres).enumerate() {
+    for (index, position) in corners.chain(centres).enumerate() {
         let own = index.checked_sub(mesh.nodes.len());
-        if mesh.holds_inside(place, INSIDE, |cell| {
+        if mesh.holds_inside(position, INSIDE, |cell| {
             own == Some(cell) || (own.is_none() && mesh.cell(cell).contains(&index))
         }) {
-            found.add(place);
+            found.add(position);
         }
     }
     found.error(

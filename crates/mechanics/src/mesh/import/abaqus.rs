@@ -178,8 +178,8 @@ impl Input {
         };
         let number = whole(number)?;
         let z = rest.first().copied().unwrap_or("0");
-        let place = [coordinate(x)?, coordinate(y)?, coordinate(z)?];
-        if self.raw.places.insert(number, place).is_some() {
+        let position = [coordinate(x)?, coordinate(y)?, coordinate(z)?];
+        if self.raw.positions.insert(number, position).is_some() {
             return Err(format!(
                 "the node {number} once more: keep the mesh of one part"
             ));
@@ -323,8 +323,8 @@ mod tests {
     #[test]
     fn nodes_elements_and_sets_are_read() {
         let raw = read(TWO).unwrap();
-        assert_eq!(raw.places.len(), 6);
-        assert_eq!(raw.places[&2], [10.0, 0.0, 0.0]);
+        assert_eq!(raw.positions.len(), 6);
+        assert_eq!(raw.positions[&2], [10.0, 0.0, 0.0]);
         assert_eq!(raw.cells[0], (CellShape::Quad4, vec![1, 2, 5, 4]));
         assert_eq!(raw.cells[1], (CellShape::Triangle3, vec![2, 3, 6]));
         assert_eq!(raw.areas["left half"], [0]);

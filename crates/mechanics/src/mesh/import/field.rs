@@ -141,7 +141,7 @@ fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSe
         Some("vtu" | "vtk") => {
             let (raw, arrays) = vtk::read_with_arrays(path)?;
             let (name, values) = choose(arrays, array)?;
-            let components = values.len() / raw.places.len().max(1);
+            let components = values.len() / raw.positions.len().max(1);
             let pairs = values.chunks_exact(components.max(1)).zip(0..);
             let displacements = pairs.map(|(u, node)| (node, [u[0], u[1]])).collect();
             let steps = vec![(None, displacements)];
@@ -246,12 +246,14 @@ fn choose<T>(
         Some(wanted) => names.iter().position(|name| name == wanted),
         None if names.len() == 1 => Some(0),
         None => {
-            let likely = (0..names.len()).filter(|place| is_displacement(&names[*place]));
+            let likely = (0..names.len()).filter(|position| is_displacement(&names[*position]));
             let likely: Vec<usize> = likely.collect();
-            <[usize; 1]>::try_from(likely).ok().map(|[place]| place)
+            <[usize; 1]>::try_from(likely)
+                .ok()
+                .map(|[position]| position)
         }
     };
-    let place = found.ok_or_else(|| {
+    let position = found.ok_or_else(|| {
         let what = wanted.map_or("array that is surely the displacement".to_owned(), |name| {
             format!("array `{name}` of vectors")
         });
@@ -260,7 +262,7 @@ fn choose<T>(
             names.join(", ")
         )
     })?;
-    Ok(arrays.swap_remove(place))
+    Ok(arrays.swap_remove(position))
 }
 
 /// The length of the unit at the end of an array's name in mm, as in `displacement_mm`.

@@ -111,11 +111,11 @@ impl Reader {
                 self.block = Block::Other;
             }
             (Block::Nodes, ["-1", ..]) => {
-                let place = numbers(line, self.width).ok_or_else(|| fault("place of a node"))?;
+                let position = numbers(line, self.width).ok_or_else(|| fault("place of a node"))?;
                 self.results
                     .raw
-                    .places
-                    .insert(self.node(line, fault)?, place);
+                    .positions
+                    .insert(self.node(line, fault)?, position);
             }
             (Block::Displacements, ["-1", ..]) => {
                 let [x, y, _] = numbers(line, self.width).ok_or_else(|| fault("displacement"))?;
@@ -205,13 +205,13 @@ fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Unrea
 
 /// Takes the mean displacement of all nodes above each other.
 fn flatten(results: &mut Results) -> Result<(), Unreadable> {
-    let places = &results.raw.places;
-    let key = |place: &[f64; 3]| [place[0] + 0.0, place[1] + 0.0].map(f64::to_bits);
+    let positions = &results.raw.positions;
+    let key = |position: &[f64; 3]| [position[0] + 0.0, position[1] + 0.0].map(f64::to_bits);
     let mut columns: HashMap<[u64; 2], Vec<u64>> = HashMap::new();
-    for (node, place) in places {
-        columns.entry(key(place)).or_default().push(*node);
+    for (node, position) in positions {
+        columns.entry(key(position)).or_default().push(*node);
     }
-    if columns.len() * 2 > places.len() {
+    if columns.len() * 2 > positions.len() {
         return Err("contains solids that are not a single layer over a sheet".into());
     }
     for nodes in columns.values_mut() {
@@ -219,14 +219,14 @@ fn flatten(results: &mut Results) -> Result<(), Unreadable> {
     }
     for (_, field) in &mut results.steps {
         let mean = |node: &u64| {
-            let column = &columns[&key(&places[node])];
+            let column = &columns[&key(&positions[node])];
             let known: Vec<_> = column.iter().filter_map(|node| field.get(node)).collect();
             let sum = |axis: usize| known.iter().map(|u| u[axis]).sum::<f64>();
             (*node, [0, 1].map(|axis| sum(axis) / known.len() as f64))
         };
         *field = field
             .keys()
-            .filter(|node| places.contains_key(node))
+            .filter(|node| positions.contains_key(node))
             .map(mean)
             .collect();
     }

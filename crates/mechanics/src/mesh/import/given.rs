@@ -12,7 +12,7 @@ use crate::mesh::cells::Mesh;
 #[derive(Clone, Debug, Default)]
 pub struct MeshData {
     /// The places of the nodes, in the unit that the [reading](MeshReading) names; z is the same everywhere.
-    pub places: Vec<[f64; 3]>,
+    pub positions: Vec<[f64; 3]>,
     /// The cells: the numbers of their nodes among `places`, in VTK's order.
     pub cells: Vec<(CellShape, Vec<usize>)>,
     /// Parts of the boundary by name: both ends of each line.
@@ -39,14 +39,16 @@ impl MeshData {
     }
 
     fn raw(&self) -> Raw {
-        let places = self.places.iter().enumerate();
+        let positions = self.positions.iter().enumerate();
         let cells = self.cells.iter();
         let lines = |ends: &Vec<[usize; 2]>| {
             let ends = ends.iter();
             ends.map(|ends| ends.map(|end| end as u64)).collect()
         };
         Raw {
-            places: places.map(|(node, place)| (node as u64, *place)).collect(),
+            positions: positions
+                .map(|(node, position)| (node as u64, *position))
+                .collect(),
             cells: cells
                 .map(|(shape, nodes)| (*shape, numbers(nodes)))
                 .collect(),
@@ -71,9 +73,9 @@ mod tests {
     use super::*;
 
     fn square() -> MeshData {
-        let places = [[9.0, 9.0], [0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let positions = [[9.0, 9.0], [0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         MeshData {
-            places: places.map(|[x, y]| [x, y, 2.0]).to_vec(),
+            positions: positions.map(|[x, y]| [x, y, 2.0]).to_vec(),
             cells: vec![(CellShape::Quad4, vec![1, 2, 3, 4])],
             ..MeshData::default()
         }

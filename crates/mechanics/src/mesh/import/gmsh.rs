@@ -221,7 +221,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     let mut words = section(text, "Nodes")?;
     for _ in 0..words.next::<usize>()? {
         let tag = words.whole()?;
-        raw.places
+        raw.positions
             .insert(tag, [words.next()?, words.next()?, words.next()?]);
     }
     let mut words = section(text, "Elements")?;
@@ -262,7 +262,7 @@ fn version_4(text: &str, names: &Names) -> Result<Raw, Unreadable> {
             return Err("has parametric nodes; save it without them".into());
         }
         for tag in words.list(count)? {
-            raw.places
+            raw.positions
                 .insert(tag, [words.next()?, words.next()?, words.next()?]);
         }
     }

@@ -21,7 +21,7 @@ pub type Step = (Option<f64>, Displacements);
 #[derive(Default)]
 pub struct Raw {
     /// Places by the file's own number.
-    pub places: HashMap<u64, [f64; 3]>,
+    pub positions: HashMap<u64, [f64; 3]>,
     /// Cells in the order of the file.
     pub cells: Vec<(CellShape, Vec<u64>)>,
     /// Ends of lines, and points, by the name of their group.
@@ -80,7 +80,7 @@ impl Raw {
         let mut squares: HashMap<[i64; 2], Vec<u64>> = HashMap::new();
         let mut merged: HashMap<u64, u64> = HashMap::new();
         for name in self.used() {
-            let Some([x, y, _]) = self.places.get(&name) else {
+            let Some([x, y, _]) = self.positions.get(&name) else {
                 continue;
             };
             // Beyond 2⁵³ squares numbers are no longer told apart.
@@ -88,7 +88,7 @@ impl Raw {
             let around = (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj]));
             let others = around.filter_map(|square| squares.get(&square)).flatten();
             let near = |other: &&u64| {
-                let [a, b, _] = self.places[*other];
+                let [a, b, _] = self.positions[*other];
                 (a - x).hypot(b - y) <= tolerance
             };
             match others.filter(near).min() {
@@ -135,7 +135,7 @@ impl Raw {
         let (mut nodes, mut names) = (Vec::new(), HashMap::new());
         let mut height: Option<f64> = None;
         for name in self.used() {
-            let Some([x, y, z]) = self.places.get(&name) else {
+            let Some([x, y, z]) = self.positions.get(&name) else {
                 return Err(
                     format!("has a cell with the node {name}, which it does not contain").into(),
                 );
@@ -230,9 +230,16 @@ impl Raw {
 type Numbers = HashMap<u64, usize>;
 
 /// The nodes of a cell in the order that leaves its area to the left.
-pub fn counter_clockwise(shape: CellShape, nodes: Vec<usize>, places: &[[f64; 2]]) -> Vec<usize> {
+pub fn counter_clockwise(
+    shape: CellShape,
+    nodes: Vec<usize>,
+    positions: &[[f64; 2]],
+) -> Vec<usize> {
     let corners = shape.corners();
-    let line: Vec<_> = nodes[..corners].iter().map(|node| places[*node]).collect();
+    let line: Vec<_> = nodes[..corners]
+        .iter()
+        .map(|node| positions[*node])
+        .collect();
     if polygon_area(&line) >= 0.0 {
         return nodes;
     }

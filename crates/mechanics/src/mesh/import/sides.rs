@@ -23,7 +23,7 @@ pub fn name_sides(mesh: &mut Mesh) {
     let near = NEAR * longer_side(bounds);
     for (name, axis, end) in SIDES {
         let value = bounds[end][axis];
-        mesh.name_boundary(name, |place| (place[axis] - value).abs() <= near);
+        mesh.name_boundary(name, |position| (position[axis] - value).abs() <= near);
     }
     mesh.name_boundary("boundary", |_| true);
 }

@@ -99,7 +99,7 @@ fn quadrilaterals_with_a_corner_twice_are_triangles() {
             .collect();
         let mut raw = Raw {
             cells: vec![(CellShape::Quad8, nodes)],
-            places: (0..6)
+            positions: (0..6)
                 .map(|node: usize| (node as u64, [SIX[node][0], SIX[node][1], 0.0]))
                 .collect(),
             ..Raw::default()

@@ -32,8 +32,9 @@ impl UnstructuredGrid {
     /// The faces, and the named lines and parts.
     pub fn raw(&self) -> Result<Raw, Unreadable> {
         let mut raw = Raw::default();
-        for (name, place) in (0..).zip(self.points.chunks_exact(3)) {
-            raw.places.insert(name, [place[0], place[1], place[2]]);
+        for (name, position) in (0..).zip(self.points.chunks_exact(3)) {
+            raw.positions
+                .insert(name, [position[0], position[1], position[2]]);
         }
         let mut named = self.cell_arrays.iter();
         let groups = named.find(|(name, _)| GROUPS.contains(&&**name));

@@ -21,7 +21,7 @@ pub fn read(path: &Path) -> Result<Raw, Unreadable> {
 pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), Unreadable> {
     let grid = grid(path)?;
     let raw = grid.raw()?;
-    let points = raw.places.len();
+    let points = raw.positions.len();
     let is_vector =
         |(_, values): &(String, Vec<f64>)| [2 * points, 3 * points].contains(&values.len());
     let arrays = grid.point_arrays.into_iter().filter(is_vector);

@@ -80,8 +80,8 @@ fn split_appended(bytes: &[u8]) -> (&[u8], &[u8]) {
         return (bytes, &[]);
     };
     let after = |from: usize, wanted: u8| {
-        let place = bytes[from..].iter().position(|byte| *byte == wanted);
-        place.map(|place| from + place + 1)
+        let position = bytes[from..].iter().position(|byte| *byte == wanted);
+        position.map(|position| from + position + 1)
     };
     match after(start, b'>').and_then(|end| Some((end, after(end, b'_')?))) {
         Some((end, data)) => (&bytes[..end], &bytes[data..]),

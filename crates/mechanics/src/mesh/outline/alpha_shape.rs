@@ -32,8 +32,8 @@ pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), Outlin
     largest_part(points, &triangles, &beyond, &mut inside)?;
     let boundary = boundary_edges(&triangles, &beyond, &inside);
     let lines = boundary_lines(boundary).into_iter();
-    let places = lines.map(|line| line.iter().map(|point| points[*point]).collect());
-    Ok((places.collect(), spacing))
+    let positions = lines.map(|line| line.iter().map(|point| points[*point]).collect());
+    Ok((positions.collect(), spacing))
 }
 
 fn median_edge(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {

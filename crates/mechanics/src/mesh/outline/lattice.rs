@@ -33,12 +33,12 @@ pub fn inside(lines: &[Polygon], on_lines: &[[f64; 2]], size: f64) -> Vec<[f64; 
         let mut crossings: Vec<f64> = lines.iter().flat_map(|line| line.crossings(y)).collect();
         crossings.sort_by(f64::total_cmp);
         for pair in crossings.chunks_exact(2) {
-            let place = |i: i64| left + (i as f64 + shift) * size;
+            let position = |i: i64| left + (i as f64 + shift) * size;
             let first = ((pair[0] - left) / size - shift).ceil() as i64;
             let last = ((pair[1] - left) / size - shift).floor() as i64;
             points.extend(
                 (first..=last)
-                    .map(|i| [place(i), y])
+                    .map(|i| [position(i), y])
                     .filter(|point| !near(*point)),
             );
         }

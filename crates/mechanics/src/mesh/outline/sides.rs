@@ -39,8 +39,8 @@ pub fn sides(line: &[[f64; 2]]) -> Vec<(Option<&'static str>, Edge)> {
     let mut named = Vec::new();
     for chain in ways.iter().find(has_all).unwrap_or(&ways[0]) {
         let side = facing(&edges, chain);
-        for (place, number) in chain.iter().enumerate() {
-            let amid = place > 0 && place + 1 < chain.len();
+        for (position, number) in chain.iter().enumerate() {
+            let amid = position > 0 && position + 1 < chain.len();
             named.extend(spans[*number].named(side, amid));
         }
     }
@@ -51,10 +51,10 @@ impl Span {
     /// Its edges with their sides, on a side of the hull, amid others of the same side or not.
     fn named(&self, side: &'static str, amid: bool) -> Vec<(Option<&'static str>, Edge)> {
         let near = NEAR * length(self.edge[0], self.edge[1]);
-        let off = |place: usize| distance(self.edge, self.points[place]);
+        let off = |position: usize| distance(self.edge, self.points[position]);
         let last = self.points.len() - 1;
         let on: Vec<usize> = (0..=last)
-            .filter(|place| *place == 0 || *place == last || off(*place) <= near)
+            .filter(|position| *position == 0 || *position == last || off(*position) <= near)
             .collect();
         let lies_on_the_hull = on.windows(2).any(|pair| pair[1] == pair[0] + 1);
         let pieces = self.points.windows(2).map(|pair| [pair[0], pair[1]]);

@@ -75,7 +75,7 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
     let is_corner = |i: usize| {
         let (before, next) = (&edges[(i + count - 1) % count], &edges[i]);
         meet_at_a_corner(before, next, spacing)
-            || length(line[kept[i]], curve.place(curve.at[kept[i]])) > near
+            || length(line[kept[i]], curve.position(curve.at[kept[i]])) > near
     };
     let ends =
         |i: &usize| is_corner(*i) || is_straight[*i] || is_straight[(*i + count - 1) % count];
@@ -193,7 +193,7 @@ struct Followed<'a> {
 
 impl Followed<'_> {
     /// The value of the parabola around an arc length.
-    fn place(&self, own: f64) -> [f64; 2] {
+    fn position(&self, own: f64) -> [f64; 2] {
         let Self { line, at, .. } = self;
         let from_here = |at: &f64| {
             let t = at - own;
@@ -228,9 +228,9 @@ impl Followed<'_> {
     /// The places on the smooth curve through all points, from the first one on; `None` where they lie on none.
     fn through(&self, spacing: f64) -> Option<Vec<[f64; 2]>> {
         let off = self.at.iter().zip(self.line).map(|(at, point)| {
-            let place = self.place(*at);
-            let is_near = length(place, *point) <= ON_CURVE * spacing;
-            is_near.then(|| [0, 1].map(|axis| point[axis] - place[axis]))
+            let position = self.position(*at);
+            let is_near = length(position, *point) <= ON_CURVE * spacing;
+            is_near.then(|| [0, 1].map(|axis| point[axis] - position[axis]))
         });
         // The first point that is off ends it: most lines are steps of grids.
         let off: Vec<[f64; 2]> = off.collect::<Option<_>>()?;
@@ -243,9 +243,9 @@ impl Followed<'_> {
             let off = &off;
             (0..parts).map(move |part| {
                 let share = part as f64 / parts as f64;
-                let place = self.place(self.at[i] + share * size);
+                let position = self.position(self.at[i] + share * size);
                 [0, 1].map(|axis| {
-                    place[axis] + off[i][axis] + share * (off[next][axis] - off[i][axis])
+                    position[axis] + off[i][axis] + share * (off[next][axis] - off[i][axis])
                 })
             })
         });
@@ -311,7 +311,7 @@ fn outermost(followed: &Followed, near: f64, spacing: f64) -> Vec<[f64; 2]> {
     }
     let line = followed.line;
     let steps = followed.steps(STEP * spacing).into_iter();
-    let curve: Vec<[f64; 2]> = steps.map(|at| followed.place(at)).collect();
+    let curve: Vec<[f64; 2]> = steps.map(|at| followed.position(at)).collect();
     let curve = straightened(&curve, FINE * spacing);
     let out = line.iter().map(|point| outside(&curve, *point));
     let out = out.fold(0.0, f64::max).min(near);
@@ -344,7 +344,7 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
     }
     let at = followed.steps(STEP * spacing);
     let whole = at[at.len() - 1];
-    let mut curve: Vec<[f64; 2]> = at.iter().map(|at| followed.place(*at)).collect();
+    let mut curve: Vec<[f64; 2]> = at.iter().map(|at| followed.position(*at)).collect();
     let last = curve.len() - 1;
     let normal = |i: usize| {
         let (a, b) = (curve[i.saturating_sub(1)], curve[(i + 1).min(last)]);

@@ -36,7 +36,7 @@ fn mesh_area(mesh: &Mesh) -> f64 {
             .map(move |point| (cell, point))
     };
     let all = (0..mesh.cell_count()).flat_map(points);
-    all.map(|(cell, (place, weight))| weight * mesh.gradients(cell, place).1)
+    all.map(|(cell, (position, weight))| weight * mesh.gradients(cell, position).1)
         .sum()
 }
 
@@ -237,8 +237,9 @@ fn small_grids_have_four_corners() {
             (1.4, 1.2, 0.02),
         ] {
             let (sine, cosine) = f64::sin_cos(turn);
-            let places = (0..columns).flat_map(|i| (0..rows).map(move |j| [i, j].map(f64::from)));
-            let points: Vec<[f64; 2]> = places
+            let positions =
+                (0..columns).flat_map(|i| (0..rows).map(move |j| [i, j].map(f64::from)));
+            let points: Vec<[f64; 2]> = positions
                 .map(|[x, y]| {
                     let moved = jitter * (12.9898 * x + 78.233 * y).sin();
                     let [x, y] = [20.0 * (ratio * x + moved), 20.0 * (y - moved)];

@@ -40,7 +40,7 @@ const REACH: f64 = 4.0;
 
 /// One axis of the sheet: lines, and the cells between each and the next.
 struct Lines {
-    places: Vec<f64>,
+    positions: Vec<f64>,
     cells: Vec<usize>,
 }
 
@@ -77,22 +77,22 @@ impl Rakes {
     }
 
     /// All places of centres along an axis, ascending.
-    fn places(&self, axis: usize) -> Vec<f64> {
+    fn positions(&self, axis: usize) -> Vec<f64> {
         let [low, high] = self.ends(axis);
-        let mut places: Vec<f64> = self.row(axis).collect();
-        places.extend([low + self.inset, high - self.inset]);
-        places.sort_by(f64::total_cmp);
-        places
+        let mut positions: Vec<f64> = self.row(axis).collect();
+        positions.extend([low + self.inset, high - self.inset]);
+        positions.sort_by(f64::total_cmp);
+        positions
     }
 
     /// The least distance of two rows of tines, or of twice a row from a side, in mm.
     pub fn least_gap(&self) -> f64 {
         let gap = |axis: usize| {
-            let (places, [low, high]) = (self.places(axis), self.ends(axis));
-            let between = places.windows(2).map(|pair| pair[1] - pair[0]);
+            let (positions, [low, high]) = (self.positions(axis), self.ends(axis));
+            let between = positions.windows(2).map(|pair| pair[1] - pair[0]);
             let from_sides = [
-                2.0 * (places[0] - low),
-                2.0 * (high - places[places.len() - 1]),
+                2.0 * (positions[0] - low),
+                2.0 * (high - positions[positions.len() - 1]),
             ];
             between.chain(from_sides).fold(f64::INFINITY, f64::min)
         };
@@ -107,25 +107,25 @@ impl Rakes {
     fn lines(&self, axis: usize, size: f64, around: usize) -> Lines {
         let (reach, [low, high]) = (self.reach(), self.ends(axis));
         let mut lines = Lines {
-            places: vec![low],
+            positions: vec![low],
             cells: Vec::new(),
         };
         let mut add = |to: f64, cells: usize| {
-            let from = lines.places[lines.places.len() - 1];
+            let from = lines.positions[lines.positions.len() - 1];
             if to - from > 1e-6 * size {
-                lines.places.push(to);
+                lines.positions.push(to);
                 lines.cells.push(cells);
             }
         };
         let between = |from: f64, to: f64| count((to - from) / size);
         let mut last = low;
-        for centre in self.places(axis) {
+        for centre in self.positions(axis) {
             add(centre - reach, between(last, centre - reach));
             add(centre + reach, around);
             last = centre + reach;
         }
         add(high, between(last, high));
-        if let Some(end) = lines.places.last_mut() {
+        if let Some(end) = lines.positions.last_mut() {
             *end = high;
         }
         lines
@@ -137,8 +137,8 @@ impl Rakes {
         let around = count(2.0 * self.reach() / size).max(2);
         let [x, y] = [0, 1].map(|axis| self.lines(axis, size, around));
         let mut blocks = Vec::new();
-        for (i, ends_x) in x.places.windows(2).enumerate() {
-            for (j, ends_y) in y.places.windows(2).enumerate() {
+        for (i, ends_x) in x.positions.windows(2).enumerate() {
+            for (j, ends_y) in y.positions.windows(2).enumerate() {
                 let [low, high] = [0, 1].map(|end| [ends_x[end], ends_y[end]]);
                 let on = |is_on: bool, side: usize| if is_on { SIDES[side].0 } else { "" };
                 let sides = [

@@ -100,11 +100,11 @@ fn squares(by: [f64; 2]) -> Mesh {
     let mut nodes = square.to_vec();
     let mut other = Vec::new();
     for corner in square {
-        let place = [corner[0] + by[0], corner[1] + by[1]];
-        let known = nodes.iter().position(|node| *node == place);
+        let position = [corner[0] + by[0], corner[1] + by[1]];
+        let known = nodes.iter().position(|node| *node == position);
         other.push(known.unwrap_or(nodes.len()));
         if known.is_none() {
-            nodes.push(place);
+            nodes.push(position);
         }
     }
     let cells = [

@@ -51,9 +51,9 @@ fn turns_are_followed_all_the_way() {
     };
     let turned = problem(&[("left", whole(7.0)), ("right", whole(7.0))], &[]);
     let state = reached(&turned, &mesh, &[1.0]).unwrap();
-    let place = |node: usize| mesh.nodes[node];
+    let position = |node: usize| mesh.nodes[node];
     for node in 0..mesh.nodes.len() {
-        let [x, y] = place(node);
+        let [x, y] = position(node);
         let expected = [
             x * 7.0_f64.cos() - y * 7.0_f64.sin() - x,
             x * 7.0_f64.sin() + y * 7.0_f64.cos() - y,

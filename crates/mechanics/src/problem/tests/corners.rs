@@ -124,7 +124,7 @@ fn moments_are_about_the_middle_of_the_group_however_its_nodes_lie() {
         for group in ["left", "right"] {
             let own = reactions.at_group(group);
             let middle = 0.5 * (low + high);
-            assert!((own.place[1] - middle).abs() < 1e-9, "{group}: {own:?}");
+            assert!((own.position[1] - middle).abs() < 1e-9, "{group}: {own:?}");
             // Of the force at half the width a small share: the cells are coarse.
             let arm = own.moment / (own.force[0] * width);
             assert!(arm.abs() < 0.02, "{group}: {arm}");

@@ -31,8 +31,9 @@ impl Aggregates {
         let crowded = CROWDED * matrix.columns.len() / rows.max(1);
         let lonely = |row: usize| matrix.starts[row + 1] - matrix.starts[row] > crowded;
         let strong = |row: usize| {
-            let places = matrix.starts[row]..matrix.starts[row + 1];
-            let all = places.map(|place| (matrix.columns[place] as usize, strengths[place]));
+            let positions = matrix.starts[row]..matrix.starts[row + 1];
+            let all =
+                positions.map(|position| (matrix.columns[position] as usize, strengths[position]));
             all.filter(move |(column, strength)| {
                 *column != row && *strength > strong_from * strong_from && !lonely(*column)
             })

@@ -24,10 +24,10 @@ impl<const R: usize, const C: usize, T> Blocks<R, C, T> {
 
     /// The blocks of a row with their columns.
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &[[T; C]; R])> {
-        let places = self.starts[row]..self.starts[row + 1];
-        let columns = self.columns[places.clone()].iter();
+        let positions = self.starts[row]..self.starts[row + 1];
+        let columns = self.columns[positions.clone()].iter();
         let columns = columns.map(|column| *column as usize);
-        columns.zip(&self.values[places])
+        columns.zip(&self.values[positions])
     }
 }
 
@@ -72,12 +72,12 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
         let mut values = vec![[[0.0; R]; C]; self.columns.len()];
         for row in 0..self.rows() {
             for (column, block) in self.row(row) {
-                let place = next[column];
+                let position = next[column];
                 next[column] += 1;
-                columns[place] = row as u32;
+                columns[position] = row as u32;
                 for (i, entries) in block.iter().enumerate() {
                     for (k, entry) in entries.iter().enumerate() {
-                        values[place][k][i] = *entry;
+                        values[position][k][i] = *entry;
                     }
                 }
             }
@@ -92,7 +92,7 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
     /// A B, where B has so many columns.
     pub fn product<const D: usize>(&self, right: &Blocks<C, D>, columns: usize) -> Blocks<R, D> {
         const NONE: u32 = u32::MAX;
-        let mut places = vec![NONE; columns];
+        let mut positions = vec![NONE; columns];
         let mut product = Blocks {
             starts: vec![0],
             ..Blocks::default()
@@ -102,16 +102,16 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
             sums.clear();
             for (middle, left) in self.row(row) {
                 for (column, block) in right.row(middle) {
-                    if places[column] == NONE {
-                        places[column] = sums.len() as u32;
+                    if positions[column] == NONE {
+                        positions[column] = sums.len() as u32;
                         sums.push((column as u32, [[0.0; D]; R]));
                     }
-                    add_matrix_product(&mut sums[places[column] as usize].1, left, block);
+                    add_matrix_product(&mut sums[positions[column] as usize].1, left, block);
                 }
             }
             sums.sort_unstable_by_key(|(column, _)| *column);
             for (column, sum) in &sums {
-                places[*column as usize] = NONE;
+                positions[*column as usize] = NONE;
                 product.columns.push(*column);
                 product.values.push(*sum);
             }

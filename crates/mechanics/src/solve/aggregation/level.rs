@@ -95,9 +95,9 @@ impl<const N: usize> Operator<N> {
     /// −Lᵀ x, is added to their sums.
     #[inline(always)]
     fn relax(&self, row: usize, mut sum: [f32; N], x: &mut [[f32; N]], before: &mut [[f32; N]]) {
-        let places = self.below.starts[row]..self.below.starts[row + 1];
-        let columns = &self.below.columns[places.clone()];
-        let blocks = &self.below.values[places];
+        let positions = self.below.starts[row]..self.below.starts[row + 1];
+        let columns = &self.below.columns[positions.clone()];
+        let blocks = &self.below.values[positions];
         for (column, block) in columns.iter().zip(blocks) {
             let x = &x[*column as usize];
             for i in 0..N {
@@ -181,9 +181,9 @@ impl<const N: usize, const M: usize> Level<N, M> {
 /// Puts one on the diagonal where a motion of an aggregate has no unknown of its own.
 fn fill_gaps(matrix: &mut Blocks<3, 3>) {
     for row in 0..matrix.rows() {
-        for place in matrix.starts[row]..matrix.starts[row + 1] {
-            if matrix.columns[place] as usize == row {
-                let block = &mut matrix.values[place];
+        for position in matrix.starts[row]..matrix.starts[row + 1] {
+            if matrix.columns[position] as usize == row {
+                let block = &mut matrix.values[position];
                 for (i, row) in block
                     .iter_mut()
                     .enumerate()

@@ -72,7 +72,7 @@ pub fn smoothed<const N: usize>(
 ) -> Blocks<N, 3> {
     const NONE: u32 = u32::MAX;
     let weight = 4.0 / (3.0 * largest_eigenvalue(matrix, inverses));
-    let mut places = vec![NONE; aggregates.count];
+    let mut positions = vec![NONE; aggregates.count];
     let mut prolongation = Blocks {
         starts: vec![0],
         ..Blocks::default()
@@ -81,16 +81,16 @@ pub fn smoothed<const N: usize>(
     for row in 0..matrix.rows() {
         sums.clear();
         let own = aggregates.of[row];
-        places[own as usize] = 0;
+        positions[own as usize] = 0;
         sums.push((own, [[0.0; 3]; N]));
         for (node, block) in matrix.row(row) {
             let aggregate = aggregates.of[node];
-            let place = &mut places[aggregate as usize];
-            if *place == NONE {
-                *place = sums.len() as u32;
+            let position = &mut positions[aggregate as usize];
+            if *position == NONE {
+                *position = sums.len() as u32;
                 sums.push((aggregate, [[0.0; 3]; N]));
             }
-            let sum = &mut sums[*place as usize].1;
+            let sum = &mut sums[*position as usize].1;
             for (i, entries) in block.iter().enumerate() {
                 for (entry, motion) in entries.iter().zip(&rigid[node]) {
                     for k in 0..3 {
@@ -116,7 +116,7 @@ pub fn smoothed<const N: usize>(
         }
         sums.sort_unstable_by_key(|(aggregate, _)| *aggregate);
         for (aggregate, sum) in &sums {
-            places[*aggregate as usize] = NONE;
+            positions[*aggregate as usize] = NONE;
             prolongation.columns.push(*aggregate);
             prolongation.values.push(*sum);
         }

@@ -63,10 +63,10 @@ fn sheet(cells: [usize; 2], size: [f64; 2], slides: bool, order: impl Fn(usize) 
     let h = [size[0] / nx as f64, size[1] / ny as f64];
     let node = |i: usize, j: usize| order(i * (ny + 1) + j);
     let count = (nx + 1) * (ny + 1);
-    let (mut places, mut held) = (vec![[0.0; 2]; count], vec![false; 2 * count]);
+    let (mut positions, mut held) = (vec![[0.0; 2]; count], vec![false; 2 * count]);
     for i in 0..=nx {
         for j in 0..=ny {
-            places[node(i, j)] = [7.0 + h[0] * i as f64, -3.0 + h[1] * j as f64];
+            positions[node(i, j)] = [7.0 + h[0] * i as f64, -3.0 + h[1] * j as f64];
             held[2 * node(i, j)] = i == 0;
             held[2 * node(i, j) + 1] = i == 0 && (!slides || j == 0);
         }
@@ -81,7 +81,7 @@ fn sheet(cells: [usize; 2], size: [f64; 2], slides: bool, order: impl Fn(usize) 
         ]);
     }
     Sheet {
-        connectivity: connectivity.with_places(places),
+        connectivity: connectivity.with_places(positions),
         held,
         stiffness: rectangle(h),
     }
@@ -90,7 +90,7 @@ fn sheet(cells: [usize; 2], size: [f64; 2], slides: bool, order: impl Fn(usize) 
 impl Sheet {
     fn matrix(&self) -> (Nodes, NodalMatrix) {
         let assembly = Assembly::new(self, &self.held);
-        let nodes = Nodes::new(assembly.free(), assembly.places().unwrap());
+        let nodes = Nodes::new(assembly.free(), assembly.positions().unwrap());
         let mut matrix = NodalMatrix::new(&nodes, assembly.free(), self);
         let rest = vec![0.0; self.held.len()];
         matrix.linearise(self, &rest, &mut rest.clone()).unwrap();

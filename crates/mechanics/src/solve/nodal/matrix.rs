@@ -204,7 +204,7 @@ impl ElementBlocks {
 fn has_both_unknowns_in_turn(unknowns: &[u32]) -> bool {
     let nodes = unknowns.chunks(2);
     let both = |own: &[u32]| own.len() == 2 && own[0].is_multiple_of(2) && own[1] == own[0] + 1;
-    let other = |place: usize| !unknowns[..place].contains(&unknowns[place]);
+    let other = |position: usize| !unknowns[..position].contains(&unknowns[position]);
     nodes.clone().all(both) && (0..unknowns.len()).step_by(2).all(other)
 }
 
@@ -292,9 +292,9 @@ fn add_each(blocks: &mut Blocks<2, 2>, rows: &[u32], unknowns: &[u32], stiffness
             let [from, to] = [*from, *to].map(|unknown| unknown as usize);
             let [row, column] = [rows[from / 2], rows[to / 2]];
             if row != NONE && column != NONE && row >= column {
-                let place = find(blocks, row as usize, column as usize);
+                let position = find(blocks, row as usize, column as usize);
                 let value = stiffness[i.max(k) * size + i.min(k)];
-                blocks.values[place][from % 2][to % 2] += value;
+                blocks.values[position][from % 2][to % 2] += value;
             }
         }
     }

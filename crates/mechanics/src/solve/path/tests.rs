@@ -149,7 +149,7 @@ fn a_path_comes_near_to_the_maximum_of_its_load_and_names_it() {
         end.fault,
         SolveFault::LoadMaximum {
             factor: last.factor,
-            place: "its place".into(),
+            position: "its place".into(),
         }
     );
 }
@@ -160,17 +160,17 @@ fn a_body_that_is_not_stable_at_rest_is_told_so() {
     let negative = |u: f64, _: f64| Some([-0.5 * u * u, -u, -1.0]);
     let point = Point { energy: negative };
     let end = follow(&point, &[0.1], NEWTON, Attendance::told(&|_| ())).unwrap_err();
-    let place = "its place".to_owned();
-    assert_eq!(end.fault, SolveFault::UnstableAtRest { place });
+    let position = "its place".to_owned();
+    assert_eq!(end.fault, SolveFault::UnstableAtRest { position });
 }
 
 #[test]
 fn a_path_may_lead_back_to_rest_and_on_or_end_there() {
     let point = Point { energy: cautious };
     let states = follow(&point, &[0.4, 0.0, 0.3], NEWTON, Attendance::told(&|_| ())).unwrap();
-    let places = states.iter().map(|state| state.displacement[0]);
-    for (place, expected) in places.zip([0.4, 0.0, 0.3]) {
-        assert!((place - expected).abs() < 1e-12, "{place} {expected}");
+    let positions = states.iter().map(|state| state.displacement[0]);
+    for (position, expected) in positions.zip([0.4, 0.0, 0.3]) {
+        assert!((position - expected).abs() < 1e-12, "{position} {expected}");
     }
     let never = Point {
         energy: |u, s| (s > 0.2).then_some([0.5 * u * u, u, 1.0]),

@@ -57,7 +57,7 @@ pub struct ImportSettings {
 #[derive(Clone, Debug)]
 pub struct Points {
     /// Places in mm.
-    pub places: Vec<[f64; 2]>,
+    pub positions: Vec<[f64; 2]>,
     /// ux, uy of point after point in mm.
     pub displacement: Vec<f64>,
 }
@@ -114,7 +114,7 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
         .collect();
     check_unique(&table.source.name, all.clone())?;
     Ok(Points {
-        places: all.iter().map(|[place, _]| *place).collect(),
+        positions: all.iter().map(|[position, _]| *position).collect(),
         displacement: all
             .iter()
             .flat_map(|[_, displacement]| *displacement)

@@ -125,7 +125,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
             .difference(&model)
             .unwrap();
         assert!((difference.percent - 100.0).abs() < 1e-3, "{difference:?}");
-        assert_eq!(difference.place, [30.0, 10.0]);
+        assert_eq!(difference.position, [30.0, 10.0]);
         assert!(
             (difference.largest - 0.5 * 3.2_f64.hypot(0.5)).abs() < 1e-5,
             "{difference:?}"
@@ -155,7 +155,7 @@ fn points_of_a_table_are_compared_where_they_are() {
         let sites = imported.sites(&model([6, 2]).mesh).unwrap();
         let difference = sites.difference(&model([6, 2])).unwrap();
         // Off by 0.2 mm at (20, 5) mm alone.
-        assert!((difference.largest - 0.2).abs() < 1e-12 && difference.place == [20.0, 5.0]);
+        assert!((difference.largest - 0.2).abs() < 1e-12 && difference.position == [20.0, 5.0]);
         let size = (1.1_f64 * 1.1 + 0.25 * 0.25 + 2.1 * 2.1 + 0.45 * 0.45).sqrt();
         assert!(
             (difference.percent - 20.0 / size).abs() < 1e-10,
@@ -273,7 +273,7 @@ fn columns_choose_rows_and_are_passed_over_by_wish() {
     for lift in ["uz", "uz_mm"] {
         let imported = ExternalField::read(&written(".csv", table), &ignoring(lift)).unwrap();
         let sites = imported.sites(&model([6, 2]).mesh).unwrap();
-        assert_eq!(sites.places, [[10.0, 5.0]]);
+        assert_eq!(sites.positions, [[10.0, 5.0]]);
         assert!(sites.difference(&model([6, 2])).unwrap().percent < 1e-10);
     }
     let settings = ignoring("uz");
@@ -343,7 +343,7 @@ fn a_motion_of_the_whole_body_is_told_from_a_strain() {
         };
         format!("{x},{y},{},{}\n", ux - dx, uy - dy)
     };
-    let places = [
+    let positions = [
         [3.0, 2.0],
         [10.0, 5.0],
         [20.0, 5.0],
@@ -351,7 +351,7 @@ fn a_motion_of_the_whole_body_is_told_from_a_strain() {
         [12.0, 9.0],
     ];
     for moved in [true, false] {
-        let rows = places.map(|place| row(place, moved)).concat();
+        let rows = positions.map(|position| row(position, moved)).concat();
         let table = format!("X_mm,Y_mm,ux_mm,uy_mm\n{rows}");
         let imported = ExternalField::read(&written(".csv", &table), &SETTINGS).unwrap();
         let sites = imported.sites(&model.mesh).unwrap();

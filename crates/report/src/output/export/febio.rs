@@ -192,7 +192,7 @@ fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
             let (shape, nodes) = model.cells[*cell];
             let edge: Vec<_> = shape.edges()[*side]
                 .iter()
-                .map(|place| nodes[*place])
+                .map(|position| nodes[*position])
                 .collect();
             let (kind, face) = columns.face(shape, &edge);
             file.text(kind, &[("id", &(number + 1).to_string())], &list(face));
@@ -217,8 +217,8 @@ fn force_set(number: usize) -> String {
 fn node_forces(model: &Model, columns: &Columns) -> Vec<(usize, usize, [f64; 2])> {
     let mut forces = Vec::new();
     for (node, force) in &model.forces {
-        for (place, share) in columns.shares(model, *node).iter().enumerate() {
-            forces.push((*node, place, force.map(|force| 0.5 * share * force)));
+        for (position, share) in columns.shares(model, *node).iter().enumerate() {
+            forces.push((*node, position, force.map(|force| 0.5 * share * force)));
         }
     }
     forces

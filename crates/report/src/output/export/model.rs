@@ -139,9 +139,9 @@ impl Constraint {
     }
 
     /// The displacement of a node at a place, in mm.
-    pub fn at(&self, place: [f64; 2], factor: f64) -> f64 {
+    pub fn at(&self, position: [f64; 2], factor: f64) -> f64 {
         self.support
-            .displacement(place, self.axis, factor)
+            .displacement(position, self.axis, factor)
             .unwrap_or_default()
     }
 }

@@ -11,11 +11,11 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::Write`] where the file is one of them, by whatever names both are called.
 pub fn refuse_inputs(target: &Path, inputs: &[&Path]) -> Result<(), Error> {
-    refuse_input(target, &places(inputs))
+    refuse_input(target, &positions(inputs))
 }
 
 /// The whole paths of files, as far as there are any.
-pub fn places(files: &[&Path]) -> Vec<PathBuf> {
+pub fn positions(files: &[&Path]) -> Vec<PathBuf> {
     let files = files.iter();
     files
         .filter_map(|file| fs::canonicalize(file).ok())
@@ -31,10 +31,10 @@ pub fn relative(path: &Path, folder: &Path) -> String {
 }
 
 pub fn refuse_input(target: &Path, given: &[PathBuf]) -> Result<(), Error> {
-    let Ok(place) = fs::canonicalize(target) else {
+    let Ok(position) = fs::canonicalize(target) else {
         return Ok(());
     };
-    if given.contains(&place) || inputs::read().contains(&place) {
+    if given.contains(&position) || inputs::read().contains(&position) {
         let cause = "it is an input of this command; choose another place with --output";
         return Err(Error::write(target, cause));
     }

@@ -132,9 +132,9 @@ impl DrawingBackend for Backend<'_> {
         style: &S,
     ) -> Done {
         self.end_circles();
-        let places: Vec<[f64; 2]> = path.into_iter().map(point).collect();
+        let positions: Vec<[f64; 2]> = path.into_iter().map(point).collect();
         let pen = self.pen(style);
-        self.sheet.put(Mark::line(&places, pen));
+        self.sheet.put(Mark::line(&positions, pen));
         Ok(())
     }
 

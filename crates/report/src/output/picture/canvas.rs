@@ -63,8 +63,8 @@ impl Sheet {
     }
 
     /// Draws an axis or one of its ticks.
-    pub fn axis(&mut self, places: &[[f64; 2]]) {
-        self.put(Mark::line(places, self.look.axis()));
+    pub fn axis(&mut self, positions: &[[f64; 2]]) {
+        self.put(Mark::line(positions, self.look.axis()));
     }
 
     /// Writes words around the middle height of a place.

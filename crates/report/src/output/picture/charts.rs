@@ -235,14 +235,14 @@ impl<'a> Frame<'a> {
             .chart
             .lines
             .iter()
-            .map(|line| (line.stroke != Stroke::Points, self.places(line)))
+            .map(|line| (line.stroke != Stroke::Points, self.pixels(line)))
             .collect();
         let is_free = |part: &Rectangle| {
             let part = part.grown(6.0);
-            drawn.iter().all(|(is_joined, places)| {
-                let pieces = places.windows(2).filter(|_| *is_joined);
+            drawn.iter().all(|(is_joined, pixels)| {
+                let pieces = pixels.windows(2).filter(|_| *is_joined);
                 let pieces = pieces.map(|piece| [piece[0], piece[1]]);
-                let points = places.iter().map(|place| [*place; 2]);
+                let points = pixels.iter().map(|pixel| [*pixel; 2]);
                 !pieces.chain(points).any(|piece| part.meets(piece))
             })
         };
@@ -263,14 +263,14 @@ impl<'a> Frame<'a> {
     }
 
     /// Where a point is whose positions on the axes are given.
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         point(self.coordinates().translate(&(x, y)))
     }
 
     /// Where the points of a line are.
-    fn places(&self, line: &Line) -> Vec<[f64; 2]> {
+    fn pixels(&self, line: &Line) -> Vec<[f64; 2]> {
         let points = self.positions(line);
-        points.iter().map(|(x, y)| self.place([*x, *y])).collect()
+        points.iter().map(|(x, y)| self.pixel([*x, *y])).collect()
     }
 
     /// The positions of a line's points, of many only those that can be told apart.
@@ -328,7 +328,7 @@ impl<'a> Frame<'a> {
         let look = sheet.look;
         let ([left, top], [right, bottom]) = (self.area.low, self.area.high);
         for (at, label) in &self.x.ticks.at {
-            let [x, _] = self.place([*at, 0.0]);
+            let [x, _] = self.pixel([*at, 0.0]);
             sheet.axis(&[[x, bottom], [x, bottom + 4.0]]);
             if !self.is_above_its_like {
                 sheet.write(label, [x, bottom + BELOW], Align::Centre, look.number());
@@ -340,7 +340,7 @@ impl<'a> Frame<'a> {
             sheet.write_lines(&self.x.label, at, Align::Centre, look.name());
         }
         for (at, label) in &self.y.ticks.at {
-            let [_, y] = self.place([0.0, *at]);
+            let [_, y] = self.pixel([0.0, *at]);
             sheet.axis(&[[left - 4.0, y], [left, y]]);
             sheet.write(label, [left - BESIDE, y], Align::Right, look.number());
         }

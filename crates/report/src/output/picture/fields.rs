@@ -52,7 +52,7 @@ impl FieldFigure {
             return Err("it has no panels".into());
         }
         let surfaces = self.panels.iter().map(|panel| &panel.surface);
-        let places = surfaces.flat_map(|surface| {
+        let positions = surfaces.flat_map(|surface| {
             let rest = surface.rest.iter().flatten();
             surface.points.iter().chain(rest).copied()
         });
@@ -60,7 +60,7 @@ impl FieldFigure {
         let names = self.panels.iter().map(name).fold(0.0, f64::max);
         let rest = look.number().width(REST);
         let least = names + 2.0 * GAP + rest;
-        let layout = Layout::of(look, &self.title, least, places);
+        let layout = Layout::of(look, &self.title, least, positions);
         let has_rest = !self.panels[0].surface.rest.is_empty();
         let right = layout.width() - EDGE;
         let mut bottom = layout.bottom(panels);
@@ -94,10 +94,10 @@ impl FieldFigure {
         let mut sheet = Sheet::new(look);
         layout.draw(&mut sheet, &self.title, self.panels.len());
         for (index, panel) in self.panels.iter().enumerate() {
-            let place = [layout.left, layout.panel_top(index) + 0.5 * LABEL_HEIGHT];
+            let position = [layout.left, layout.panel_top(index) + 0.5 * LABEL_HEIGHT];
             let room = layout.width() - EDGE - layout.left;
             let label = short(&panel.label, room, look);
-            sheet.write(label, place, Align::Left, look.name());
+            sheet.write(label, position, Align::Left, look.name());
         }
         if let Some((at, align)) = plan.rest {
             sheet.write(REST, at, align, look.number());
@@ -126,8 +126,8 @@ impl FieldFigure {
         };
         let contour = Pen::new([0; 3], CONTOUR).covering(CONTOUR_COVER);
         for (index, panel) in self.panels.iter().enumerate() {
-            let place = |place: [f64; 2]| layout.place(index, place);
-            let rest = placed(&panel.surface.rest, &place);
+            let position = |position: [f64; 2]| layout.position(index, position);
+            let rest = placed(&panel.surface.rest, &position);
             let pen = Pen::new(look.rest(), AT_REST);
             if let Some(rest) = Mark::lines(rest.iter().map(|line| &line[..]), pen) {
                 painter.draw(&rest);
@@ -135,7 +135,7 @@ impl FieldFigure {
             let mut contours = Vec::new();
             let triangles = panel.surface.triangles.iter();
             for (triangle, values) in triangles.zip(panel.corners()) {
-                let corners = triangle.map(|point| place(panel.surface.points[point as usize]));
+                let corners = triangle.map(|point| position(panel.surface.points[point as usize]));
                 painter.shade(corners, values, &share, &table);
                 if has_contours(panel) {
                     let levels = levels.iter();
@@ -143,7 +143,7 @@ impl FieldFigure {
                 }
             }
             painter.lines_above(contours.iter().map(|line| &line[..]), contour);
-            let outline = placed(&panel.surface.outline, &place);
+            let outline = placed(&panel.surface.outline, &position);
             let pen = Pen::new(look.ink(), OUTLINE);
             painter.lines_above(outline.iter().map(|line| &line[..]), pen);
         }
@@ -163,9 +163,9 @@ fn has_contours(panel: &Panel) -> bool {
     is_smooth && panel.surface.triangles.len() <= MOST_CONTOURED
 }
 
-fn placed(lines: &[Vec<[f64; 2]>], place: &dyn Fn([f64; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let places = |line: &Vec<[f64; 2]>| line.iter().map(|at| place(*at)).collect();
-    lines.iter().map(places).collect()
+fn placed(lines: &[Vec<[f64; 2]>], position: &dyn Fn([f64; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let positions = |line: &Vec<[f64; 2]>| line.iter().map(|at| position(*at)).collect();
+    lines.iter().map(positions).collect()
 }
 
 /// The line within a triangle on which a linear field has a value.
@@ -177,8 +177,8 @@ fn crossing(corners: [[f64; 2]; 3], values: [f64; 3], level: f64) -> Option<[[f6
         (crosses && along.is_finite())
             .then(|| [0, 1].map(|axis| a[axis] + along * (b[axis] - a[axis])))
     };
-    let mut places = [[0, 1], [1, 2], [2, 0]].into_iter().filter_map(on_edge);
-    Some([places.next()?, places.next()?])
+    let mut positions = [[0, 1], [1, 2], [2, 0]].into_iter().filter_map(on_edge);
+    Some([positions.next()?, positions.next()?])
 }
 
 #[cfg(test)]

@@ -41,9 +41,14 @@ pub(super) struct Layout {
 impl Layout {
     /// The layout that shows all places below a title, with so much room at least from the left end of the panels on. A picture
     /// for a screen is no wider than it needs.
-    pub fn of(look: Look, title: &str, least: f64, places: impl Iterator<Item = [f64; 2]>) -> Self {
+    pub fn of(
+        look: Look,
+        title: &str,
+        least: f64,
+        positions: impl Iterator<Item = [f64; 2]>,
+    ) -> Self {
         const ABOUT: f64 = 60.0;
-        let [low, high] = bounding_box(places);
+        let [low, high] = bounding_box(positions);
         let whole = f64::from(look.points(WIDTH));
         let scaled = |left: f64| {
             let most = whole - left - EDGE;
@@ -107,7 +112,7 @@ impl Layout {
     }
 
     /// A place on the plate of a panel.
-    pub fn place(&self, panel: usize, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn position(&self, panel: usize, [x, y]: [f64; 2]) -> [f64; 2] {
         let top = self.panel_top(panel) + self.above;
         [
             self.left + (x - self.low[0]) * self.points_per_mm,
@@ -132,7 +137,7 @@ impl Layout {
     /// The axis to the left of a panel.
     fn draw_width_axis(&self, sheet: &mut Sheet, panel: usize) {
         let x = self.left - AWAY;
-        let at = |y: f64| self.place(panel, [self.low[0], y])[1];
+        let at = |y: f64| self.position(panel, [self.low[0], y])[1];
         sheet.axis(&[[x, at(self.low[1])], [x, at(self.high[1])]]);
         for (y, number) in &self.y.at {
             let row = at(*y);
@@ -144,11 +149,11 @@ impl Layout {
 
     /// The axis below a panel.
     fn draw_length_axis(&self, sheet: &mut Sheet, panel: usize) {
-        let [left, bottom] = self.place(panel, self.low);
+        let [left, bottom] = self.position(panel, self.low);
         let y = bottom + AWAY;
         sheet.axis(&[[left, y], [self.right(), y]]);
         for (x, number) in &self.x.at {
-            let [column, _] = self.place(panel, [*x, self.low[1]]);
+            let [column, _] = self.position(panel, [*x, self.low[1]]);
             sheet.axis(&[[column, y], [column, y + TICK]]);
             sheet.write(
                 number,

@@ -175,9 +175,9 @@ fn room(
     }
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let fifths = 0..25;
-    let others = fifths.map(|place| [place % 5, place / 5].map(|n| f64::from(n) / 4.0));
-    let places = corners.into_iter().chain(others);
-    let parts = places.map(|share| {
+    let others = fifths.map(|position| [position % 5, position / 5].map(|n| f64::from(n) / 4.0));
+    let positions = corners.into_iter().chain(others);
+    let parts = positions.map(|share| {
         let low = [0, 1].map(|axis| area.low[axis] + 2.0 + share[axis] * spare[axis]);
         Rectangle::new(low, [low[0] + size[0], low[1] + size[1]])
     });

@@ -74,7 +74,7 @@ impl MeshFigure {
         let placed = |lines: &[Vec<[f64; 2]>]| -> Vec<Vec<[f64; 2]>> {
             let lines = lines.iter();
             lines
-                .map(|line| line.iter().map(|at| layout.place(0, *at)).collect())
+                .map(|line| line.iter().map(|at| layout.position(0, *at)).collect())
                 .collect()
         };
         let few = self.cells.len() < 5_000;
@@ -108,8 +108,8 @@ impl MeshFigure {
 fn triangles(outline: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 3]> {
     let count = outline.len().saturating_sub(1).max(1) as f64;
     let middle = [0, 1].map(|axis| {
-        let places = outline.iter().skip(1);
-        places.map(|place| place[axis]).sum::<f64>() / count
+        let positions = outline.iter().skip(1);
+        positions.map(|position| position[axis]).sum::<f64>() / count
     });
     outline
         .windows(2)

@@ -67,9 +67,10 @@ impl Painter {
             };
             let pixels = self.image.data_mut();
             for column in columns {
-                let place = 4 * (first + column as usize);
+                let position = 4 * (first + column as usize);
                 let colour = colour(table, at(column));
-                pixels[place..place + 4].copy_from_slice(&[colour[0], colour[1], colour[2], 255]);
+                pixels[position..position + 4]
+                    .copy_from_slice(&[colour[0], colour[1], colour[2], 255]);
             }
         }
     }

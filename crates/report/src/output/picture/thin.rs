@@ -35,15 +35,15 @@ impl Raster {
     }
 
     fn column(&self, x: f64) -> usize {
-        Self::place(x - self.low[0], self.step[0])
+        Self::position(x - self.low[0], self.step[0])
     }
 
     fn row(&self, y: f64) -> usize {
-        Self::place(y - self.low[1], self.step[1])
+        Self::position(y - self.low[1], self.step[1])
     }
 
     /// All points that are at one place on an axis are in its first division.
-    fn place(from_start: f64, step: f64) -> usize {
+    fn position(from_start: f64, step: f64) -> usize {
         if step > 0.0 {
             (from_start / step) as usize
         } else {
@@ -61,8 +61,8 @@ pub fn scattered(points: Vec<Point>) -> Vec<Point> {
     let (columns, rows) = (COLUMNS as usize + 1, ROWS as usize + 1);
     let mut taken = vec![false; columns * rows];
     let first = |(x, y): &Point| {
-        let place = raster.row(*y) * columns + raster.column(*x);
-        !std::mem::replace(&mut taken[place], true)
+        let position = raster.row(*y) * columns + raster.column(*x);
+        !std::mem::replace(&mut taken[position], true)
     };
     points.into_iter().filter(first).collect()
 }

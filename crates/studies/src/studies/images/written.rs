@@ -72,12 +72,15 @@ fn table(tracked: &TrackedImages) -> String {
     for frame in &tracked.series.frames {
         for Marker {
             number,
-            place,
+            position,
             displacement,
             standard_deviation,
         } in &frame.markers
         {
-            let lengths = place.iter().chain(displacement).chain(standard_deviation);
+            let lengths = position
+                .iter()
+                .chain(displacement)
+                .chain(standard_deviation);
             let lengths: Vec<String> = lengths.map(|value| length(*value)).collect();
             let _ = writeln!(text, "{},{number},{}", frame.number, lengths.join(","));
         }
@@ -205,7 +208,7 @@ fn figures(tracked: &TrackedImages, frame: &Frame) -> Vec<Figure> {
     let label = format!("frame {}, where the points are at rest", frame.number);
     let panel = |value: &dyn Fn(&Marker) -> f64| {
         let squares = frame.markers.iter().map(|marker| {
-            let [x, y] = marker.place;
+            let [x, y] = marker.position;
             let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
             (corners.map(|[dx, dy]| [x + dx, y + dy]), value(marker))
         });

@@ -123,7 +123,7 @@ mod tests {
     fn frame(number: usize) -> Frame {
         let marker = |number| Marker {
             number,
-            place: [number as f64, 0.0],
+            position: [number as f64, 0.0],
             displacement: [0.0; 2],
             standard_deviation: None,
         };

@@ -128,21 +128,22 @@ impl EdgePlace {
 }
 
 /// Whether markers form a grid along x and y whose outline is not the rectangle of that grid.
-pub(super) fn is_beside_grid(places: &[[f64; 2]], outline: &Outline, spacing: f64) -> bool {
+pub(super) fn is_beside_grid(positions: &[[f64; 2]], outline: &Outline, spacing: f64) -> bool {
     /// A grid has as many places as lines along x times lines along y, where its rectangle is full; scattered markers have nearly their square.
     const SPARSE: usize = 8;
     /// The share of the rectangle that is filled at least.
     const FULL: f64 = 0.97;
     let lines = |axis: usize| {
-        let mut places: Vec<f64> = places.iter().map(|place| place[axis]).collect();
-        places.sort_unstable_by(f64::total_cmp);
-        1 + places
+        let mut positions: Vec<f64> = positions.iter().map(|position| position[axis]).collect();
+        positions.sort_unstable_by(f64::total_cmp);
+        1 + positions
             .windows(2)
             .filter(|pair| pair[1] - pair[0] > 0.05 * spacing)
             .count()
     };
     let [along_x, along_y] = outline.extents();
-    lines(0) * lines(1) <= SPARSE * places.len() && outline.outer_area() < FULL * along_x * along_y
+    lines(0) * lines(1) <= SPARSE * positions.len()
+        && outline.outer_area() < FULL * along_x * along_y
 }
 
 #[cfg(test)]
@@ -157,17 +158,17 @@ mod tests {
                 let by = |factor: f64| jitter * ((factor * k as f64).sin());
                 [x + by(12.9), y + by(78.2)]
             });
-            moved.filter(|place| inside(*place)).collect()
+            moved.filter(|position| inside(*position)).collect()
         };
         let waisted = |[x, y]: [f64; 2]| (y - 8.0).abs() < 5.0 + 0.008 * (x - 20.0).powi(2);
-        for (places, expected) in [
+        for (positions, expected) in [
             (grid(&|_| true, 0.0), false),
             (grid(&waisted, 0.0), true),
             (grid(&waisted, 0.3), false),
         ] {
-            let found = Outline::of_points(&places).unwrap();
+            let found = Outline::of_points(&positions).unwrap();
             assert_eq!(
-                is_beside_grid(&places, &found.outline, found.spacing),
+                is_beside_grid(&positions, &found.outline, found.spacing),
                 expected
             );
         }

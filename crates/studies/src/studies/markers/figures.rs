@@ -104,11 +104,11 @@ impl Pictures<'_> {
         frame: &Frame,
         values: impl Iterator<Item = f64>,
     ) -> FieldFigure {
-        let [low, high] = bounding_box(frame.markers.iter().map(|marker| marker.place));
+        let [low, high] = bounding_box(frame.markers.iter().map(|marker| marker.position));
         let area = (high[0] - low[0]) * (high[1] - low[1]);
         let half = 0.35 * (area / frame.markers.len() as f64).sqrt();
         let squares = frame.markers.iter().zip(values).map(|(marker, value)| {
-            let [x, y] = [0, 1].map(|axis| marker.place[axis] + marker.displacement[axis]);
+            let [x, y] = [0, 1].map(|axis| marker.position[axis] + marker.displacement[axis]);
             let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
             (corners.map(|[dx, dy]| [x + dx, y + dy]), value)
         });

@@ -47,7 +47,8 @@ fn with_ranges(messages: &[&str]) -> Option<String> {
     if all.iter().any(|words| words.len() != first.len()) {
         return None;
     }
-    let word = |place: usize| range(&all.iter().map(|words| words[place]).collect::<Vec<_>>());
+    let word =
+        |position: usize| range(&all.iter().map(|words| words[position]).collect::<Vec<_>>());
     let words: Option<Vec<String>> = (0..first.len()).map(word).collect();
     Some(words?.join(" "))
 }

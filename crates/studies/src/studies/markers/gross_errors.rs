@@ -112,10 +112,10 @@ fn has_hidden(estimate: &FieldEstimate) -> bool {
 fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
     let pairs = markers.iter().zip(&estimate.markers);
     let used: Vec<_> = pairs
-        .filter_map(|(marker, own)| Some((marker.place, own.as_ref()?.outlier)))
+        .filter_map(|(marker, own)| Some((marker.position, own.as_ref()?.outlier)))
         .collect();
-    let places: Vec<[f64; 2]> = used.iter().map(|(place, _)| *place).collect();
-    let around = nearest(&places, AROUND);
+    let positions: Vec<[f64; 2]> = used.iter().map(|(position, _)| *position).collect();
+    let around = nearest(&positions, AROUND);
     let outliers = (0..used.len()).filter(|index| used[*index].1);
     let (mut count, mut alike, mut neighbours) = (0.0, 0.0, 0.0);
     for own in outliers {

@@ -120,7 +120,7 @@ impl ImageMisfit<'_> {
     fn warp(&self, displacement: &[f64], point: usize) -> Option<Warp> {
         let TrackedImages { tracker, pixel, .. } = self.images;
         let up = tracker.reference().image.size()[1] as f64 - 1.0;
-        let [x, y] = tracker.places()[point].map(|pixel| pixel as f64);
+        let [x, y] = tracker.positions()[point].map(|pixel| pixel as f64);
         let half = 0.5 * self.patches.width() as f64;
         let at =
             |along: f64, down: f64| [(x + half * along) * pixel, (up - y - half * down) * pixel];

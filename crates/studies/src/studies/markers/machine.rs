@@ -123,9 +123,9 @@ fn matching(table: &Table) -> Result<Match, Error> {
         let mut rows = HashMap::new();
         for (row, number) in values(column)?.into_iter().enumerate() {
             if rows.insert(key(number), row).is_some() {
-                let place = table.rows[row].1.clone();
+                let position = table.rows[row].1.clone();
                 let message = format!("frame {number} occurs twice");
-                return Err(table.refuse(place, message, "give each frame one row"));
+                return Err(table.refuse(position, message, "give each frame one row"));
             }
         }
         return Ok(Match::Frames(rows));
@@ -141,8 +141,8 @@ fn matching(table: &Table) -> Result<Match, Error> {
         None => Ok(Match::Times(times)),
         Some(row) => {
             let hint = "sort the rows by time, each time once";
-            let place = table.rows[row + 1].1.clone();
-            Err(table.refuse(place, "the time does not increase here", hint))
+            let position = table.rows[row + 1].1.clone();
+            Err(table.refuse(position, "the time does not increase here", hint))
         }
     }
 }

@@ -56,7 +56,7 @@ impl Mistake {
 
     /// The displacement that was meant.
     fn undone(self, marker: Marker) -> Marker {
-        let ([x, y], [ux, uy]) = (marker.place, marker.displacement);
+        let ([x, y], [ux, uy]) = (marker.position, marker.displacement);
         let displacement = match self {
             Self::FinalPositions => [ux - x, uy - y],
             Self::Reversed => [-ux, -uy],
@@ -249,20 +249,20 @@ mod tests {
         let mut drawn =
             || -> f64 { noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };
         let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
-        for place in (0..13 * 5).map(|k| [5.0 * f64::from(k / 5), 5.0 * f64::from(k % 5)]) {
+        for position in (0..13 * 5).map(|k| [5.0 * f64::from(k / 5), 5.0 * f64::from(k % 5)]) {
             let [ux, uy] = [
-                (x - 1.0) * place[0] + drawn(),
-                (y - 1.0) * place[1] + drawn(),
+                (x - 1.0) * position[0] + drawn(),
+                (y - 1.0) * position[1] + drawn(),
             ];
             let [ux, uy] = match mistake {
                 None => [ux, uy],
-                Some(Mistake::FinalPositions) => [place[0] + ux, place[1] + uy],
+                Some(Mistake::FinalPositions) => [position[0] + ux, position[1] + uy],
                 Some(Mistake::Reversed) => [-ux, -uy],
                 Some(Mistake::Exchanged) => [uy, ux],
                 Some(Mistake::Mirrored(0)) => [-ux, uy],
                 Some(Mistake::Mirrored(_)) => [ux, -uy],
             };
-            writeln!(table, "{},{},{ux},{uy}", place[0], place[1]).unwrap();
+            writeln!(table, "{},{},{ux},{uy}", position[0], position[1]).unwrap();
         }
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("strip.csv");

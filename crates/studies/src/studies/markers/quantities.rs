@@ -68,12 +68,12 @@ pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
     let sound: Vec<_> = pairs
         .filter_map(|(index, (marker, own))| {
             let own = own.filter(|own| !own.outlier)?;
-            Some((index, marker.place, own.residual))
+            Some((index, marker.position, own.residual))
         })
         .collect();
-    let places: Vec<[f64; 2]> = sound.iter().map(|(_, place, _)| *place).collect();
+    let positions: Vec<[f64; 2]> = sound.iter().map(|(_, position, _)| *position).collect();
     let mut all = vec![[f64::NAN; 2]; frame.markers.len()];
-    for (marker, others) in nearest(&places, NEIGHBOURS).into_iter().enumerate() {
+    for (marker, others) in nearest(&positions, NEIGHBOURS).into_iter().enumerate() {
         let members = others.iter().chain([&marker]);
         let sum = members.fold([0.0; 2], |sum, one| {
             [0, 1].map(|axis| sum[axis] + sound[*one].2[axis])

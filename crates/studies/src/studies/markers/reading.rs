@@ -14,8 +14,8 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
     let mut words = encoding.or(part).unwrap_or_default();
     words += understood.axes();
     words += &understood
-        .places()
-        .map_or(String::new(), |places| format!(" {places}"));
+        .positions()
+        .map_or(String::new(), |positions| format!(" {positions}"));
     let mut blocks = vec![
         Block::heading("How the file was read"),
         Block::paragraph(words),

@@ -57,19 +57,19 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
         ));
     }
     let frames = field.series.frames.len();
-    let markers = field.series.places().len();
+    let markers = field.series.positions().len();
     affords(
         request,
         need_of_markers(markers as f64, frames),
         &format!("a field of {markers} markers"),
         "use every other marker, or fewer frames",
     )?;
-    let whole = |mesh: &Mesh, place: &str| {
+    let whole = |mesh: &Mesh, position: &str| {
         let need = need(mesh.cell_count() as f64, mesh.nodes.len() as f64, frames);
         affords(
             request,
             need,
-            &format!("the mesh {place}"),
+            &format!("the mesh {position}"),
             "use a coarser mesh or fewer frames",
         )
     };
@@ -113,8 +113,10 @@ fn in_mask(
     let pixel = request.reading.unit.unwrap_or(f64::NAN);
     let up = (image.size()[1] - 1) as f64;
     let in_mm = |line: Vec<[f64; 2]>| {
-        let places = line.into_iter();
-        places.map(|[x, y]| [pixel * x, pixel * (up - y)]).collect()
+        let positions = line.into_iter();
+        positions
+            .map(|[x, y]| [pixel * x, pixel * (up - y)])
+            .collect()
     };
     let lines = lines.into_iter().map(in_mm).collect();
     let hint = "draw one specimen white on black, with an edge that does not touch itself";
@@ -135,7 +137,7 @@ fn inside(
 ) -> Result<SpecimenMesh, Error> {
     let outline = Outline::of_lines(lines)
         .map_err(|reason| Error::input(format!("{}: {reason}", path.display()), hint))?;
-    let markers = field.series.places().len() as f64;
+    let markers = field.series.positions().len() as f64;
     let spacing = (outline.area() / markers).sqrt();
     let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!("made inside the {what} {}", path.display());
@@ -162,8 +164,8 @@ fn of_field(mesh: &Mesh) -> SpecimenMesh {
 
 /// A mesh inside the outline of the markers.
 fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
-    let (places, in_gaps) = places(&field.series, request.holes);
-    let mut found = Outline::of_points(&places).map_err(no_mesh)?;
+    let (positions, in_gaps) = positions(&field.series, request.holes);
+    let mut found = Outline::of_points(&positions).map_err(no_mesh)?;
     let mut warnings = Vec::new();
     match (found.outline.holes.len(), request.holes) {
         (0, _) => {}
@@ -181,7 +183,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
         }
     }
     let spacing = found.spacing;
-    let beside_grid = is_beside_grid(&places, &found.outline, spacing);
+    let beside_grid = is_beside_grid(&positions, &found.outline, spacing);
     let reasons = std::mem::take(&mut found.doubts).into_iter();
     let edge = EdgePlace::of(request, &field.understood, found, beside_grid)?;
     let (mesh, size) = made(request, &edge.outline, spacing, field.series.frames.len())?;
@@ -207,13 +209,13 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
 
 /// The places that tell of the outline: those of lost markers too, but for those in gaps that are holes without them, if gaps are
 /// holes; and how many these are. Where so many are lost that the others are scattered, gaps are no holes.
-fn places(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
+fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
     let found = series.places_of_found();
     let mut lost = series.lost.clone();
     if gaps_are_holes && !lost.is_empty() {
         let outline = Outline::of_points(&found).ok();
         if let Some(own) = outline.filter(|own| !own.is_scattered) {
-            lost.retain(|place| !own.outline.has_in_a_hole(*place));
+            lost.retain(|position| !own.outline.has_in_a_hole(*position));
         }
     }
     let in_gaps = series.lost.len() - lost.len();

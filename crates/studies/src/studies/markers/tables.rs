@@ -93,7 +93,7 @@ pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
         "marker,X_mm,Y_mm,ux_mm,uy_mm,residual_x_mm,residual_y_mm,standardised_residual,trust,outlier\n",
     );
     for (marker, residual) in frame.markers.iter().zip(residuals(estimate)) {
-        let measured = [marker.place, marker.displacement];
+        let measured = [marker.position, marker.displacement];
         let values = [measured.as_flattened(), &residual].concat();
         row(&mut text, &[marker.number], &values);
     }

@@ -61,7 +61,7 @@ pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
         return lines;
     };
     lines.extend(estimate.verdict.worst.map(|worst| {
-        let [x, y] = worst.place.map(|place| decimals(place, 4));
+        let [x, y] = worst.position.map(|position| decimals(position, 4));
         let [ux, uy] = worst.misfit.map(|misfit| decimals(misfit, 5));
         format!("largest misfit near ({x}, {y}) mm: mean residual ({ux}, {uy}) mm")
     }));
@@ -259,7 +259,7 @@ pub fn json(estimate: &FieldEstimate) -> Value {
         "reasons": reasons(verdict),
         "mends": trials.collect::<Vec<_>>(),
         "left_without_outliers_mm": verdict.residual_rms,
-        "worst": worst.map(|worst| json!({ "place_mm": worst.place, "misfit_mm": worst.misfit })),
+        "worst": worst.map(|worst| json!({ "place_mm": worst.position, "misfit_mm": worst.misfit })),
         "stated_noise_is_off_by": estimate.noise_ratio,
     })
 }

@@ -204,13 +204,14 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
 
 fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let all = &frame.markers;
-    let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
+    let positions: Vec<[f64; 2]> = all.iter().map(|marker| marker.position).collect();
     let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
     let numbers = all.iter().map(|marker| marker.number as f64);
-    let of = |name, place: usize| Array::scalars(name, residuals(estimate).map(|own| own[place]));
+    let of =
+        |name, position: usize| Array::scalars(name, residuals(estimate).map(|own| own[position]));
     let differences = residuals(estimate).flat_map(|[x, y, ..]| [x, y]);
     let misfit = misfits(frame, estimate).into_iter().flatten();
-    Grid::scattered(&places, &measured).with([
+    Grid::scattered(&positions, &measured).with([
         Array::vectors("residual_mm", differences),
         Array::vectors("mean_residual_of_neighbours_mm", misfit),
         of("standardised_residual", 2),

@@ -229,11 +229,11 @@ mod tests {
 
     #[test]
     fn cubics_keep_a_cubic_motion_and_stop_at_an_interval_of_another_length() {
-        let place = |t: f64| 1.0 + t - 2.0 * t * t + 0.5 * t * t * t;
+        let position = |t: f64| 1.0 + t - 2.0 * t * t + 0.5 * t * t * t;
         let speed = |t: f64| 1.0 - 4.0 * t + 1.5 * t * t;
         let instant = |time: f64| Instant {
             time,
-            displacement: vec![place(time)],
+            displacement: vec![position(time)],
             velocity: vec![speed(time)],
             acceleration: vec![0.0],
             energy: crate::dynamics::EnergyBalance::default(),
@@ -243,7 +243,7 @@ mod tests {
         let fields = between(&instants, 5);
         assert_eq!(fields.len(), 11);
         for (i, field) in fields.iter().enumerate() {
-            assert!((field[0] - place(0.1 * i as f64)).abs() < 1e-14, "{i}");
+            assert!((field[0] - position(0.1 * i as f64)).abs() < 1e-14, "{i}");
         }
         let found = velocity(&fields, 5, 0.1, &[]);
         assert!((found[0] - speed(0.5)).abs() < 6e-3);

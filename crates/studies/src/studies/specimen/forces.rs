@@ -252,7 +252,7 @@ pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<V
         let value = json!({
             "force_N": state.force,
             "moment_Nmm": state.moment,
-            "middle_mm": state.place,
+            "middle_mm": state.position,
             "displacement_mm": state.displacement,
         });
         (name.to_owned(), value)

@@ -61,7 +61,7 @@ impl<'a> MeasuredFields<'a> {
         let fields = SheetField::NAMES.map(|(name, field)| head(name, field));
         let force = format!("force_{}_N", ["x", "y"][self.force_axis()]);
         let lengths = ["length_at_rest_mm", "length_mm", "stretch"].map(str::to_owned);
-        let place = |all: &[&str]| {
+        let coordinates = |all: &[&str]| {
             all.iter()
                 .map(|name| (*name).to_owned())
                 .collect::<Vec<_>>()
@@ -69,11 +69,15 @@ impl<'a> MeasuredFields<'a> {
         let tables = [
             (
                 "probe",
-                [place(&["x_mm", "y_mm"]), fields.to_vec()].concat(),
+                [coordinates(&["x_mm", "y_mm"]), fields.to_vec()].concat(),
             ),
             (
                 "line",
-                [place(&["distance_mm", "x_mm", "y_mm"]), fields.to_vec()].concat(),
+                [
+                    coordinates(&["distance_mm", "x_mm", "y_mm"]),
+                    fields.to_vec(),
+                ]
+                .concat(),
             ),
             ("extensometer", [&lengths[..], &[force]].concat()),
         ];
@@ -114,8 +118,8 @@ impl<'a> MeasuredFields<'a> {
         let rows = lines.flat_map(|(line, samples)| {
             let points = line.points().into_iter().zip(samples);
             points.map(move |(point, sample)| {
-                let place = [line.distance(point), point[0], point[1]];
-                self.row(state, &line.name, &place, written(sample))
+                let coordinates = [line.distance(point), point[0], point[1]];
+                self.row(state, &line.name, &coordinates, written(sample))
             })
         });
         rows.collect()

@@ -20,14 +20,14 @@ pub fn checks(name: &str, shape: CellShape, cells: usize) -> Result<[Check; 2], 
     let manufactured::Solved { mesh, state, field } =
         manufactured::Solved::new(shape, cells, AMPLITUDE)?;
     let solved = on(&mesh, &state.displacement, |solved| {
-        let exact = solved.distance(|cell, local| field.gradient(mesh.place(cell, local)));
+        let exact = solved.distance(|cell, local| field.gradient(mesh.position(cell, local)));
         effectivity(solved, &exact)
     });
     let (mesh, state) = ring::blown_up(cells, shape)?;
     let (fine, exact) = ring::blown_up(3 * cells, CellShape::Quad9)?;
     let blown_up = on(&mesh, &state.displacement, |solved| {
         let exact = solved.distance(|cell, local| {
-            let (there, local) = fine.locate(mesh.place(cell, local));
+            let (there, local) = fine.locate(mesh.position(cell, local));
             fine.gradient_at(&exact.displacement, there, local)
         });
         effectivity(solved, &exact)

@@ -37,8 +37,8 @@ impl Ring<'_> {
         }
         let radial = 0.5 * (low + high);
         let pressure = -self.stresses([radial, bore_stretch])[0] / bore_stretch;
-        let [_, place] = self.outside(bore_stretch, radial);
-        [pressure, place - self.radii[1]]
+        let [_, position] = self.outside(bore_stretch, radial);
+        [pressure, position - self.radii[1]]
     }
 
     /// P_r and r at the outside, from the stretches at the bore.

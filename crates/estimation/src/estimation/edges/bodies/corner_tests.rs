@@ -16,12 +16,12 @@ const THICKNESS: f64 = 2.0;
 
 /// The nodes of a plate moved to another quadrilateral with straight sides, in any place and direction.
 fn placed(plate: &Mesh, [shear, turn, far]: [f64; 3]) -> Mesh {
-    let place = |[x, y]: [f64; 2]| {
+    let position = |[x, y]: [f64; 2]| {
         let (x, y) = (x + shear * y + 0.01 * shear * x * y, y);
         let (sine, cosine) = turn.sin_cos();
         [far + cosine * x - sine * y, sine * x + cosine * y - far]
     };
-    let nodes = plate.nodes.iter().map(|node| place(*node)).collect();
+    let nodes = plate.nodes.iter().map(|node| position(*node)).collect();
     let cells = (0..plate.cell_count()).map(|cell| (plate.shape(cell), plate.cell(cell).to_vec()));
     let mut mesh = Mesh::new(nodes, cells);
     for side in SIDES {

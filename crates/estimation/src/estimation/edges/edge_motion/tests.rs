@@ -84,7 +84,7 @@ fn a_rigid_edge_keeps_its_length() {
     let mut field = vec![0.0; 2 * mesh.nodes.len()];
     motion.at(&[1.0, 2.0, 1.3]).write(&mut field);
     let nodes = &mesh.groups()["left"].nodes;
-    let place = |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + field[2 * node + axis]);
-    let (a, b) = (place(nodes[0]), place(nodes[nodes.len() - 1]));
+    let position = |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + field[2 * node + axis]);
+    let (a, b) = (position(nodes[0]), position(nodes[nodes.len() - 1]));
     assert!(((a[0] - b[0]).hypot(a[1] - b[1]) - 4.0).abs() < 1e-12);
 }

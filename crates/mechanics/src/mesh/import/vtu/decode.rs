@@ -96,7 +96,9 @@ pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Unreadable> {
     let (mut bytes, mut start) = (Vec::new(), 0);
     while start < plain.len() {
         let padding = plain[start..].iter().position(|byte| *byte == b'=');
-        let end = padding.map_or(plain.len(), |place| (start + place + 1).next_multiple_of(4));
+        let end = padding.map_or(plain.len(), |position| {
+            (start + position + 1).next_multiple_of(4)
+        });
         // Parts begin at multiples of four, for each is padded to them.
         let part = plain.get(start..end).ok_or("is not base64")?;
         let decoded = STANDARD

@@ -271,13 +271,13 @@ proptest! {
     #[test]
     fn damaged_files_never_panic(
         way in 0..25_usize,
-        places in proptest::collection::vec((0.0..1.0_f64, any::<u8>()), 1..6),
+        positions in proptest::collection::vec((0.0..1.0_f64, any::<u8>()), 1..6),
         cut in 0.0..1.2_f64,
     ) {
         let mut bytes = file(ways()[way]);
         let length = bytes.len();
-        for (place, byte) in places {
-            bytes[(place * length as f64) as usize] = byte;
+        for (position, byte) in positions {
+            bytes[(position * length as f64) as usize] = byte;
         }
         bytes.truncate((cut * length as f64) as usize);
         let _ = read(&bytes);

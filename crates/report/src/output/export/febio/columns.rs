@@ -12,10 +12,10 @@ impl Columns {
     pub fn new(model: &Model) -> Self {
         let mut heights: BTreeMap<usize, usize> = BTreeMap::new();
         for (shape, nodes) in &model.cells {
-            for (place, node) in nodes.iter().enumerate() {
+            for (position, node) in nodes.iter().enumerate() {
                 let three = match shape {
                     CellShape::Triangle3 | CellShape::Quad4 => false,
-                    CellShape::Triangle6 | CellShape::Quad8 => place < shape.corners(),
+                    CellShape::Triangle6 | CellShape::Quad8 => position < shape.corners(),
                     CellShape::Quad9 => true,
                 };
                 heights.insert(*node, if three { 3 } else { 2 });

@@ -14,7 +14,7 @@ pub struct Curves(Vec<Vec<[f64; 2]>>);
 impl Curves {
     /// The number of the curve of a node that a support turns, exact at every load factor and at points between.
     pub fn turn(&mut self, model: &Model, held: &Constraint, node: usize) -> usize {
-        let place = model.given.mesh.nodes[node];
+        let position = model.given.mesh.nodes[node];
         let mut points = vec![[0.0, 0.0]];
         for factor in model.given.factors {
             let before = points[points.len() - 1][0];
@@ -23,7 +23,7 @@ impl Curves {
                     TURN_POINTS => *factor,
                     _ => before + (factor - before) * f64::from(i) / f64::from(TURN_POINTS),
                 };
-                points.push([time, held.at(place, time)]);
+                points.push([time, held.at(position, time)]);
             }
         }
         self.0.push(points);

@@ -7,23 +7,23 @@ use super::*;
 /// A `.feb` file as its lists of numbers by tag and number.
 struct Solids {
     text: String,
-    places: BTreeMap<usize, Vec<f64>>,
+    positions: BTreeMap<usize, Vec<f64>>,
 }
 
 impl Solids {
     fn new(text: String) -> Self {
-        let places = rows(&text, "node").into_iter().collect();
-        Self { text, places }
+        let positions = rows(&text, "node").into_iter().collect();
+        Self { text, positions }
     }
 
-    fn place(&self, node: f64) -> &[f64] {
-        &self.places[&(node as usize)]
+    fn position(&self, node: f64) -> &[f64] {
+        &self.positions[&(node as usize)]
     }
 
     /// Whether one node stands in the middle between two others.
     fn assert_middle(&self, node: f64, ends: [f64; 2]) {
-        let [a, b] = ends.map(|end| self.place(end));
-        for (axis, found) in self.place(node).iter().enumerate() {
+        let [a, b] = ends.map(|end| self.position(end));
+        for (axis, found) in self.position(node).iter().enumerate() {
             assert!(
                 (found - 0.5 * (a[axis] + b[axis])).abs() < 1e-9,
                 "{node} between {ends:?}"
@@ -61,7 +61,7 @@ fn febio_gets_half_the_sheet_as_solids() {
             let n = shape.corners();
             for i in 0..n {
                 let next = (i + 1) % n;
-                let (below, above) = (file.place(nodes[i]), file.place(nodes[n + i]));
+                let (below, above) = (file.position(nodes[i]), file.position(nodes[n + i]));
                 assert_eq!((below[2], above[2]), (0.0, 1.0), "{shape:?}");
                 assert_eq!(below[..2], above[..2], "{shape:?}");
                 if shape.degree() == 2 {
@@ -112,7 +112,7 @@ fn febio_gets_half_of_the_loads_on_faces_that_look_outwards() {
             .nth(2)
             .unwrap();
         let face: Vec<f64> = face.split(',').map(|node| node.parse().unwrap()).collect();
-        let [a, b, c] = [0, 1, 2].map(|corner| file.place(face[corner]));
+        let [a, b, c] = [0, 1, 2].map(|corner| file.position(face[corner]));
         assert!(b[0] > a[0] && c[2] > b[2], "{shape:?}");
         assert!(file.text.contains("<pressure lc=\"1\">0.01</pressure>"));
     }

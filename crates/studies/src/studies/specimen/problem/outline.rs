@@ -60,7 +60,7 @@ impl Outline {
     pub fn bounding_box(&self) -> [[f64; 2]; 2] {
         let [low, high] = self.coarse().bounding_box();
         let size = (high[0] - low[0]).max(high[1] - low[1]);
-        [low, high].map(|corner| corner.map(|place| without_rounding(place, size)))
+        [low, high].map(|corner| corner.map(|position| without_rounding(position, size)))
     }
 
     /// The extent along both axes in mm.
@@ -297,12 +297,12 @@ fn coarsest_cells(cells: usize, element: CellShape) -> usize {
 }
 
 /// A place without what rounding has left of it, compared with the size of the mesh.
-fn without_rounding(place: f64, size: f64) -> f64 {
+fn without_rounding(position: f64, size: f64) -> f64 {
     const ROUNDING: f64 = 1e-12;
-    if place.abs() < ROUNDING * size {
+    if position.abs() < ROUNDING * size {
         0.0
     } else {
-        format!("{place:.11e}").parse().unwrap_or(place)
+        format!("{position:.11e}").parse().unwrap_or(position)
     }
 }
 
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn places_are_told_without_what_rounding_left() {
-        let told = |place: f64| without_rounding(place, 20.0).to_string();
+        let told = |position: f64| without_rounding(position, 20.0).to_string();
         assert_eq!(told(6.123233995736766e-16), "0");
         assert_eq!(told(20.000000000000004), "20");
         assert_eq!(told(0.1 + 0.2), "0.3");

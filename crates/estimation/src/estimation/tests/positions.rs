@@ -16,17 +16,17 @@ fn strip(size: [f64; 2], across: usize) -> Mesh {
 }
 
 /// From the window, which lies around the hole, to the whole strip.
-fn there(place: [f64; 2]) -> [f64; 2] {
-    [place[0] + 0.5 * (WHOLE[0] - WINDOW[0]), place[1]]
+fn there(position: [f64; 2]) -> [f64; 2] {
+    [position[0] + 0.5 * (WHOLE[0] - WINDOW[0]), position[1]]
 }
 
 /// Markers half a spacing inside of the window.
-fn places(window: &Mesh) -> Vec<[f64; 2]> {
+fn positions(window: &Mesh) -> Vec<[f64; 2]> {
     let counts = WINDOW.map(|side| (side / SPACING).round());
     let at = |axis: usize, index: f64| (index + 0.5) / counts[axis] * WINDOW[axis];
     let grid = (0..counts[0] as u32).flat_map(|i| (0..counts[1] as u32).map(move |j| [i, j]));
     grid.map(|[i, j]| [at(0, i.into()), at(1, j.into()) - 0.5 * WINDOW[1]])
-        .filter(|place| window.outside(*place) < 1e-6)
+        .filter(|position| window.outside(*position) < 1e-6)
         .collect()
 }
 
@@ -35,8 +35,8 @@ fn places(window: &Mesh) -> Vec<[f64; 2]> {
 fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
     let (whole, window) = (Truth::on(strip(WHOLE, 24)), strip(WINDOW, 12));
     let exact = |cell: usize| -> [f64; 4] {
-        let place = there(window.place(cell, window.shape(cell).centre()));
-        let (cell, local) = whole.mesh.locate(place);
+        let position = there(window.position(cell, window.shape(cell).centre()));
+        let (cell, local) = whole.mesh.locate(position);
         let gradient = whole.mesh.gradient_at(whole.field(), cell, local);
         let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
         law().stress(&kinematics).1.into()
@@ -45,10 +45,15 @@ fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
         unnamed: Unnamed::Loaded,
         ..Knowledge::default()
     };
-    let places = places(&window);
+    let positions = positions(&window);
     let mut squares = vec![[[0.0; 2]; 4]; window.cell_count()];
     for seed in 0..SEEDS {
-        let markers = noisy(&places, &|place| whole.at(there(place)), NOISE, seed);
+        let markers = noisy(
+            &positions,
+            &|position| whole.at(there(position)),
+            NOISE,
+            seed,
+        );
         let found = estimate(&specimen(&window), &markers, &knowledge).unwrap();
         for (cell, (own, sums)) in found.cells.iter().zip(&mut squares).enumerate() {
             let exact = exact(cell);
