@@ -274,7 +274,10 @@ misspelt = 1
             let faults = read_as(kind, Path::new("x.toml"), text, Budget::USUAL)
                 .map(|_| ())
                 .unwrap_err();
-            assert!(faults.to_string().contains("misspelt: unknown key"), "{faults}");
+            assert!(
+                faults.to_string().contains("misspelt: unknown key"),
+                "{faults}"
+            );
         }
         assert!(kind_of("x.toml", "kind = \"plate\"").unwrap().is_none());
         let fault = kind_of("x.toml", "kind = \"smoothin\"")

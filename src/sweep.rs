@@ -171,7 +171,8 @@ impl Sweep {
     /// Whether values are drawn from distributions without bounds.
     fn is_drawn(&self) -> bool {
         let mut variables = self.variables.iter();
-        self.fitted.is_some() || variables.any(|variable| matches!(variable.values, Values::Normal(..)))
+        self.fitted.is_some()
+            || variables.any(|variable| matches!(variable.values, Values::Normal(..)))
     }
 
     /// Reads the study of a run.
@@ -188,7 +189,9 @@ impl Sweep {
             }
             other => other,
         };
-        self.study.with(&self.keys(), &run.settings).map_err(located)
+        self.study
+            .with(&self.keys(), &run.settings)
+            .map_err(located)
     }
 
     fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {

@@ -216,7 +216,11 @@ pub fn corrected<'py>(
             let estimated = corrector
                 .estimate(&data, &solution, *unknown)
                 .map_err(failed)?;
-            Ok((estimated.value, estimated.standard_error, estimated.interval.into()))
+            Ok((
+                estimated.value,
+                estimated.standard_error,
+                estimated.interval.into(),
+            ))
         };
         let estimates = estimate
             .iter()

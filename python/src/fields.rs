@@ -66,7 +66,9 @@ pub fn blocks<'py>(
             groups.len() - 1
         });
         groups[at].2.push(number as i64);
-        groups[at].3.extend(points.iter().map(|point| *point as i64));
+        groups[at]
+            .3
+            .extend(points.iter().map(|point| *point as i64));
     }
     let block = |(kind, width, numbers, points): (u8, usize, Vec<i64>, Vec<i64>)| {
         let shape = [numbers.len(), width];

@@ -153,7 +153,8 @@ pub fn correct(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Results, String)> {
     let regions = options.regions.iter();
-    let regions = regions.map(|(name, material_card)| (name.clone(), (*material_card.borrow(py).card).clone()));
+    let regions = regions
+        .map(|(name, material_card)| (name.clone(), (*material_card.borrow(py).card).clone()));
     let regions: Vec<(String, Card)> = regions.collect();
     run(py, progress, |watch| {
         let card = watched((*material.card).clone(), watch);

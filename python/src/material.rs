@@ -44,7 +44,11 @@ impl MaterialCard {
         let mut document = EditedDocument::parse(&card.text).map_err(refused)?;
         for (key, value) in values {
             if !card.parameters.iter().any(|parameter| parameter.key == key) {
-                let known: Vec<_> = card.parameters.iter().map(|parameter| parameter.key).collect();
+                let known: Vec<_> = card
+                    .parameters
+                    .iter()
+                    .map(|parameter| parameter.key)
+                    .collect();
                 let hint = suggestion(key, &known, "its parameters are");
                 return Err(input(format!("the law has no parameter `{key}`"), hint));
             }

@@ -60,7 +60,8 @@ impl Solution {
         mut sheet: Sheet,
         groups: Vec<String>,
     ) -> PyResult<Self> {
-        sheet.warnings
+        sheet
+            .warnings
             .extend(model.warnings.iter().map(ToString::to_string));
         let ends = model.ends.iter();
         let ends = ends.map(|end| exception(py, end).into_value(py).into_any());
@@ -241,12 +242,16 @@ impl Solution {
             });
             asked.collect::<Result<Vec<_>, gelbench::problem::PointFault>>()
         })?;
-        let values_at_points = values_at_points.map_err(|fault| exception(py, &refused(fault.to_string())))?;
+        let values_at_points =
+            values_at_points.map_err(|fault| exception(py, &refused(fault.to_string())))?;
         debug_assert_eq!(values_at_points.len(), points.shape()[0]);
         let of = |values: Vec<f64>, width| rows(py, values, width);
         Ok([
             of(values_at_points.iter().flat_map(|(u, ..)| *u).collect(), 2)?,
-            of(values_at_points.iter().flat_map(|(_, s, _)| *s).collect(), 3)?,
+            of(
+                values_at_points.iter().flat_map(|(_, s, _)| *s).collect(),
+                3,
+            )?,
             of(values_at_points.iter().flat_map(|(.., l)| *l).collect(), 3)?,
         ])
     }

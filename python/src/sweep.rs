@@ -128,7 +128,8 @@ impl Sweep {
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
         let mut columns = Vec::new();
         for (place, key) in self.sweep.keys().into_iter().enumerate() {
-            let settings: Vec<&Setting> = self.runs.iter().map(|run| &run.settings[place]).collect();
+            let settings: Vec<&Setting> =
+                self.runs.iter().map(|run| &run.settings[place]).collect();
             let unit = settings.first().map_or("", |setting| setting.unit());
             columns.push((sweep::headed(&key, unit), values(py, &settings)?));
         }
@@ -166,7 +167,9 @@ impl Sweep {
                     ended(row.number);
                     Ok(())
                 };
-                table.rows = self.sweep.compute(&share_runs, HashMap::new(), &keep, &attend)?;
+                table.rows = self
+                    .sweep
+                    .compute(&share_runs, HashMap::new(), &keep, &attend)?;
                 return Ok(table);
             };
             let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
@@ -326,7 +329,8 @@ impl SweepTable {
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
         let mut columns = Vec::new();
         for (place, key) in self.keys.iter().enumerate() {
-            let settings: Vec<&Setting> = self.rows.iter().map(|row| &row.settings[place]).collect();
+            let settings: Vec<&Setting> =
+                self.rows.iter().map(|row| &row.settings[place]).collect();
             let unit = settings.first().map_or("", |setting| setting.unit());
             columns.push((sweep::headed(key, unit), values(py, &settings)?));
         }

@@ -201,12 +201,17 @@ fn table(compared: &Comparison, differences: &[Difference], with_mesh: bool) -> 
     Table::of(compared.models.fields.iter().zip(differences))
         .column("model", |(field, _)| field.model.to_owned())
         .column_if(with_mesh, "mesh", |(field, _)| field.mesh.describe())
-        .column("displacement [%]", |(_, difference)| format!("{:.4}", difference.percent))
+        .column("displacement [%]", |(_, difference)| {
+            format!("{:.4}", difference.percent)
+        })
         .column("largest difference [mm]", |(_, difference)| {
             format!("{:.5}", difference.largest)
         })
         .column("at (x, y) [mm]", |(_, difference)| {
-            format!("({:.3}, {:.3})", difference.position[0], difference.position[1])
+            format!(
+                "({:.3}, {:.3})",
+                difference.position[0], difference.position[1]
+            )
         })
         .block()
 }

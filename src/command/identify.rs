@@ -136,13 +136,22 @@ pub fn run(options: Options) -> Outcome {
     tell_files(&files);
     print_report(|| json)?;
     warn(warnings.as_slice());
-    warn_words(identification.verdict.doubts.iter().chain(&identification.warnings));
+    warn_words(
+        identification
+            .verdict
+            .doubts
+            .iter()
+            .chain(&identification.warnings),
+    );
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&identification, &recording, &path),
         folder.join(format!("{stem}.toml")).display()
     ))?;
-    Ok(exit_code(identification.verdict.answer, identification.verdict.is_sound()))
+    Ok(exit_code(
+        identification.verdict.answer,
+        identification.verdict.is_sound(),
+    ))
 }
 
 /// Refuses a recording that is larger than the budget.

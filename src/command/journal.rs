@@ -72,7 +72,10 @@ impl FolderJournal {
             );
             Diagnostic::warning("", message)
         };
-        (self.folder.into_inner(), self.fault.into_inner().map(fault_text))
+        (
+            self.folder.into_inner(),
+            self.fault.into_inner().map(fault_text),
+        )
     }
 
     /// Writes what is not written yet, unless that has failed before.
@@ -81,7 +84,10 @@ impl FolderJournal {
         if self.fault.borrow().is_some() {
             return;
         }
-        let kept = self.folder.borrow_mut().keep(&part.to_string(), &milestones);
+        let kept = self
+            .folder
+            .borrow_mut()
+            .keep(&part.to_string(), &milestones);
         self.fault.replace(kept.err());
         self.parts.set(part + 1);
         self.written.set(Instant::now());

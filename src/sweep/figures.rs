@@ -47,8 +47,7 @@ impl Row {
                 let mut flat = Vec::new();
                 flatten(model, quantities, &mut flat);
                 figures.extend(
-                    flat
-                        .into_iter()
+                    flat.into_iter()
                         .map(|(name, value)| (format!("{name}@{at}"), value)),
                 );
             }

@@ -40,7 +40,12 @@ impl Points {
             .iter()
             .map(|(head, values)| column(head, values))
             .collect::<Result<_, _>>()?;
-        let row = |index: usize| columns.iter().map(|(_, values)| values[index].clone()).collect();
+        let row = |index: usize| {
+            columns
+                .iter()
+                .map(|(_, values)| values[index].clone())
+                .collect()
+        };
         Ok(Self {
             rows: (0..count).map(row).collect(),
             keys: columns.iter().map(|(key, _)| (*key).to_owned()).collect(),

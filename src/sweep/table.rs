@@ -85,7 +85,8 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
         let filled = figures
             .clone()
             .filter(|position| !line[*position].is_empty());
-        let filled = filled.map(|position| Some((head[position].clone(), line[position].parse().ok()?)));
+        let filled =
+            filled.map(|position| Some((head[position].clone(), line[position].parse().ok()?)));
         Some(Row {
             number: line[0].parse().ok()?,
             settings: settings.map(|(text, unit)| setting(text, unit)).collect(),

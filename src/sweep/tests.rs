@@ -375,7 +375,10 @@ fn a_sweep_over_other_keys_or_values_goes_beside_the_one_that_is_there() {
     open(&width, &|folder| assert!(folder.replaces().is_none()));
     open(&thickness, &|folder| {
         let message = folder.replaces().unwrap().message;
-        assert!(message.contains("another sweep: it is replaced"), "{message}");
+        assert!(
+            message.contains("another sweep: it is replaced"),
+            "{message}"
+        );
     });
     let adjacent = free_folder(&thickness, output.clone()).unwrap();
     assert!(adjacent.ends_with("out_2"), "{adjacent:?}");
@@ -432,12 +435,18 @@ fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
 fn what_deserves_attention_in_single_runs_is_told_of_all_together() {
     let mut sweep = sweep(&["plate.thickness=1 mm,2 mm"], None);
     let warnings = cautions(&rows(&sweep));
-    assert!(!warnings.iter().any(|one| one.contains("range")), "{warnings:?}");
+    assert!(
+        !warnings.iter().any(|one| one.contains("range")),
+        "{warnings:?}"
+    );
     let pressed = STUDY.replace("10 %", "-5 %").replace("20 %", "-10 %");
     sweep.study.text = pressed.replace("neo-hooke", "pva-10-yeoh");
     let rows = rows(&sweep);
     let warnings = cautions(&rows);
-    let outside: Vec<&String> = warnings.iter().filter(|one| one.contains("range")).collect();
+    let outside: Vec<&String> = warnings
+        .iter()
+        .filter(|one| one.contains("range"))
+        .collect();
     assert!(
         matches!(outside[..], [one] if one.starts_with("Run 1 and another: ")),
         "{warnings:?}"
@@ -447,7 +456,10 @@ fn what_deserves_attention_in_single_runs_is_told_of_all_together() {
     assert_eq!(read, rows);
     assert_eq!(json(&keys, &rows)["warnings"][0], warnings[0]);
     // Each kind of warning once, without a word before it.
-    assert!(warnings.iter().all(|one| !one.contains("Warning")), "{warnings:?}");
+    assert!(
+        warnings.iter().all(|one| !one.contains("Warning")),
+        "{warnings:?}"
+    );
 }
 
 #[test]

@@ -81,7 +81,12 @@ impl Measure {
         let frames = pairs
             .map(|pair| 1e3 * (pair[1] - pair[0]).as_secs_f64())
             .collect();
-        let work = self.work.iter().skip(WARMING).map(|work| 1e3 * work).collect();
+        let work = self
+            .work
+            .iter()
+            .skip(WARMING)
+            .map(|work| 1e3 * work)
+            .collect();
         let solved = self.solved.iter().map(|seconds| 1e3 * seconds).collect();
         let [[frame, worst], [work, most], [field, slowest]] =
             [frames, work, solved].map(median_and_worst);

@@ -46,7 +46,10 @@ pub fn tell(bench: &Workbench, context: &Context) {
         .materials()
         .ranking()
         .and_then(|ranking| ranking.as_ref().ok());
-    let answer = bench.fields().answer().and_then(|answer| answer.as_ref().ok());
+    let answer = bench
+        .fields()
+        .answer()
+        .and_then(|answer| answer.as_ref().ok());
     let frames = answer.and_then(|answer| answer.corrected.as_ref());
     let report = bench
         .studies()

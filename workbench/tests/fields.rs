@@ -112,7 +112,10 @@ fn a_known_edge_takes_its_displacement_and_a_wrong_one_is_told() {
     bench.get_by_label("correct").click();
     bench.step();
     until(&mut bench, |bench| {
-        bench.fields().answer().is_some_and(|answer| answer.is_err())
+        bench
+            .fields()
+            .answer()
+            .is_some_and(|answer| answer.is_err())
     });
     bench.step();
     assert!(

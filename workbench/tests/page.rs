@@ -239,7 +239,9 @@ fn frames_are_timed() {
         };
         let mut page = Browser::open_with([1200, 800], &scene.study(), 600);
         let begun = Instant::now();
-        let state = page.until_within(Duration::from_secs(240), |state| state["frames"].is_string());
+        let state = page.until_within(Duration::from_secs(240), |state| {
+            state["frames"].is_string()
+        });
         println!(
             "{} × {} cells: {} ({:.0} s)",
             cells[0],
@@ -277,7 +279,11 @@ fn the_sheet_is_let_go_and_held_again_in_the_browser() {
     let mut page = Browser::open([1000, 700]);
     page.until(settled);
     page.press("l");
-    page.until(|state| state["moving"][0].as_f64().is_some_and(|clock| clock > 0.02));
+    page.until(|state| {
+        state["moving"][0]
+            .as_f64()
+            .is_some_and(|clock| clock > 0.02)
+    });
     page.picture("sheet_let_go");
     page.press("Escape");
     page.until(|state| state["moving"].is_null());
@@ -328,7 +334,11 @@ fn the_first_two_minutes() {
     page.until(settled);
     page.picture("newcomer_3_pulled");
     page.press_button("release");
-    page.until(|state| state["moving"][0].as_f64().is_some_and(|clock| clock > 0.01));
+    page.until(|state| {
+        state["moving"][0]
+            .as_f64()
+            .is_some_and(|clock| clock > 0.01)
+    });
     page.picture("newcomer_4_let_go");
     page.press("Escape");
     for (number, scene) in [

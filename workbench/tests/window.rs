@@ -177,7 +177,10 @@ fn a_dropped_file_that_nothing_reads_says_what_would_be() {
         state_mut(&mut bench).open(name, content);
         bench.step();
         let message = state(&bench).message();
-        assert!(message.contains(name) && message.contains("(.toml"), "{message}");
+        assert!(
+            message.contains(name) && message.contains("(.toml"),
+            "{message}"
+        );
         assert_eq!(state(&bench).tab(), Tab::Sheet, "nothing else happens");
         assert!(state(&bench).studies().files().is_empty());
         assert!(bench.query_by_label_contains(name).is_some());
@@ -218,7 +221,12 @@ fn a_dropped_test_is_fitted_and_the_sheet_is_made_of_it() {
     bench.get_by_label("fit").click();
     bench.step();
     until(&mut bench, |bench| bench.materials().ranking().is_some());
-    let ranking = state(&bench).materials().ranking().unwrap().as_ref().unwrap();
+    let ranking = state(&bench)
+        .materials()
+        .ranking()
+        .unwrap()
+        .as_ref()
+        .unwrap();
     assert!(ranking.fits.len() > 5, "{}", ranking.fits.len());
     bench.step();
     bench.get_by_label("use it for the sheet").click();

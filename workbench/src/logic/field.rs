@@ -315,7 +315,11 @@ fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Co
         &Option<gelbench::estimation::MarkerEstimate>,
     )| {
         let marker_estimate = marker_estimate.as_ref()?;
-        Some((marker.position, marker_estimate.residual, marker_estimate.trust))
+        Some((
+            marker.position,
+            marker_estimate.residual,
+            marker_estimate.trust,
+        ))
     };
     let forces = estimate.forces.iter().map(|force| {
         let axes = force

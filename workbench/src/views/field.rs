@@ -194,7 +194,9 @@ impl Fields {
                 return None;
             }
             let answered = self.answer.take();
-            let answer = answered.as_ref().and_then(|answered| answered.as_ref().ok());
+            let answer = answered
+                .as_ref()
+                .and_then(|answered| answered.as_ref().ok());
             let corrected = answer.is_some_and(|answer| answer.corrected.is_some());
             let file = if corrected && ui.available_width() > WIDE {
                 ui.columns(2, |columns| {

@@ -182,7 +182,10 @@ fn by_keys(ui: &Ui, pulled: &Response, id: Id, scene: &Scene) -> Option<Grip> {
         let step = 0.01 * scene.size[0] * fine;
         let [x, y] = scene.grip.displacement;
         let to = Grip {
-            displacement: [x + step * f64::from(direction.x), y + step * f64::from(direction.y)],
+            displacement: [
+                x + step * f64::from(direction.x),
+                y + step * f64::from(direction.y),
+            ],
             angle: scene.grip.angle + (fine * turn).to_radians(),
         };
         (to != scene.grip).then_some(to)

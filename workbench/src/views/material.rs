@@ -105,7 +105,10 @@ impl Materials {
             let chart = material_chart(card);
             offers.extend(exports::chart("the card's curves", "curves", &chart));
         }
-        let ranking = self.ranking.as_ref().and_then(|ranking| ranking.as_ref().ok());
+        let ranking = self
+            .ranking
+            .as_ref()
+            .and_then(|ranking| ranking.as_ref().ok());
         if let Some(fit) = ranking.and_then(|ranking| ranking.fits.get(self.chosen)) {
             for (number, chart) in fit.charts.iter().enumerate() {
                 let what = ["the fit", "its residuals"][number.min(1)];

@@ -41,13 +41,13 @@ pub fn sizes(
 fn likelihood(curves: &[Vec<usize>], residual: &DVector<f64>, squares: &DVector<f64>) -> f64 {
     const FEWEST: usize = 3;
     let of_curve = |rows: &Vec<usize>| {
-        let own = rows.windows(3).map(|near| {
+        let terms = rows.windows(3).map(|near| {
             let [before, at, after] = [0, 1, 2].map(|position| near[position]);
             let variance = (4.0 * squares[at] + squares[before] + squares[after]) / 6.0;
             let difference = 2.0 * residual[at] - residual[before] - residual[after];
             (variance.ln(), difference.powi(2) / 6.0 / variance)
         });
-        let (logarithms, ratios): (Vec<f64>, Vec<f64>) = own.unzip();
+        let (logarithms, ratios): (Vec<f64>, Vec<f64>) = terms.unzip();
         let count = ratios.len() as f64;
         let mean = ratios.iter().sum::<f64>() / count;
         if ratios.len() < FEWEST || mean == 0.0 {
@@ -83,15 +83,15 @@ mod tests {
 
     #[test]
     fn noise_that_grows_is_found_on_a_wave_and_even_noise_stays_even() {
-        let found = |correlation, rise| {
+        let count = |correlation, rise| {
             let seeds = 0..100;
-            let found = seeds.filter(|seed| sizes_of(correlation, rise, *seed).is_some());
-            found.count()
+            let seeds = seeds.filter(|seed| sizes_of(correlation, rise, *seed).is_some());
+            seeds.count()
         };
-        assert!(found(0.0, 0.0) <= 1 && found(0.9, 0.0) <= 1);
-        assert!(found(0.0, 9.0) >= 70, "{}", found(0.0, 9.0));
-        let found = sizes_of(0.0, 9.0, 1).unwrap();
-        assert!((found.norm_squared() / 80.0 - 1.0).abs() < 1e-12);
-        assert!(found[79] / found[0] > 3.0, "{found}");
+        assert!(count(0.0, 0.0) <= 1 && count(0.9, 0.0) <= 1);
+        assert!(count(0.0, 9.0) >= 70, "{}", count(0.0, 9.0));
+        let estimate = sizes_of(0.0, 9.0, 1).unwrap();
+        assert!((estimate.norm_squared() / 80.0 - 1.0).abs() < 1e-12);
+        assert!(estimate[79] / estimate[0] > 3.0, "{estimate}");
     }
 }

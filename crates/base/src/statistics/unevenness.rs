@@ -77,28 +77,28 @@ impl Unevenness {
     /// The unevenness of vectors of noise at some places, `None` at places that are not sound; `None` where all may be of one size.
     pub fn found(positions: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
         let sound = positions.iter().zip(noise);
-        let (own, z): (Vec<_>, Vec<_>) = sound
+        let (places, z): (Vec<_>, Vec<_>) = sound
             .filter_map(|(position, z)| Some((*position, (*z)?)))
             .unzip();
-        let told = Told::of(&own, &z)?;
-        let apart = told.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
-        let ratios = told.slopes(&apart);
-        let ratio = told.mean_apart(&apart);
+        let information = Told::of(&places, &z)?;
+        let apart = information.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
+        let ratios = information.slopes(&apart);
+        let ratio = information.mean_apart(&apart);
         let by = ratio.unwrap_or(0.0).exp();
         let together = match ratios {
-            Some(_) => told.logarithms(VARIANCE, |x, y| 0.5 * (x * y).ln()),
-            None => told.logarithms(VARIANCE_OF_SUM, |x, y| (x / by + y * by).ln()),
+            Some(_) => information.logarithms(VARIANCE, |x, y| 0.5 * (x * y).ln()),
+            None => information.logarithms(VARIANCE_OF_SUM, |x, y| (x / by + y * by).ln()),
         };
-        let sizes = told.slopes(&together);
+        let sizes = information.slopes(&together);
         if sizes.is_none() && ratios.is_none() && ratio.is_none() {
             return None;
         }
-        let sites = sites(positions, &own, told.margin)?;
+        let sites = sites(positions, &places, information.margin)?;
         let nothing = [0.0; TERMS];
         let sizes = at(&sizes.unwrap_or(nothing), &sites);
         // The mean of the ratios is that of their logarithms, where it is any.
         let off = match &ratios {
-            Some(slopes) => apart.values.mean() - mean(&at(slopes, &told.sites)),
+            Some(slopes) => apart.values.mean() - mean(&at(slopes, &information.sites)),
             None => ratio.unwrap_or(0.0),
         };
         let ratios = at(&ratios.unwrap_or(nothing), &sites);
@@ -109,7 +109,8 @@ impl Unevenness {
         let [x, y] = [x, y].map(bounded);
         let middle = 0.5 * (mean(&x) + mean(&y));
         let factors = x.iter().zip(&y);
-        let factors = factors.map(|(x, y)| [x, y].map(|own| (0.5 * (own - middle)).exp()));
+        let factors =
+            factors.map(|(x, y)| [x, y].map(|logarithm| (0.5 * (logarithm - middle)).exp()));
         Some(Self {
             factors: factors.collect(),
         })
@@ -158,14 +159,14 @@ impl Told {
             let squares = chosen.iter().map(|index| differences[*index][axis].powi(2));
             above_rounding(squares.collect())
         };
-        let own: Vec<[f64; 2]> = chosen.iter().map(|index| positions[*index]).collect();
+        let places: Vec<[f64; 2]> = chosen.iter().map(|index| positions[*index]).collect();
         Some(Self {
             margin,
             sites: chosen
                 .iter()
                 .map(|index| with_margin(all[*index], margin))
                 .collect(),
-            around: nearest(&own, FAR),
+            around: nearest(&places, FAR),
             squares: [0, 1].map(squares),
         })
     }
@@ -194,12 +195,12 @@ impl Told {
         });
         let values = &logarithms.values;
         let right = values.add_scalar(-values.mean());
-        let found = design.clone().svd(true, true).solve(&right, 1e-9).ok()?;
-        let fitted = &design * &found;
+        let coefficients = design.clone().svd(true, true).solve(&right, 1e-9).ok()?;
+        let fitted = &design * &coefficients;
         let statistic =
             fitted.norm_squared() / self.variance(&(right - &fitted), logarithms.variance);
         let mut slopes = [0.0; TERMS];
-        slopes[..count].copy_from_slice(found.as_slice());
+        slopes[..count].copy_from_slice(coefficients.as_slice());
         let [low, high] = extremes(at(&slopes, sites));
         let is_sure = statistic > chi_squared_limit(count as f64, LEVEL);
         (is_sure && high - low > 2.0 * LEAST.ln()).then_some(slopes)
@@ -208,21 +209,21 @@ impl Told {
     /// The mean of ln σx/σy, where it is significantly different from zero.
     fn mean_apart(&self, apart: &Logarithms) -> Option<f64> {
         let mean = apart.values.mean();
-        let left = apart.values.add_scalar(-mean);
-        let error = (self.variance(&left, apart.variance) / left.len() as f64).sqrt();
+        let residuals = apart.values.add_scalar(-mean);
+        let error = (self.variance(&residuals, apart.variance) / residuals.len() as f64).sqrt();
         let is_sure = mean.abs() > SURE * error && mean.abs() > LEAST_OF_COMPONENTS.ln();
         is_sure.then_some(mean)
     }
 
     /// v s², from the residuals. Gross errors spread logarithms more widely than noise does.
-    fn variance(&self, left: &DVector<f64>, least: f64) -> f64 {
-        let products = self.around.iter().enumerate().map(|(own, others)| {
-            let beside = others.iter().map(|other| left[*other]).sum::<f64>();
-            left[own] * (left[own] + beside)
+    fn variance(&self, residuals: &DVector<f64>, least: f64) -> f64 {
+        let products = self.around.iter().enumerate().map(|(index, others)| {
+            let adjacent = others.iter().map(|other| residuals[*other]).sum::<f64>();
+            residuals[index] * (residuals[index] + adjacent)
         });
-        let square = left.norm_squared();
+        let square = residuals.norm_squared();
         let common = share(products.sum::<f64>(), square).max(COMMON);
-        common * (square / left.len() as f64).max(least)
+        common * (square / residuals.len() as f64).max(least)
     }
 }
 
@@ -248,7 +249,7 @@ fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
     let most = least + 2.0 * MOST;
     logarithms
         .into_iter()
-        .map(|own| own.clamp(least, most))
+        .map(|logarithm| logarithm.clamp(least, most))
         .collect()
 }
 
@@ -256,8 +257,8 @@ fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
 fn sites(positions: &[[f64; 2]], sound: &[[f64; 2]], margin: bool) -> Option<Vec<[f64; TERMS]>> {
     let sides = [0, 1].map(|axis| extremes(sound.iter().map(|position| position[axis])));
     let around = nearest(positions, AROUND).into_iter().enumerate();
-    let of_place = |(own, others): (usize, Vec<usize>)| {
-        let position = positions[own];
+    let of_place = |(index, others): (usize, Vec<usize>)| {
+        let position = positions[index];
         let [x, y] = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
             share(2.0 * position[axis] - low - high, high - low)
@@ -284,31 +285,32 @@ fn out_of_the_middle(positions: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize])
 }
 
 /// A ratio; zero where the whole is not positive.
-fn share(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
+fn share(part: f64, total: f64) -> f64 {
+    if total > 0.0 { part / total } else { 0.0 }
 }
 
 /// dᵢ; `None` where a component has no noise at all.
 fn differences(around: &[Vec<usize>], z: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let pairs = around.iter().zip(z);
-    let differences = pairs.map(|(others, own)| {
+    let differences = pairs.map(|(others, vector)| {
         let others = &others[..NEIGHBOURS];
         [0, 1].map(|axis| {
-            let beside = others.iter().map(|other| z[*other][axis]).sum::<f64>();
-            own[axis] - beside / NEIGHBOURS as f64
+            let adjacent = others.iter().map(|other| z[*other][axis]).sum::<f64>();
+            vector[axis] - adjacent / NEIGHBOURS as f64
         })
     });
     let differences: Vec<[f64; 2]> = differences.collect();
-    let is_some = |axis: usize| differences.iter().any(|own| own[axis] != 0.0);
+    let is_some = |axis: usize| differences.iter().any(|vector| vector[axis] != 0.0);
     let all = differences.iter().flatten();
-    (is_some(0) && is_some(1) && all.clone().all(|own| own.is_finite())).then_some(differences)
+    (is_some(0) && is_some(1) && all.clone().all(|component| component.is_finite()))
+        .then_some(differences)
 }
 
 /// The correlation of neighbours, of both components together.
 fn correlation(around: &[Vec<usize>], z: &[[f64; 2]]) -> f64 {
-    let of_place = |(others, own): (&Vec<usize>, &[f64; 2])| -> f64 {
+    let of_place = |(others, vector): (&Vec<usize>, &[f64; 2])| -> f64 {
         let others = others[..NEIGHBOURS].iter();
-        let products = others.map(|other| own[0] * z[*other][0] + own[1] * z[*other][1]);
+        let products = others.map(|other| vector[0] * z[*other][0] + vector[1] * z[*other][1]);
         products.sum::<f64>() / NEIGHBOURS as f64
     };
     let squares = z.iter().map(|[x, y]| x * x + y * y);
@@ -328,7 +330,7 @@ fn above_rounding(squares: Vec<f64>) -> DVector<f64> {
     const LEAST: f64 = 1e-4;
     let squares = DVector::from_vec(squares);
     let floor = LEAST * squares.mean();
-    squares.map(|own| own.max(floor))
+    squares.map(|square| square.max(floor))
 }
 
 #[cfg(test)]

@@ -47,7 +47,8 @@ impl Classes {
 
     pub fn join(mut self, other: &Self) -> Self {
         let classes = self.classes.iter_mut().flatten();
-        classes.zip(other.classes.iter().flatten())
+        classes
+            .zip(other.classes.iter().flatten())
             .for_each(|(class, other)| *class += other);
         self
     }
@@ -166,7 +167,10 @@ mod tests {
             classes.add(intensity, truth.variance(intensity) * value * value);
         }
         let estimate = classes.noise().unwrap();
-        assert!((estimate.base / truth.base - 1.0).abs() < 0.2, "{estimate:?}");
+        assert!(
+            (estimate.base / truth.base - 1.0).abs() < 0.2,
+            "{estimate:?}"
+        );
         assert!(
             (estimate.growth / truth.growth - 1.0).abs() < 0.05,
             "{estimate:?}"

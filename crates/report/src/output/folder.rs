@@ -179,7 +179,8 @@ impl ResultFolder {
     /// A warning for each file that is somebody else's and in the way of one that was added since the last time.
     pub fn in_the_way(&mut self) -> Vec<Diagnostic> {
         let new = &self.names[self.looked_at..];
-        let warnings = unlisted_files(&self.path, new, &self.before).map(|position| kept(&position));
+        let warnings =
+            unlisted_files(&self.path, new, &self.before).map(|position| kept(&position));
         let others = self.of_another_command(new);
         let warnings = warnings.chain(others).collect();
         self.looked_at = self.names.len();

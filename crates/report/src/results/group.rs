@@ -41,7 +41,8 @@ pub fn group_table(groups: &[NamedGroup]) -> String {
         for group in groups {
             let stress = group.states[row].stress;
             let [low, high] = stress.estimate().interval;
-            record.extend([stress.mean, low, high, stress.between].map(|figure| figure.to_string()));
+            record
+                .extend([stress.mean, low, high, stress.between].map(|figure| figure.to_string()));
         }
         if let [first, second] = groups {
             let difference = first.states[row]

@@ -18,7 +18,8 @@ pub fn identification_picture(identification: &Identification, recording: &Recor
         Argument::Extension => (&motion.extension, "extension x [mm]"),
         Argument::Rate => (&motion.rate, "rate of extension [mm/s]"),
     };
-    let elastic = |i: usize| identification.stiffness.at(motion.extension[i]).value * motion.extension[i];
+    let elastic =
+        |i: usize| identification.stiffness.at(motion.extension[i]).value * motion.extension[i];
     let viscous = |i: usize| identification.damping.at(over[i]).value * motion.rate[i];
     let force = |i: usize| recording.force[i] - recording.mass * motion.acceleration[i];
     let stiffness = secants(&motion.extension, &motion.extension, &|i| {
@@ -47,7 +48,9 @@ fn secants(divisor: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> V
         .iter()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
     let instants = (0..divisor.len()).filter(|i| divisor[*i].abs() > LEAST * most);
-    instants.map(|i| [argument[i], force(i) / divisor[i]]).collect()
+    instants
+        .map(|i| [argument[i], force(i) / divisor[i]])
+        .collect()
 }
 
 fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Line> {
@@ -97,7 +100,12 @@ fn residuals(identification: &Identification, recording: &Recording) -> LineChar
             noise,
             PALETTE[5],
         ),
-        residual("force", [force, &identification.motion.force], force_noise, INK),
+        residual(
+            "force",
+            [force, &identification.motion.force],
+            force_noise,
+            INK,
+        ),
     ];
     let title = "Residuals: measured less fitted, over the noise";
     LineChart::new(
@@ -109,7 +117,11 @@ fn residuals(identification: &Identification, recording: &Recording) -> LineChar
 }
 
 /// All numbers of an identification. Numbers that do not exist are `null`.
-pub fn identification_json(identification: &Identification, recording: &Recording, file: &str) -> Value {
+pub fn identification_json(
+    identification: &Identification,
+    recording: &Recording,
+    file: &str,
+) -> Value {
     let function = |(symbol, unit, function): (&str, &str, &Function)| {
         let curve = function.positions(41).into_iter().map(|x| {
             let estimate = function.at(x);

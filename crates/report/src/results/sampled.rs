@@ -75,7 +75,9 @@ mod tests {
             let stress = along * along - 1.0 / along;
             for (point, values) in points.iter().zip(&sampled[..2]) {
                 let of = |field: SheetField| {
-                    let index = SheetField::NAMES.iter().position(|(_, other)| *other == field);
+                    let index = SheetField::NAMES
+                        .iter()
+                        .position(|(_, other)| *other == field);
                     values.unwrap()[index.unwrap()]
                 };
                 let expected = [

@@ -81,7 +81,8 @@ impl LocalState {
     fn mean(states: &[Self]) -> Self {
         let share = 1.0 / states.len() as f64;
         let mean = |value: &dyn Fn(&Self) -> f64| share * states.iter().map(value).sum::<f64>();
-        let four = |value: fn(&Self) -> [f64; 4]| [0, 1, 2, 3].map(|i| mean(&|state| value(state)[i]));
+        let four =
+            |value: fn(&Self) -> [f64; 4]| [0, 1, 2, 3].map(|i| mean(&|state| value(state)[i]));
         if let [one] = states {
             return *one;
         }
@@ -164,7 +165,10 @@ pub fn nodal_states(
     for (node, state) in cut.originals.iter().zip(on_sides) {
         at_nodes[*node].push(state);
     }
-    at_nodes.iter().map(|states| LocalState::mean(states)).collect()
+    at_nodes
+        .iter()
+        .map(|states| LocalState::mean(states))
+        .collect()
 }
 
 /// The states at the nodes of a mesh each of whose nodes belongs to cells of one law.

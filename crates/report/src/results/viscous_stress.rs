@@ -122,7 +122,13 @@ mod tests {
             .into();
         let stresses = ViscousStress::over_time(&LAW, &material, &mesh, &times, &motion);
         let long = 2.0 * LAW.c10 * (1.4 - 1.4_f64.powi(-2));
-        assert!(stresses[0].in_cells.iter().flatten().all(|part| *part == 0.0));
+        assert!(
+            stresses[0]
+                .in_cells
+                .iter()
+                .flatten()
+                .all(|part| *part == 0.0)
+        );
         for (time, stress) in times.iter().zip(&stresses).skip(1) {
             let expected = long * (material.relaxation_function(*time) - 1.0);
             for p in stress.in_cells.iter().chain(&stress.at_nodes) {

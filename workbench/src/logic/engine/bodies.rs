@@ -171,7 +171,9 @@ impl Bodies {
 
     /// A model that was made.
     pub fn built(&self, model: Model) -> &Body {
-        self.built[model as usize].as_ref().expect("a body was made")
+        self.built[model as usize]
+            .as_ref()
+            .expect("a body was made")
     }
 
     /// What the command would warn of in the last state of the finite elements: the range of the card, compression.

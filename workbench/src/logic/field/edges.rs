@@ -73,7 +73,8 @@ impl Edge {
             Self::Known(axes) => {
                 let stated = ["ux", "uy"].into_iter().zip(axes);
                 let stated = stated.filter(|(_, text)| !text.trim().is_empty());
-                stated.map(|(key, text)| format!("{key} = {}\n", quoted(text.trim())))
+                stated
+                    .map(|(key, text)| format!("{key} = {}\n", quoted(text.trim())))
                     .collect()
             }
             _ => String::new(),

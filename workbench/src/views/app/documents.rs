@@ -9,7 +9,7 @@ use crate::logic::kind::Kind;
 use crate::logic::material::TestFile;
 use crate::logic::outputs::Written;
 use crate::logic::table::Action;
-use crate::views::files::{Event, Outgoing, plain, absolute_path};
+use crate::views::files::{Event, Outgoing, absolute_path, plain};
 use crate::views::question;
 
 /// Where a document is, and its text as it was saved or opened last.

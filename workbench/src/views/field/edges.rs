@@ -174,7 +174,14 @@ fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
 }
 
 /// An edge with what is said of it; thicker where it is pointed at.
-fn draw(ui: &Ui, view: View, figure: &MeshFigure, name: &str, stated: Option<&Edge>, pointed: bool) {
+fn draw(
+    ui: &Ui,
+    view: View,
+    figure: &MeshFigure,
+    name: &str,
+    stated: Option<&Edge>,
+    pointed: bool,
+) {
     let painter = ui.painter();
     let ink = report::edge_colour(figure, name);
     let Some(group) = figure.groups.iter().find(|group| group.name == name) else {

@@ -20,7 +20,9 @@ pub fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
             let models = step.models.iter();
             (
                 step.at,
-                models.map(|(model, value)| (model, of_model(value))).collect(),
+                models
+                    .map(|(model, value)| (model, of_model(value)))
+                    .collect(),
             )
         })
         .collect();

@@ -27,7 +27,10 @@ impl Deck {
 
     /// The numbers of nodes or cells, ten a line, counted from one.
     fn numbers(&mut self, numbers: &[usize]) {
-        let numbers: Vec<String> = numbers.iter().map(|index| (index + 1).to_string()).collect();
+        let numbers: Vec<String> = numbers
+            .iter()
+            .map(|index| (index + 1).to_string())
+            .collect();
         for line in numbers.chunks(10) {
             self.line(&line.join(", "));
         }
@@ -107,7 +110,9 @@ fn mesh(model: &Model, deck: &mut Deck) {
         (CellShape::Quad8, eight),
     ] {
         let cells = model.cells.iter().enumerate();
-        let mut cells = cells.filter(|(_, (cell_shape, _))| *cell_shape == shape).peekable();
+        let mut cells = cells
+            .filter(|(_, (cell_shape, _))| *cell_shape == shape)
+            .peekable();
         if cells.peek().is_some() {
             deck.line(&format!("*ELEMENT, TYPE={name}, ELSET={SPECIMEN}"));
         }

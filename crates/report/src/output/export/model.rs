@@ -174,7 +174,11 @@ impl<'a> Model<'a> {
                 _ => (shape, nodes),
             })
             .collect();
-        let nodes: BTreeSet<usize> = cells.iter().flat_map(|(_, nodes)| *nodes).copied().collect();
+        let nodes: BTreeSet<usize> = cells
+            .iter()
+            .flat_map(|(_, nodes)| *nodes)
+            .copied()
+            .collect();
         let mut names = Names::default();
         let (mut sets, mut groups) = (Vec::new(), Vec::new());
         let (mut surfaces, mut group_surfaces) = (Vec::new(), BTreeMap::new());
@@ -218,14 +222,18 @@ impl<'a> Model<'a> {
             let group_set = self.groups.iter().position(|known| known == group);
             for axis in [0, 1] {
                 let held_nodes = self.nodes.iter().copied();
-                let held_nodes = held_nodes.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
+                let held_nodes =
+                    held_nodes.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
                 let held_nodes: Vec<usize> = held_nodes.collect();
                 if held_nodes.is_empty() {
                     continue;
                 }
                 let known = group_set.filter(|set| self.sets[*set].1 == held_nodes);
-                let known =
-                    known.or_else(|| self.sets.iter().rposition(|(_, nodes)| *nodes == held_nodes));
+                let known = known.or_else(|| {
+                    self.sets
+                        .iter()
+                        .rposition(|(_, nodes)| *nodes == held_nodes)
+                });
                 let set = known.unwrap_or_else(|| {
                     self.sets.push((names.give("HELD"), held_nodes));
                     self.sets.len() - 1

@@ -33,8 +33,10 @@ impl Names {
             })
             .take(60)
             .collect();
-        let is_reserved =
-            OWN.contains(&&*plain) || OWN_NUMBERED.iter().any(|reserved| plain.starts_with(reserved));
+        let is_reserved = OWN.contains(&&*plain)
+            || OWN_NUMBERED
+                .iter()
+                .any(|reserved| plain.starts_with(reserved));
         let plain = match plain.chars().next() {
             Some('A'..='Z') if !is_reserved => plain,
             _ => format!("G_{plain}"),

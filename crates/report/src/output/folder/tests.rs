@@ -40,7 +40,10 @@ fn a_file_of_somebody_else_is_kept_under_another_name() {
     results.add("force.png", b"1").unwrap();
     let warnings = results.in_the_way();
     assert_eq!(warnings.len(), 1);
-    assert!(warnings[0].message.ends_with("report.md.kept-2"), "{warnings:?}");
+    assert!(
+        warnings[0].message.ends_with("report.md.kept-2"),
+        "{warnings:?}"
+    );
     assert!(results.in_the_way().is_empty());
     results.finish().unwrap();
     run(path, &[], &[("report.md", "2")]).unwrap();
@@ -286,7 +289,11 @@ fn results_of_another_study_and_files_of_another_command_are_told_before_they_ar
     fs::write(&a, "a").unwrap();
     fs::write(&b, "b").unwrap();
     let open = |input: &Path, writer: &str| ResultFolder::open(&path, writer, &[input]).unwrap();
-    let message = |input: &Path, writer: &str| open(input, writer).replaces().map(|warning| warning.message);
+    let message = |input: &Path, writer: &str| {
+        open(input, writer)
+            .replaces()
+            .map(|warning| warning.message)
+    };
     assert_eq!(message(&a, "run"), None);
     run(&path, &[&a], &[("report.md", "1")]).unwrap();
     assert_eq!(message(&a, "run"), None);

@@ -213,7 +213,10 @@ mod tests {
         assert_eq!((computed.low, computed.high), (-6.0, 0.0));
         assert!(computed.below.is_some_and(|least| least < 1e-7));
         let computed = range([0.0, 1.0, 10.0].into_iter(), Scale::Logarithmic);
-        assert_eq!((computed.low, computed.high, computed.below), (0.0, 1.0, Some(0.0)));
+        assert_eq!(
+            (computed.low, computed.high, computed.below),
+            (0.0, 1.0, Some(0.0))
+        );
     }
 
     #[test]

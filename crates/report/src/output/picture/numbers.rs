@@ -134,7 +134,11 @@ fn even(range: [f64; 2], most: usize) -> Vec<f64> {
     let about = |about: usize| round_positions(range, about as f64);
     let few = (FEWEST..=most).rev().map(about);
     let mut few = few.filter(|positions| (FEWEST..=most).contains(&positions.len()));
-    let more = || (FEWEST..20).map(about).find(|positions| positions.len() >= FEWEST);
+    let more = || {
+        (FEWEST..20)
+            .map(about)
+            .find(|positions| positions.len() >= FEWEST)
+    };
     few.next().or_else(more).unwrap_or_default()
 }
 

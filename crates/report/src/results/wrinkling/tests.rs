@@ -34,7 +34,10 @@ fn a_strut_is_told_from_half_of_its_critical_stress_on() {
     let half = (-2.0 * stress / per_square).sqrt();
     for (thickness, share) in [(0.98 * half, 100.0), (1.02 * half, 0.0)] {
         let wrinkling = of(thickness, squeezed);
-        assert!((wrinkling.area_percent - share).abs() < 1e-9, "{wrinkling:?}");
+        assert!(
+            (wrinkling.area_percent - share).abs() < 1e-9,
+            "{wrinkling:?}"
+        );
         assert!((wrinkling.smallest[3] - stress).abs() < 1e-14);
         let [compression, critical] = wrinkling.worst;
         assert!((compression + stress).abs() < 1e-12);

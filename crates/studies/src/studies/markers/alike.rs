@@ -217,7 +217,8 @@ mod tests {
         let mut compared = ComparedFrames::default();
         for (index, frame) in frames.iter().enumerate() {
             let settled = compared.push(frame, estimated(&residuals));
-            let settled = settled.map(|(before, estimate)| (before.number, estimate.is_explained()));
+            let settled =
+                settled.map(|(before, estimate)| (before.number, estimate.is_explained()));
             assert_eq!(settled, (index > 0).then_some((index, false)));
         }
         let (last, estimate) = compared.last().unwrap();

@@ -90,7 +90,10 @@ mod tests {
         let message = name(&mut mesh, &[("far".into(), far)])
             .unwrap_err()
             .to_string();
-        assert!(message.contains("too few nodes of the mesh: 0"), "{message}");
+        assert!(
+            message.contains("too few nodes of the mesh: 0"),
+            "{message}"
+        );
         assert_eq!(Area::of(&[3.0, 1.0, 1.0, 3.0]), None);
     }
 }

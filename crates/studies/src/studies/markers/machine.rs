@@ -236,7 +236,9 @@ mod tests {
         assert_eq!(values, [(7, -8.0), (2, 5.0)]);
         assert!((forces[0].1.standard_deviation - 0.08).abs() < 1e-12);
         assert!(
-            warnings[0].to_string().contains("no force for the frames 3"),
+            warnings[0]
+                .to_string()
+                .contains("no force for the frames 3"),
             "{warnings:?}"
         );
         let (forces, warnings) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();

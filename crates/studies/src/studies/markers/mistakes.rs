@@ -204,7 +204,9 @@ fn freed<'a>(meant: &'a FieldEstimate, written: &FieldEstimate) -> impl Iterator
     let both = meant.edges.iter().zip(&written.edges);
     let freed = both.filter(move |(meant, written)| {
         let refused = written.condition != EdgeCondition::Free;
-        let is_sure = written.probability.is_some_and(|probability| probability < surely);
+        let is_sure = written
+            .probability
+            .is_some_and(|probability| probability < surely);
         meant.condition == EdgeCondition::Free && refused && is_sure
     });
     freed.map(|(edge, _)| &*edge.edge)
@@ -244,7 +246,11 @@ mod tests {
     use crate::studies::markers::{Conditions, MeshSource, Request};
 
     /// What is said of a strip of 60 mm × 20 mm with these stretches, written with a mistake or none, and the answer.
-    fn doubt_and_answer([x, y]: [f64; 2], noise: f64, mistake: Option<Mistake>) -> (Option<String>, Answer) {
+    fn doubt_and_answer(
+        [x, y]: [f64; 2],
+        noise: f64,
+        mistake: Option<Mistake>,
+    ) -> (Option<String>, Answer) {
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let mut drawn =
             || -> f64 { noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };

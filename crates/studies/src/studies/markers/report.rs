@@ -173,7 +173,9 @@ fn frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> [Block; 2] {
         .column("outliers", |(_, estimate)| outliers(estimate).to_string())
         .column("noise [mm]", |(_, estimate)| decimals(estimate.noise, 5))
         .column("noise is", |(_, estimate)| noise(estimate).to_owned())
-        .column("residual [mm]", |(_, estimate)| decimals(residual_rms(estimate), 5))
+        .column("residual [mm]", |(_, estimate)| {
+            decimals(residual_rms(estimate), 5)
+        })
         .column("effective parameters", |(_, estimate)| {
             format!("{:.1}", estimate.effective_parameters)
         })

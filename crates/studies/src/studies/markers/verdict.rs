@@ -188,7 +188,9 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     };
     let table = Table::of(study.frames_with(estimates))
         .column("frame", |(frame, _)| frame.number.to_string())
-        .column("verdict", |(_, estimate)| estimate.verdict.answer.words().to_owned())
+        .column("verdict", |(_, estimate)| {
+            estimate.verdict.answer.words().to_owned()
+        })
         .column_if(is_correlated, "correlation length [mm]", |(_, estimate)| {
             of(estimate, |one| decimals(one.length, 4))
         })

@@ -93,10 +93,11 @@ impl MovingSheet {
             .map(|field| onto_mesh.apply(field))
             .collect();
         let report = |count: usize| progress.tell(&self.at("corrector", step * (count - 1) as f64));
-        let (corrected, fault) = match equation.correct(&data, &motion.start, self.windows(), &report) {
-            Ok(corrected) => (corrected, None),
-            Err(end) => (*end.corrected, Some(end.fault)),
-        };
+        let (corrected, fault) =
+            match equation.correct(&data, &motion.start, self.windows(), &report) {
+                Ok(corrected) => (corrected, None),
+                Err(end) => (*end.corrected, Some(end.fault)),
+            };
         let reached = step * (corrected.displacement.len() - 1) as f64;
         let error = |step: String, fault| Error::Solve {
             model: model.name.clone(),
@@ -263,7 +264,10 @@ mod tests {
                 } else {
                     -1.0
                 };
-                assert!((computed - expected).abs() < 1e-8, "{mark} {instant}: {computed}");
+                assert!(
+                    (computed - expected).abs() < 1e-8,
+                    "{mark} {instant}: {computed}"
+                );
             }
         }
     }

@@ -180,7 +180,9 @@ fn compared(
     own_error: Option<&OwnError>,
 ) -> String {
     let mut text = String::new();
-    let of_corrected = of_corrected.as_ref().map(|deviations| ("corrected motion", deviations));
+    let of_corrected = of_corrected
+        .as_ref()
+        .map(|deviations| ("corrected motion", deviations));
     for (name, deviations) in std::iter::once(("springs", of_springs)).chain(of_corrected) {
         let force = deviations.force.map_or_else(String::new, |force| {
             format!(
@@ -273,7 +275,9 @@ fn checks(
         )
     };
     let energies = motions.models().map(energy).into_iter();
-    let corrected = of_corrected.as_ref().map(|deviations| (CORRECTED.name, deviations));
+    let corrected = of_corrected
+        .as_ref()
+        .map(|deviations| (CORRECTED.name, deviations));
     let (name, last) = corrected.unwrap_or((MASS_SPRING.name, of_springs));
     let until = motions.times()[..last.displacement.len()].last().copied();
     let until = until.unwrap_or_default();

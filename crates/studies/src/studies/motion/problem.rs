@@ -280,7 +280,8 @@ impl MovingSheet {
     pub(super) fn measured_force(&self, forces: &[[f64; 2]]) -> Option<[f64; 2]> {
         let supports = self.specimen.problem.supports.iter().zip(forces);
         let measured = supports.filter(|((group, _), _)| *group == self.specimen.group);
-        measured.map(|(_, force)| *force)
+        measured
+            .map(|(_, force)| *force)
             .reduce(|sum, force| [sum[0] + force[0], sum[1] + force[1]])
     }
 

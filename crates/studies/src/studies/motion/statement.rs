@@ -60,7 +60,9 @@ fn sentences(sheet: &MovingSheet) -> Vec<(String, String)> {
         ("viscosity".into(), viscosity(sheet)),
     ];
     let supports = problem.supports.iter();
-    all.extend(supports.map(|(group, support)| (format!("support {group}"), support_words(support))));
+    all.extend(
+        supports.map(|(group, support)| (format!("support {group}"), support_words(support))),
+    );
     let loads = problem.loads.iter();
     all.extend(loads.map(|(group, load)| (format!("load {group}"), load_words(load))));
     all.extend([

@@ -154,9 +154,9 @@ fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
             most.max(group.force[0].hypot(group.force[1]))
         });
         let residual = &solution.states[step].residual;
-        let largest = free
-            .iter()
-            .fold(0.0, |largest: f64, unknown| largest.max(residual[*unknown].abs()));
+        let largest = free.iter().fold(0.0, |largest: f64, unknown| {
+            largest.max(residual[*unknown].abs())
+        });
         (most > 0.0).then(|| largest / most)
     };
     (0..solution.reached()).filter_map(of_step).reduce(larger)
@@ -167,7 +167,10 @@ pub fn balance_words(balances: &[Balance]) -> String {
     let balances = balances.iter().filter_map(|balance| {
         let unbalanced = balance.unbalanced?;
         let free = or_dash(balance.free_nodes, |residual| format!("{residual:.1e}"));
-        Some(format!("{} {unbalanced:.1e} and {free}", balance.model.name))
+        Some(format!(
+            "{} {unbalanced:.1e} and {free}",
+            balance.model.name
+        ))
     });
     format!(
         "Balance of forces and moments: the unbalanced part of supports and loads relative to the largest force or moment, and the largest force left \

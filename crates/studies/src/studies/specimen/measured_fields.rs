@@ -140,7 +140,10 @@ impl<'a> MeasuredFields<'a> {
         let group = self.group();
         let last = self.models.iter().filter_map(|model| model.states.last());
         let [x, y] = last.fold([0.0_f64; 2], |most, state| {
-            let force = state.groups.get(group).map_or([0.0; 2], |group| group.force);
+            let force = state
+                .groups
+                .get(group)
+                .map_or([0.0; 2], |group| group.force);
             [0, 1].map(|axis| most[axis].max(force[axis].abs()))
         });
         usize::from(y > x)
@@ -180,7 +183,11 @@ impl<'a> MeasuredFields<'a> {
         let specimen = self.specimen;
         let fields = specimen.pictures.fields.fields.iter();
         let columns: Vec<usize> = fields
-            .filter_map(|field| SheetField::NAMES.iter().position(|(_, other)| other == field))
+            .filter_map(|field| {
+                SheetField::NAMES
+                    .iter()
+                    .position(|(_, other)| other == field)
+            })
             .collect();
         let named = |what: &str, caption: String, charts: Vec<LineChart>| {
             let charts: Vec<_> = charts.into_iter().map(|chart| (chart, 340)).collect();
@@ -208,7 +215,8 @@ impl<'a> MeasuredFields<'a> {
             }
         }
         let extensometers = specimen.measurements.extensometers.iter().enumerate();
-        let charts = extensometers.map(|(index, extensometer)| self.extensometer_chart(index, extensometer));
+        let charts =
+            extensometers.map(|(index, extensometer)| self.extensometer_chart(index, extensometer));
         let caption = format!(
             "Force of {} over the stretch between the ends of each extensometer; computed at the markers only.",
             specimen.group
@@ -255,7 +263,8 @@ impl<'a> MeasuredFields<'a> {
         let mut lines = Vec::new();
         for (model, _) in self.shown() {
             let mut states = self.states.iter();
-            let Some(state) = states.find(|state| state.model == model && state.step == step) else {
+            let Some(state) = states.find(|state| state.model == model && state.step == step)
+            else {
                 continue;
             };
             let style = self.models[model].style;

@@ -107,7 +107,11 @@ fn measures(specimen: &Specimen, models: &Models) -> Vec<Measure> {
         value,
         decimals,
     };
-    let displacement = of("displacement", |distance| Some(distance.displacement), [3, 4]);
+    let displacement = of(
+        "displacement",
+        |distance| Some(distance.displacement),
+        [3, 4],
+    );
     let departure = of("departure", Distance::departure, [2, 3]);
     let measured = of(what, |distance| Some(distance.measured.abs()), [2, 3]);
     let is_plate = specimen.grids().is_some();
@@ -141,7 +145,9 @@ fn agreement(specimen: &Specimen, models: &Models, deviations: &[Option<Deviatio
         for measure in measures(specimen, models) {
             let head = format!("{}: {}", kind.style().name, measure.name);
             table = table.column(head, |(_, deviation)| {
-                let value = deviation.of(kind).and_then(|distance| (measure.value)(&distance));
+                let value = deviation
+                    .of(kind)
+                    .and_then(|distance| (measure.value)(&distance));
                 figure(value, measure.decimals[index])
             });
         }
@@ -169,7 +175,9 @@ fn quantities(
             return (key, Value::Null);
         };
         quantities.extend(match kind {
-            ModelKind::MassSpring => deviation_json(deviation.and_then(|deviation| deviation.springs)),
+            ModelKind::MassSpring => {
+                deviation_json(deviation.and_then(|deviation| deviation.springs))
+            }
             ModelKind::Corrected => {
                 let mut corrected = deviation_json(deviation.map(|deviation| deviation.corrected));
                 let correction = deviation.and_then(Deviation::correction_percent);
@@ -269,9 +277,11 @@ fn deviation_table(
         .column("displacement [%]", |(.., distance, _)| {
             figure(Some(distance.displacement), 4)
         })
-        .column_if(is_plate, "departure from affine [%]", |(.., distance, _)| {
-            figure(distance.departure(), 3)
-        })
+        .column_if(
+            is_plate,
+            "departure from affine [%]",
+            |(.., distance, _)| figure(distance.departure(), 3),
+        )
         .column("largest difference [mm]", |(.., distance, _)| {
             figure(Some(distance.largest), 4)
         })

@@ -15,7 +15,11 @@ impl Model<'_> {
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         let code = self.code.name();
-        let shapes = |shape| self.cells.iter().any(|(cell_shape, _)| *cell_shape == shape);
+        let shapes = |shape| {
+            self.cells
+                .iter()
+                .any(|(cell_shape, _)| *cell_shape == shape)
+        };
         let nine = (0..self.given.mesh.cell_count())
             .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
         if nine && shapes(CellShape::Quad8) {
@@ -24,7 +28,12 @@ impl Model<'_> {
                     .into(),
             );
         }
-        if self.code == Code::CalculiX && self.cells.iter().any(|(cell_shape, _)| cell_shape.degree() == 1) {
+        if self.code == Code::CalculiX
+            && self
+                .cells
+                .iter()
+                .any(|(cell_shape, _)| cell_shape.degree() == 1)
+        {
             remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
         }
         for material in self.materials.iter().filter(|_| self.code != Code::Abaqus) {
@@ -136,7 +145,11 @@ impl Model<'_> {
     /// What printed sums of reactions contain besides.
     fn of_reactions(&self) -> Option<String> {
         let sets = || self.held.iter().map(|held| &self.sets[held.set]);
-        let loaded = |node: &usize| self.forces.iter().any(|(loaded_node, _)| loaded_node == node);
+        let loaded = |node: &usize| {
+            self.forces
+                .iter()
+                .any(|(loaded_node, _)| loaded_node == node)
+        };
         let is_loaded = sets().any(|(_, nodes)| nodes.iter().any(loaded));
         let is_shared = sets().any(|(name, nodes)| {
             let mut others = sets().filter(|(other, _)| other != name);

@@ -80,7 +80,8 @@ impl Held {
             }
             let at = |axis: usize, factor: f64| {
                 let support = supports[axis].map(|number| &problem.supports[*number].1);
-                let moved = support.and_then(|support| support.displacement(*position, axis, factor));
+                let moved =
+                    support.and_then(|support| support.displacement(*position, axis, factor));
                 // Without the sign of a zero.
                 moved.unwrap_or(0.0) + 0.0
             };

@@ -66,7 +66,8 @@ pub(super) fn numbers(text: &str, keyword: &str) -> Vec<Vec<f64>> {
 
 pub(super) fn row(text: &str) -> Vec<f64> {
     let content = text.split('<').next().unwrap();
-    content.split(',')
+    content
+        .split(',')
         .map(|field| field.trim().parse().unwrap())
         .collect()
 }

@@ -39,8 +39,10 @@ fn check(size: Size, marks: &[Mark], what: &str) {
     for (index, one) in words.iter().enumerate() {
         let bounds = one.bounds();
         let [width, height] = [f64::from(size.0), f64::from(size.1)];
-        let is_inside =
-            bounds.low[0] >= 0.0 && bounds.low[1] >= 0.0 && bounds.high[0] <= width && bounds.high[1] <= height;
+        let is_inside = bounds.low[0] >= 0.0
+            && bounds.low[1] >= 0.0
+            && bounds.high[0] <= width
+            && bounds.high[1] <= height;
         assert!(is_inside, "{what}: {one:?} {bounds:?} {size:?}");
         for other in &words[..index] {
             let theirs = other.bounds();

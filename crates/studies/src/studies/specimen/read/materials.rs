@@ -152,7 +152,10 @@ impl Entry<'_> {
     /// What is wrong with the region of an entry that follows others, and the remedy.
     fn fault(&self, before: &[Self], outline: &Outline, mesh: &Mesh) -> Option<(String, String)> {
         let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
-        if let Some((one, other)) = before.first().and_then(|material| material.other_state(self)) {
+        if let Some((one, other)) = before
+            .first()
+            .and_then(|material| material.other_state(self))
+        {
             let message = format!("this card is in {one}, and the first one in {other}");
             return fault(
                 message,

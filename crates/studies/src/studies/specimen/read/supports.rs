@@ -50,8 +50,14 @@ impl<'a> SupportsAndLoads<'a> {
 
     /// Records groups that the specimen does not have.
     pub fn check_groups(&self, mesh: &Mesh) {
-        let supports = self.supports.iter().map(|entry| (&entry.section, &entry.group));
-        let loads = self.loads.iter().map(|entry| (&entry.section, &entry.group));
+        let supports = self
+            .supports
+            .iter()
+            .map(|entry| (&entry.section, &entry.group));
+        let loads = self
+            .loads
+            .iter()
+            .map(|entry| (&entry.section, &entry.group));
         // That one is missing is told already.
         let stated = supports.chain(loads).filter(|(_, group)| !group.is_empty());
         for (section, group) in stated {
@@ -109,7 +115,8 @@ impl<'a> SupportsAndLoads<'a> {
         }
         let unstrained = |()| problem.unstrained(mesh).map_err(|fault| vec![fault]);
         let checked = problem.check(mesh).and_then(unstrained);
-        for fault in checked.map_or_else(|faults| faults, |warnings| warnings.into_iter().collect()) {
+        for fault in checked.map_or_else(|faults| faults, |warnings| warnings.into_iter().collect())
+        {
             let hint = fault.hint.unwrap_or_default();
             let entry = match fault.key.as_str() {
                 "load" => named(&self.loads, "load", &fault.message),
@@ -137,10 +144,14 @@ fn named<'a, T>(entries: &'a [Entry<'a, T>], what: &str, message: &str) -> Optio
         ))
     });
     let by_group = || {
-        let of_group = |entry: &&Entry<T>| message.starts_with(&format!("the group `{}`", entry.group));
+        let of_group =
+            |entry: &&Entry<T>| message.starts_with(&format!("the group `{}`", entry.group));
         entries.iter().find(of_group)
     };
-    let entry = by_number.next_back().map(|(_, entry)| entry).or_else(by_group);
+    let entry = by_number
+        .next_back()
+        .map(|(_, entry)| entry)
+        .or_else(by_group);
     entry.map(|entry| &entry.section)
 }
 

@@ -179,7 +179,8 @@ impl Reference {
     /// Whether most of the own error is that of a file's outline, which more cells leave as it is.
     fn is_outline(&self) -> bool {
         let mut changes = self.outline.iter().flatten().enumerate();
-        let most = |change: f64, error: Option<f64>| error.is_some_and(|error| change > 0.5 * error);
+        let most =
+            |change: f64, error: Option<f64>| error.is_some_and(|error| change > 0.5 * error);
         let is_most = |(step, change): (usize, &OutlineChange)| {
             let of_measured = self.outline_percent(step).unwrap_or(0.0);
             most(change.displacement_percent, self.displacement_percent(step))

@@ -120,7 +120,14 @@ impl Reference {
             let mesh = specimen.outline.elements_on(&halved);
             // Where a path ends is told of the meshes whose results are given.
             let mut ignored_ends = Vec::new();
-            on_mesh(specimen, &mesh, Some(finest), FILE, &mut ignored_ends, progress)
+            on_mesh(
+                specimen,
+                &mesh,
+                Some(finest),
+                FILE,
+                &mut ignored_ends,
+                progress,
+            )
         });
         let all_halved = all_halved.transpose()?;
         Self::of_meshes(specimen, meshes, rounds, all_halved, ends, progress)
@@ -296,7 +303,8 @@ fn outline_changes(
     };
     let corrected = specimen.outline.corrected_mesh();
     let change = |step| {
-        let [curved, straight] = [&rounded, middle].map(|solution| on_nodes_of(&corrected, solution, step));
+        let [curved, straight] =
+            [&rounded, middle].map(|solution| on_nodes_of(&corrected, solution, step));
         Some(OutlineChange {
             measured: factor * (what.at(&rounded, step)? - what.at(middle, step)?),
             displacement_percent: factor.abs()

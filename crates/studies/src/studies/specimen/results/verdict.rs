@@ -209,9 +209,15 @@ fn deviation_checks(
     let check = |(judged, name, limit): (Judged, &str, Option<f64>)| {
         let limit = limit?;
         let pairs = deviations.iter();
-        let pairs = pairs.map(|entry| [entry.corrected.size(judged), entry.reference_errors[judged as usize]]);
+        let pairs = pairs.map(|entry| {
+            [
+                entry.corrected.size(judged),
+                entry.reference_errors[judged as usize],
+            ]
+        });
         let [deviation, error] = worst(pairs);
-        let nothing = judged == Judged::Measured && deviations.iter().all(|entry| entry.measures_none);
+        let nothing =
+            judged == Judged::Measured && deviations.iter().all(|entry| entry.measures_none);
         let judgement = if nothing {
             Judgement::Exact(NOTHING)
         } else if is_own_reference(specimen) {
