@@ -224,12 +224,10 @@ impl Response for Elastic<'_> {
     fn stresses(&self, values: &[f64]) -> Vec<f64> {
         let law = self.law(values);
         let mut stresses = vec![f64::NAN; self.points.len()];
-        let pairs = self.points.iter().zip(&self.observations);
-        for (stress, (row, one)) in stresses.iter_mut().zip(pairs) {
-            let data = &self.tests[row.test];
-            *stress = data.stress_of(&*law, &self.moved(values, row.test, one));
-            if !stress.is_finite() {
-                // Values that are impossible at one observation are impossible.
+        for (index, (row, one)) in self.points.iter().zip(&self.observations).enumerate() {
+            let observation = self.moved(values, row.test, one);
+            stresses[index] = self.tests[row.test].stress_of(&*law, &observation);
+            if !stresses[index].is_finite() {
                 break;
             }
         }
@@ -244,11 +242,11 @@ impl Response for Elastic<'_> {
     fn predicted(&self, values: &[f64]) -> Vec<Vec<f64>> {
         let law = self.law(values);
         let tests = self.moved_tests(values);
-        let of_test = |data: &TestData| {
-            let rows = data.observations.iter();
-            rows.map(|one| data.stress_of(&*law, one)).collect()
+        let stresses = |test: &TestData| {
+            let rows = test.observations.iter();
+            rows.map(|row| test.stress_of(&*law, row)).collect()
         };
-        tests.iter().map(of_test).collect()
+        tests.iter().map(stresses).collect()
     }
 
     fn moved_tests(&self, values: &[f64]) -> Cow<'_, [TestData]> {
