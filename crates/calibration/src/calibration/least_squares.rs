@@ -79,6 +79,9 @@ pub fn minimise(
     if !begin.is_finite() {
         return None;
     }
+    if bounds.iter().all(|[low, high]| low == high) {
+        return Some(start.to_vec());
+    }
     let parameter = |[low, high]: &[f64; 2]| MPPar {
         fixed: low == high,
         limited_low: low.is_finite(),
@@ -247,6 +250,9 @@ pub fn jacobian(
 
 /// The coefficients of columns that come nearest to a target; `None` where a column is not finite.
 pub fn linear(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
+    if columns.ncols() == 0 {
+        return Some(DVector::zeros(0));
+    }
     if !columns.iter().all(|entry| entry.is_finite()) {
         return None;
     }
