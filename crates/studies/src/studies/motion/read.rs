@@ -107,6 +107,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
         tolerances,
     };
     warn_of_rest(root, start, &sheet);
+    check_release(root, &sheet);
     affords(&in_time, &sheet).then_some(sheet)
 }
 
@@ -215,6 +216,20 @@ fn check_reached(course: &Section, start: f64, driven: Option<(&Card, &Drive)>) 
     let beyond: Vec<f64> = [least.min(start), most.max(start)].into();
     let beyond: Vec<f64> = beyond.into_iter().filter(|end| *end != start).collect();
     sections::check_range(course, "motion", &beyond, card);
+}
+
+/// Records a release of what no support holds.
+fn check_release(root: &Section, sheet: &MovingSheet) {
+    if sheet.drive.release.is_none() || sheet.is_measured_held() {
+        return;
+    }
+    let message = format!(
+        "releases nothing: no support holds the measured group `{}`",
+        sheet.specimen.group
+    );
+    let hint = "name the group of a support as measured_group; a load ends by motion = \"table\" with factors down to 0";
+    root.section(drive_section(sheet.specimen.along))
+        .fault("motion", &message, hint);
 }
 
 /// Warns of a sheet that rests between its supports.
