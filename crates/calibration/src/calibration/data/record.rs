@@ -234,6 +234,13 @@ impl Part {
         };
         let done = match beginning {
             Beginning::Clean => return,
+            Beginning::Elsewhere(zero) => {
+                self.zero = zero;
+                format!(
+                    "the first row has no force at a displacement of {:.4} mm: this is the zero of displacement",
+                    mm(zero)
+                )
+            }
             Beginning::Slack {
                 zero,
                 error,

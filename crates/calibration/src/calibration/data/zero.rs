@@ -35,6 +35,8 @@ const START: f64 = -1e-9;
 pub enum Beginning {
     /// Stress rises from zero at the first row.
     Clean,
+    /// The same at a strain that is not zero, as of a machine that counts its position from elsewhere.
+    Elsewhere(f64),
     /// The specimen was slack.
     Slack {
         /// The strain at which it begins to be stretched.
@@ -83,7 +85,23 @@ fn bent(x: &[f64], y: &DVector<f64>, bend: f64) -> Option<Bent> {
 impl Beginning {
     /// The beginning of a loading branch.
     pub fn of(strains: &[f64], stresses: &[f64]) -> Self {
-        Self::search(strains, stresses).unwrap_or(Self::Clean)
+        Self::search(strains, stresses).unwrap_or_else(|| Self::elsewhere(strains, stresses))
+    }
+
+    /// Where a stress that rises from nothing at the first row begins.
+    fn elsewhere(strains: &[f64], stresses: &[f64]) -> Self {
+        /// Share of the strains up to which they begin at zero.
+        const NEAR: f64 = 0.05;
+        let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        match (strains, stresses) {
+            ([first, .., last], [stress, ..])
+                if stress.abs() <= NOTHING * largest
+                    && first.abs() > NEAR * (last - first).abs() =>
+            {
+                Self::Elsewhere(*first)
+            }
+            _ => Self::Clean,
+        }
     }
 
     fn search(strains: &[f64], stresses: &[f64]) -> Option<Self> {
@@ -272,6 +290,15 @@ mod tests {
                 let (x, y) = record(&curve, scatter);
                 let found = Beginning::of(&x, &y);
                 assert_eq!(found, Beginning::Clean, "{exponent} {scatter}");
+                // A machine's position that begins elsewhere.
+                let from = x
+                    .iter()
+                    .map(|x| x + 1.5 - f64::from(u8::from(scatter > 0.0)));
+                let from: Vec<f64> = from.collect();
+                let moved = Beginning::of(&from, &y);
+                if y[0].abs() <= NOTHING {
+                    assert_eq!(moved, Beginning::Elsewhere(from[0]), "{exponent} {scatter}");
+                }
             }
         }
     }
