@@ -326,18 +326,18 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     interrupt::guard(&results_folder);
     ready.warnings.extend(results_folder.replaces());
     let journal = FolderJournal::open(results_folder);
-    ready.warnings.extend(journal.told());
+    ready.warnings.extend(journal.warning());
     warn(&ready.warnings);
     let progress = Progress::of(ready.progress_steps as u64);
     let counted = ready.progress_steps > 0;
     let with_report = ready.output.report;
-    let told = |what: &str| {
+    let report = |what: &str| {
         progress.tell(what);
         if counted {
             progress.advance();
         }
     };
-    let results = ready.compute(studies::Progress::to(&told).kept_by(&journal))?;
+    let results = ready.compute(studies::Progress::to(&report).kept_by(&journal))?;
     let (mut results_folder, fault) = journal.close();
     progress.tell("files");
     let warnings = output::write(&results, with_report, &mut results_folder)?;

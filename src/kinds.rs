@@ -103,8 +103,8 @@ pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Kind>, Error
 
 /// The reader for studies of a kind.
 fn reader(kind: &Kind) -> Prepare {
-    let found = READERS.iter().find(|(name, _)| *name == kind.name);
-    found.expect("a kind of the table").1
+    let entry = READERS.iter().find(|(name, _)| *name == kind.name);
+    entry.expect("a kind of the table").1
 }
 
 /// Reads a study of a kind within a budget.
@@ -155,7 +155,7 @@ const NO_KINDS: [(&str, &str); 3] = [
 /// [`Error::Input`] when the kind is unknown.
 pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
     let faults = Faults::default();
-    let found = {
+    let choice = {
         let document = Document::parse(file, text, &faults);
         let root = document.root(None, &faults);
         if text
@@ -185,7 +185,7 @@ pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
             None => None,
         }
     };
-    match found {
+    match choice {
         // Other faults are reported when the whole study is read.
         Some(kind) => Ok(kind),
         None => faults.finish().map(|_| None),
@@ -264,17 +264,20 @@ mod tests {
     #[test]
     fn every_kind_reads_its_own_study_and_tells_faults() {
         for kind in KINDS {
-            let own = read_as(kind, Path::new(kind.file), kind.study, Budget::USUAL);
-            assert!(own.is_ok());
-            let found = kind_of(kind.file, kind.study).unwrap().unwrap();
-            assert_eq!(found.name, kind.name);
+            let study = read_as(kind, Path::new(kind.file), kind.study, Budget::USUAL);
+            assert!(study.is_ok());
+            let recognised = kind_of(kind.file, kind.study).unwrap().unwrap();
+            assert_eq!(recognised.name, kind.name);
             let text = "kind = \"x\"
 misspelt = 1
 ";
-            let told = read_as(kind, Path::new("x.toml"), text, Budget::USUAL)
+            let faults = read_as(kind, Path::new("x.toml"), text, Budget::USUAL)
                 .map(|_| ())
                 .unwrap_err();
-            assert!(told.to_string().contains("misspelt: unknown key"), "{told}");
+            assert!(
+                faults.to_string().contains("misspelt: unknown key"),
+                "{faults}"
+            );
         }
         assert!(kind_of("x.toml", "kind = \"plate\"").unwrap().is_none());
         let fault = kind_of("x.toml", "kind = \"smoothin\"")

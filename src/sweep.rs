@@ -62,9 +62,9 @@ impl Sweep {
     /// The varied keys.
     pub fn keys(&self) -> Vec<String> {
         let fitted = self.fitted.iter().flat_map(FittedParameters::keys);
-        let own = self.variables.iter().map(|variable| variable.key.clone());
+        let varied = self.variables.iter().map(|variable| variable.key.clone());
         let points = self.points.iter().flat_map(Points::keys);
-        own.chain(points).chain(fitted).collect()
+        varied.chain(points).chain(fitted).collect()
     }
 
     /// All runs.
@@ -171,12 +171,13 @@ impl Sweep {
     /// Whether values are drawn from distributions without bounds.
     fn is_drawn(&self) -> bool {
         let mut variables = self.variables.iter();
-        self.fitted.is_some() || variables.any(|own| matches!(own.values, Values::Normal(..)))
+        self.fitted.is_some()
+            || variables.any(|variable| matches!(variable.values, Values::Normal(..)))
     }
 
     /// Reads the study of a run.
     fn ready(&self, run: &Run) -> Result<PreparedStudy, Error> {
-        let told = |error: Error| match error {
+        let located = |error: Error| match error {
             Error::Input(faults) => {
                 // Line numbers of a run's study differ from those of the file.
                 let named = |fault: Diagnostic| Diagnostic {
@@ -188,7 +189,9 @@ impl Sweep {
             }
             other => other,
         };
-        self.study.with(&self.keys(), &run.settings).map_err(told)
+        self.study
+            .with(&self.keys(), &run.settings)
+            .map_err(located)
     }
 
     fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {

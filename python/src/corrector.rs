@@ -38,7 +38,7 @@ fn sparse_rows(name: &str, columns: usize, matrix: &Csr<'_>) -> PyResult<SparseR
                 values.len().min(places.len())
             ));
         };
-        let outside = |place: &&i64| !usize::try_from(**place).is_ok_and(|own| own < columns);
+        let outside = |place: &&i64| !usize::try_from(**place).is_ok_and(|index| index < columns);
         if let Some(place) = places.iter().find(outside) {
             return wrong(format!(
                 "has an entry in column {place}, and {columns} columns"
@@ -63,15 +63,15 @@ struct PythonCondition<'a> {
 impl PythonCondition<'_> {
     fn call(&self, u: &[f64]) -> Linearisation {
         self.watch.check();
-        let found = Python::attach(|py| {
-            let found = self.linearise.call1(py, (PyArray1::from_slice(py, u),))?;
-            let (values, jacobian): (PyReadonlyArray1<'_, f64>, Csr<'_>) = found.extract(py)?;
+        let linearisation = Python::attach(|py| {
+            let pair = self.linearise.call1(py, (PyArray1::from_slice(py, u),))?;
+            let (values, jacobian): (PyReadonlyArray1<'_, f64>, Csr<'_>) = pair.extract(py)?;
             Ok(Linearisation {
                 values: values.as_slice()?.to_vec(),
                 jacobian: sparse_rows(&self.name, u.len(), &jacobian)?,
             })
         });
-        found.unwrap_or_else(|error| self.watch.fail(error))
+        linearisation.unwrap_or_else(|error| self.watch.fail(error))
     }
 }
 
@@ -85,10 +85,10 @@ impl Condition for PythonCondition<'_> {
     }
 
     fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
-        let found = self.call(u);
+        let linearisation = self.call(u);
         // A trial field at which the conditions have no value is too long a step.
-        match found.values.iter().all(|value| value.is_finite()) {
-            true => Ok(found),
+        match linearisation.values.iter().all(|value| value.is_finite()) {
+            true => Ok(linearisation),
             false => Err(Inadmissible { element: 0 }),
         }
     }
@@ -102,14 +102,14 @@ impl Condition for PythonCondition<'_> {
             return Ok(None);
         };
         self.watch.check();
-        let found = Python::attach(|py| {
+        let matrix = Python::attach(|py| {
             let field = PyArray1::from_slice(py, u);
             let multipliers = PyArray1::from_slice(py, multipliers);
-            let found = curvature.call1(py, (field, multipliers))?;
-            let found: Csr<'_> = found.extract(py)?;
-            sparse_rows(&self.name, u.len(), &found)
+            let matrix = curvature.call1(py, (field, multipliers))?;
+            let matrix: Csr<'_> = matrix.extract(py)?;
+            sparse_rows(&self.name, u.len(), &matrix)
         });
-        Ok(Some(found.unwrap_or_else(|error| self.watch.fail(error))))
+        Ok(Some(matrix.unwrap_or_else(|error| self.watch.fail(error))))
     }
 
     fn unknowns(&self) -> Option<&[usize]> {
@@ -211,22 +211,26 @@ pub fn corrected<'py>(
             step: "the given field".into(),
             fault,
         };
-        let found = corrector.correct(&data, &start).map_err(failed)?;
+        let solution = corrector.correct(&data, &start).map_err(failed)?;
         let one = |unknown: &usize| {
-            let found = corrector
-                .estimate(&data, &found, *unknown)
+            let estimated = corrector
+                .estimate(&data, &solution, *unknown)
                 .map_err(failed)?;
-            Ok((found.value, found.standard_error, found.interval.into()))
+            Ok((
+                estimated.value,
+                estimated.standard_error,
+                estimated.interval.into(),
+            ))
         };
         let estimates = estimate
             .iter()
             .map(one)
             .collect::<Result<Vec<Estimate>, Error>>()?;
         Ok((
-            found.field().to_vec(),
-            found.steps.iter().map(|step| step.residual).collect(),
-            found.steps.iter().map(|step| step.length).collect(),
-            found.multipliers,
+            solution.field().to_vec(),
+            solution.steps.iter().map(|step| step.residual).collect(),
+            solution.steps.iter().map(|step| step.length).collect(),
+            solution.multipliers,
             estimates,
         ))
     })?;

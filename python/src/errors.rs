@@ -7,10 +7,10 @@ use pyo3::types::PyDict;
 
 /// The exception of an error, with the library's own text.
 pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
-    made(py, error).unwrap_or_else(|fault| fault)
+    converted(py, error).unwrap_or_else(|fault| fault)
 }
 
-fn made(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+fn converted(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let module = py.import("gelbench._errors")?;
     let raised = match error {
         Error::Input(faults) => {
@@ -22,14 +22,14 @@ fn made(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
                 .call1((error.to_string(), faults))?
         }
         Error::Solve { model, step, fault } => {
-            let said = PyDict::new(py);
-            said.set_item("model", model)?;
-            said.set_item("step", step)?;
-            said.set_item("cause", fault.to_string())?;
-            said.set_item("cell", position(fault))?;
-            said.set_item("advice", fault.advice())?;
+            let keywords = PyDict::new(py);
+            keywords.set_item("model", model)?;
+            keywords.set_item("step", step)?;
+            keywords.set_item("cause", fault.to_string())?;
+            keywords.set_item("cell", position(fault))?;
+            keywords.set_item("advice", fault.advice())?;
             let class = module.getattr("SolveError")?;
-            class.call((error.to_string(),), Some(&said))?
+            class.call((error.to_string(),), Some(&keywords))?
         }
         Error::Write { .. } => module.getattr("WriteError")?.call1((error.to_string(),))?,
     };

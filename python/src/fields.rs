@@ -54,26 +54,28 @@ pub fn blocks<'py>(
     cells: &[GridCell],
     connectivity: &[usize],
 ) -> PyResult<Vec<Block<'py>>> {
-    let mut found: Vec<(u8, usize, Vec<i64>, Vec<i64>)> = Vec::new();
+    let mut groups: Vec<(u8, usize, Vec<i64>, Vec<i64>)> = Vec::new();
     let mut first = 0;
     for (number, cell) in cells.iter().enumerate() {
         let kind = vtk_number(*cell);
         let points = &connectivity[first..first + cell.points()];
         first += cell.points();
-        let at = found.iter().position(|(known, ..)| *known == kind);
+        let at = groups.iter().position(|(known, ..)| *known == kind);
         let at = at.unwrap_or_else(|| {
-            found.push((kind, cell.points(), Vec::new(), Vec::new()));
-            found.len() - 1
+            groups.push((kind, cell.points(), Vec::new(), Vec::new()));
+            groups.len() - 1
         });
-        found[at].2.push(number as i64);
-        found[at].3.extend(points.iter().map(|point| *point as i64));
+        groups[at].2.push(number as i64);
+        groups[at]
+            .3
+            .extend(points.iter().map(|point| *point as i64));
     }
     let block = |(kind, width, numbers, points): (u8, usize, Vec<i64>, Vec<i64>)| {
         let shape = [numbers.len(), width];
         let points = PyArray1::from_vec(py, points).reshape(shape)?;
         Ok((kind, PyArray1::from_vec(py, numbers), points))
     };
-    found.into_iter().map(block).collect()
+    groups.into_iter().map(block).collect()
 }
 
 /// The cells of a mesh.
@@ -89,7 +91,7 @@ pub fn mesh_blocks<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Block<'py>
 
 /// Arrays by their names, read-only: one number each, or rows of components.
 fn named(py: Python<'_>, arrays: Vec<Array>) -> PyResult<Bound<'_, PyDict>> {
-    let found = PyDict::new(py);
+    let by_name = PyDict::new(py);
     for array in arrays {
         let width = array.components.count();
         let count = array.values.len() / width;
@@ -99,9 +101,9 @@ fn named(py: Python<'_>, arrays: Vec<Array>) -> PyResult<Bound<'_, PyDict>> {
         };
         let values = frozen(PyArray1::from_vec(py, array.values))?;
         let values: Bound<'_, PyArrayDyn<f64>> = values.reshape(shape)?;
-        found.set_item(array.name, frozen(values)?)?;
+        by_name.set_item(array.name, frozen(values)?)?;
     }
-    Ok(found)
+    Ok(by_name)
 }
 
 /// The arrays of a grid at its points and in its cells.

@@ -119,8 +119,8 @@ pub fn track(
         let start = Instant::now();
         let tracked = with_files(in_memory, || request.follow(&|what| watch.tell(what)))?;
         let seconds = start.elapsed().as_secs_f64();
-        let found = results(&tracked, "track".to_owned(), seconds);
+        let tracking = results(&tracked, "track".to_owned(), seconds);
         let file = files.into_iter().next().unwrap_or_default();
-        Ok(Results::new(found, file, None, true))
+        Ok(Results::new(tracking, file, None, true))
     })
 }

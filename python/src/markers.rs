@@ -118,8 +118,8 @@ impl Options {
 /// The length of a unit, or of a pixel, in mm.
 pub fn length_unit(text: &str) -> Result<f64, Error> {
     let named = units::factor(text, Dimension::Length);
-    let found = named.or_else(|_| units::parse(text, Dimension::Length));
-    found.map_err(|fault| refused(fault.to_string()))
+    let factor = named.or_else(|_| units::parse(text, Dimension::Length));
+    factor.map_err(|fault| refused(fault.to_string()))
 }
 
 /// Whether a choice is the first of two.
@@ -153,7 +153,8 @@ pub fn correct(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Results, String)> {
     let regions = options.regions.iter();
-    let regions = regions.map(|(name, own)| (name.clone(), (*own.borrow(py).card).clone()));
+    let regions = regions
+        .map(|(name, material_card)| (name.clone(), (*material_card.borrow(py).card).clone()));
     let regions: Vec<(String, Card)> = regions.collect();
     run(py, progress, |watch| {
         let card = watched((*material.card).clone(), watch);
@@ -181,8 +182,8 @@ pub fn correct(
             true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what)),
             false => MarkerStudy::prepare_with(card, request),
         })?;
-        let told = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
-        let estimates = study.estimate(&told)?;
+        let tell = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
+        let estimates = study.estimate(&tell)?;
         let seconds = start.elapsed().as_secs_f64();
         let results = written::results(&study, &estimates, name, known, seconds);
         let mut of_frames = OfFrames {
@@ -195,15 +196,15 @@ pub fn correct(
             tables: Vec::new(),
         };
         for (frame, estimate) in study.series.frames.iter().zip(&estimates) {
-            let found = FrameFiles::new(&study, frame, estimate);
-            for (series, grid) in of_frames.series.iter_mut().zip(found.grids) {
+            let frame_files = FrameFiles::new(&study, frame, estimate);
+            for (series, grid) in of_frames.series.iter_mut().zip(frame_files.grids) {
                 series.grids.push(grid);
             }
-            of_frames.tables.extend(found.tables);
+            of_frames.tables.extend(frame_files.tables);
         }
         let file = files.into_iter().next().unwrap_or_default();
         let answer = worst_answer(&estimates).words().to_owned();
-        let found = Results::new(results, file, None, true).with_frames(of_frames);
-        Ok((found, answer))
+        let returned = Results::new(results, file, None, true).with_frames(of_frames);
+        Ok((returned, answer))
     })
 }

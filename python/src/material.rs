@@ -43,8 +43,12 @@ impl MaterialCard {
         let card = &self.card;
         let mut document = EditedDocument::parse(&card.text).map_err(refused)?;
         for (key, value) in values {
-            if !card.parameters.iter().any(|own| own.key == key) {
-                let known: Vec<_> = card.parameters.iter().map(|own| own.key).collect();
+            if !card.parameters.iter().any(|parameter| parameter.key == key) {
+                let known: Vec<_> = card
+                    .parameters
+                    .iter()
+                    .map(|parameter| parameter.key)
+                    .collect();
                 let hint = suggestion(key, &known, "its parameters are");
                 return Err(input(format!("the law has no parameter `{key}`"), hint));
             }
@@ -285,8 +289,8 @@ fn mode(name: &str) -> Result<Option<Mode>, Error> {
     if name == "shear" {
         return Ok(None);
     }
-    let found = Mode::ALL.iter().find(|(known, _)| *known == name);
-    found.map(|(_, mode)| Some(*mode)).ok_or_else(|| {
+    let entry = Mode::ALL.iter().find(|(known, _)| *known == name);
+    entry.map(|(_, mode)| Some(*mode)).ok_or_else(|| {
         let known = Mode::ALL.map(|(_, mode)| name_of(&Mode::ALL, mode));
         let hint = format!("use {} or shear", known.join(", "));
         input(format!("there is no test `{name}`"), hint)

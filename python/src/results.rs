@@ -81,21 +81,21 @@ impl Results {
     }
 
     fn grid(&self, series: usize, number: usize) -> PyResult<&NamedGrid> {
-        let found = self.series().get(series);
-        let found = found.and_then(|series| series.grids.get(number));
-        found.ok_or_else(|| PyIndexError::new_err("there is no such field"))
+        let grid = self.series().get(series);
+        let grid = grid.and_then(|series| series.grids.get(number));
+        grid.ok_or_else(|| PyIndexError::new_err("there is no such field"))
     }
 }
 
 #[pymethods]
 impl Results {
     /// A copy is the same: nothing in it changes.
-    fn __copy__(own: Py<Self>) -> Py<Self> {
-        own
+    fn __copy__(results: Py<Self>) -> Py<Self> {
+        results
     }
 
-    fn __deepcopy__(own: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
-        own
+    fn __deepcopy__(results: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
+        results
     }
 
     #[getter]

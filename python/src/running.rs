@@ -48,8 +48,8 @@ impl Watch {
         let Some(callback) = &self.progress else {
             return;
         };
-        let told = Python::attach(|py| callback.call1(py, (what,)).map(drop));
-        told.unwrap_or_else(|error| self.fail(error));
+        let outcome = Python::attach(|py| callback.call1(py, (what,)).map(drop));
+        outcome.unwrap_or_else(|error| self.fail(error));
     }
 
     /// Ends the computation with an exception.
@@ -82,7 +82,7 @@ pub fn run<T: Send>(
     });
     let ended = py.detach(|| in_thread(&watch, work));
     match ended {
-        Ok(Ok(found)) => Ok(found),
+        Ok(Ok(value)) => Ok(value),
         Ok(Err(error)) => Err(watch.reason().unwrap_or_else(|| exception(py, &error))),
         Err(payload) => Err(watch.reason().unwrap_or_else(|| of_panic(&*payload))),
     }
@@ -95,12 +95,12 @@ fn in_thread<T: Send>(
     work: impl FnOnce(&Arc<Watch>) -> Result<T, Error> + Send,
 ) -> Ended<T> {
     scope(|scope| {
-        let (told, ended) = channel();
+        let (sender, ended) = channel();
         let body = move || {
-            let found = catch_unwind(AssertUnwindSafe(|| work(watch)));
+            let result = catch_unwind(AssertUnwindSafe(|| work(watch)));
             // The calling thread waits; nothing else listens.
-            told.send(()).ok();
-            found
+            sender.send(()).ok();
+            result
         };
         let worker = match Builder::new().stack_size(STACK).spawn_scoped(scope, body) {
             Ok(worker) => worker,
@@ -111,14 +111,14 @@ fn in_thread<T: Send>(
                 watch.stop(signal);
             }
         }
-        worker.join().and_then(|found| found)
+        worker.join().and_then(|result| result)
     })
 }
 
 /// What comes of a short piece of work.
 pub fn caught<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    let found = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
-    found.map_err(|payload| of_panic(&*payload))
+    let result = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
+    result.map_err(|payload| of_panic(&*payload))
 }
 
 fn of_panic(payload: &(dyn Any + Send)) -> PyErr {

@@ -32,7 +32,7 @@ pub struct Sheet {
 /// The equilibria of one model, and the mesh that they live on.
 #[pyclass(frozen, module = "gelbench._core")]
 pub struct Solution {
-    own: Sheet,
+    sheet: Sheet,
     mesh: Arc<Mesh>,
     points: Py<PyArray2<f64>>,
     groups: Vec<String>,
@@ -56,21 +56,22 @@ struct State {
 impl Solution {
     pub fn new(
         py: Python<'_>,
-        found: OneModel,
-        mut own: Sheet,
+        model: OneModel,
+        mut sheet: Sheet,
         groups: Vec<String>,
     ) -> PyResult<Self> {
-        own.warnings
-            .extend(found.warnings.iter().map(ToString::to_string));
-        let ends = found.ends.iter();
+        sheet
+            .warnings
+            .extend(model.warnings.iter().map(ToString::to_string));
+        let ends = model.ends.iter();
         let ends = ends.map(|end| exception(py, end).into_value(py).into_any());
         let ends = ends.collect();
-        let solution = found.solution;
+        let solution = model.solution;
         let at_groups: Vec<Vec<GroupState>> = (0..solution.reached())
             .map(|step| solution.groups(step).unwrap_or_default().to_vec())
             .collect();
-        let numbers = solution.balances.into_iter().zip(found.forces);
-        let others = numbers.zip(at_groups).zip(found.multipliers);
+        let numbers = solution.balances.into_iter().zip(model.forces);
+        let others = numbers.zip(at_groups).zip(model.multipliers);
         let states = solution.states.into_iter().zip(others);
         let states = states.map(|(state, (((balance, force), at_groups), multipliers))| {
             let array = |values| Ok::<_, PyErr>(frozen_rows(py, values, 2)?.unbind());
@@ -90,7 +91,7 @@ impl Solution {
             states: states.collect::<PyResult<_>>()?,
             points: places(py, &solution.mesh.nodes)?.unbind(),
             mesh: Arc::new(solution.mesh),
-            own,
+            sheet,
             groups,
             ends,
         })
@@ -105,12 +106,12 @@ impl Solution {
 #[pymethods]
 impl Solution {
     /// A copy is the same: nothing in it changes.
-    fn __copy__(own: Py<Self>) -> Py<Self> {
-        own
+    fn __copy__(solution: Py<Self>) -> Py<Self> {
+        solution
     }
 
-    fn __deepcopy__(own: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
-        own
+    fn __deepcopy__(solution: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
+        solution
     }
 
     #[getter]
@@ -120,17 +121,17 @@ impl Solution {
 
     #[getter]
     fn thickness(&self) -> f64 {
-        self.own.thickness
+        self.sheet.thickness
     }
 
     #[getter]
     fn seconds(&self) -> f64 {
-        self.own.took.as_secs_f64()
+        self.sheet.took.as_secs_f64()
     }
 
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.own.warnings.clone()
+        self.sheet.warnings.clone()
     }
 
     #[getter]
@@ -147,12 +148,12 @@ impl Solution {
     }
 
     fn group_nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let found = PyDict::new(py);
+        let nodes_by_name = PyDict::new(py);
         for (name, group) in self.mesh.groups() {
             let nodes = group.nodes.iter().map(|node| *node as i64);
-            found.set_item(name, PyArray1::from_iter(py, nodes))?;
+            nodes_by_name.set_item(name, PyArray1::from_iter(py, nodes))?;
         }
-        Ok(found)
+        Ok(nodes_by_name)
     }
 
     fn factors(&self) -> Vec<f64> {
@@ -185,26 +186,26 @@ impl Solution {
 
     /// Force, moment and mean displacement at each group that is held, loaded or measured.
     fn at_groups<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Bound<'py, PyDict>> {
-        let found = PyDict::new(py);
+        let states_by_name = PyDict::new(py);
         for (name, state) in self.groups.iter().zip(&self.state(step)?.at_groups) {
-            found.set_item(name, (state.force, state.moment, state.displacement))?;
+            states_by_name.set_item(name, (state.force, state.moment, state.displacement))?;
         }
-        Ok(found)
+        Ok(states_by_name)
     }
 
     fn multipliers<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Bound<'py, PyDict>> {
-        let found = PyDict::new(py);
+        let values_by_name = PyDict::new(py);
         for one in &self.state(step)?.multipliers {
-            found.set_item(&one.name, PyArray1::from_slice(py, &one.values))?;
+            values_by_name.set_item(&one.name, PyArray1::from_slice(py, &one.values))?;
         }
-        Ok(found)
+        Ok(values_by_name)
     }
 
     /// The arrays at the nodes and in the cells, as VTK files hold them.
     fn arrays<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Arrays<'py>> {
         let displacement = self.state(step)?.displacement.bind(py).readonly();
         let displacement = displacement.as_slice()?;
-        let Sheet { law, thickness, .. } = &self.own;
+        let Sheet { law, thickness, .. } = &self.sheet;
         let grid = caught(py, || {
             let sheet = results::Sheet {
                 laws: law.into(),
@@ -228,9 +229,9 @@ impl Solution {
         let values = points.as_slice()?;
         let field = state.displacement.bind(py).readonly();
         let field = field.as_slice()?;
-        let found = caught(py, || {
+        let values_at_points = caught(py, || {
             let sheet = state.sheet.get_or_init(|| {
-                let law = Arc::clone(&self.own.law);
+                let law = Arc::clone(&self.sheet.law);
                 DeformedSheet::new((*self.mesh).clone(), field.to_vec(), law)
             });
             let places = values.chunks_exact(2).map(|place| [place[0], place[1]]);
@@ -241,13 +242,17 @@ impl Solution {
             });
             asked.collect::<Result<Vec<_>, gelbench::problem::PointFault>>()
         })?;
-        let found = found.map_err(|fault| exception(py, &refused(fault.to_string())))?;
-        debug_assert_eq!(found.len(), points.shape()[0]);
+        let values_at_points =
+            values_at_points.map_err(|fault| exception(py, &refused(fault.to_string())))?;
+        debug_assert_eq!(values_at_points.len(), points.shape()[0]);
         let of = |values: Vec<f64>, width| rows(py, values, width);
         Ok([
-            of(found.iter().flat_map(|(u, ..)| *u).collect(), 2)?,
-            of(found.iter().flat_map(|(_, s, _)| *s).collect(), 3)?,
-            of(found.iter().flat_map(|(.., l)| *l).collect(), 3)?,
+            of(values_at_points.iter().flat_map(|(u, ..)| *u).collect(), 2)?,
+            of(
+                values_at_points.iter().flat_map(|(_, s, _)| *s).collect(),
+                3,
+            )?,
+            of(values_at_points.iter().flat_map(|(.., l)| *l).collect(), 3)?,
         ])
     }
 }

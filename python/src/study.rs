@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 use crate::errors::{exception, input, refused};
 use crate::material::{MaterialCard, watched};
 use crate::results::Results;
-use crate::running::{Watch, run as run_beside};
+use crate::running::{Watch, run as run_watched};
 use crate::solution::{Sheet, Solution};
 
 /// What may be used.
@@ -34,8 +34,8 @@ pub fn budget(allow_large: bool) -> Budget {
 
 /// The model of a name.
 fn model_kind(name: &str) -> Result<ModelKind, Error> {
-    let found = ModelKind::NAMES.iter().find(|(known, _)| *known == name);
-    found.map(|(_, kind)| *kind).ok_or_else(|| {
+    let entry = ModelKind::NAMES.iter().find(|(known, _)| *known == name);
+    entry.map(|(_, kind)| *kind).ok_or_else(|| {
         let known = ModelKind::NAMES.map(|(known, _)| known);
         let hint = format!("use one of {}", known.join(", "));
         input(format!("there is no model `{name}`"), hint)
@@ -45,7 +45,7 @@ fn model_kind(name: &str) -> Result<ModelKind, Error> {
 /// Cards in memory, by the names that a study has for them.
 type Files = BTreeMap<PathBuf, Vec<u8>>;
 
-fn told(warnings: &[Diagnostic]) -> Vec<String> {
+fn texts(warnings: &[Diagnostic]) -> Vec<String> {
     warnings.iter().map(ToString::to_string).collect()
 }
 
@@ -61,7 +61,7 @@ pub fn run_sheet(
     progress: Option<Py<PyAny>>,
     allow_large: bool,
 ) -> PyResult<Results> {
-    run_beside(py, progress, |watch| {
+    run_watched(py, progress, |watch| {
         let mut read = read_sheet(&study, files, mesh, allow_large)?;
         let card = watched(material.in_study(&read.made.card), watch);
         read.made = read.made.with_card(card);
@@ -157,15 +157,15 @@ impl GivenMesh {
         };
         for (kind, points) in cells {
             let shape = shape(kind).map_err(|error| exception(py, &error))?;
-            for own in points.as_slice()?.chunks(points.shape()[1].max(1)) {
-                data.cells.push((shape, numbers(own)?));
+            for cell in points.as_slice()?.chunks(points.shape()[1].max(1)) {
+                data.cells.push((shape, numbers(cell)?));
             }
         }
-        for (name, own) in nodes {
-            data.nodes.insert(name, numbers(own.as_slice()?)?);
+        for (name, members) in nodes {
+            data.nodes.insert(name, numbers(members.as_slice()?)?);
         }
-        for (name, own) in lines {
-            let ends = numbers(own.as_slice()?)?;
+        for (name, pairs) in lines {
+            let ends = numbers(pairs.as_slice()?)?;
             let ends = ends.chunks_exact(2).map(|ends| [ends[0], ends[1]]);
             data.lines.insert(name, ends.collect());
         }
@@ -212,20 +212,20 @@ pub fn solve_sheet(
         let mut sheet = Sheet {
             law: Arc::clone(&card.law),
             thickness: read.problem.thickness,
-            warnings: told(&warnings),
+            warnings: texts(&warnings),
             took: Duration::ZERO,
         };
         let read = read.with_card(watched(card, watch));
         check_memory(&*read.problem.law, "a single model in Python")?;
-        let told = |what: &str| watch.tell(what);
+        let tell = |what: &str| watch.tell(what);
         let start = Instant::now();
-        let found = specimen::one_model(&read, kind, Progress::to(&told))?;
+        let solved = specimen::one_model(&read, kind, Progress::to(&tell))?;
         sheet.took = start.elapsed();
         let groups = read.groups().into_iter().map(str::to_owned).collect();
-        Ok((found, sheet, groups))
+        Ok((solved, sheet, groups))
     };
-    let (found, sheet, groups) = run_beside(py, progress, work)?;
-    Solution::new(py, found, sheet, groups)
+    let (solved, sheet, groups) = run_watched(py, progress, work)?;
+    Solution::new(py, solved, sheet, groups)
 }
 
 /// A study of any kind: a file, or a text with the files that it names and no disk has.
@@ -253,11 +253,11 @@ pub fn run(
     text: Option<String>,
     files: Files,
 ) -> PyResult<Results> {
-    run_beside(py, progress, |watch| {
+    run_watched(py, progress, |watch| {
         let ready = ready(&path, allow_large, text, files)?;
         let (folder, with_report) = (ready.output.folder.clone(), ready.output.report);
-        let told = |what: &str| watch.tell(what);
-        let results = ready.compute(Progress::to(&told))?;
+        let tell = |what: &str| watch.tell(what);
+        let results = ready.compute(Progress::to(&tell))?;
         Ok(Results::new(results, path, folder, with_report))
     })
 }
@@ -286,10 +286,10 @@ pub fn check(
     text: Option<String>,
     files: Files,
 ) -> PyResult<(String, Vec<String>)> {
-    let found = py.detach(|| {
+    let checked = py.detach(|| {
         let ready = ready(&path, allow_large, text, files)?;
         let warnings = ready.warnings.iter().map(ToString::to_string).collect();
         Ok((ready.about, warnings))
     });
-    found.map_err(|error: Error| exception(py, &error))
+    checked.map_err(|error: Error| exception(py, &error))
 }

@@ -17,7 +17,7 @@ use pyo3::types::PyBytes;
 
 use crate::errors::{exception, input, refused};
 use crate::fields::frozen;
-use crate::running::run as run_beside;
+use crate::running::run as run_watched;
 use crate::study::budget;
 
 /// The values of a key: a text as behind `--vary KEY=`, or a text for each.
@@ -31,11 +31,11 @@ pub enum Varied {
 type Distribution = (String, bool, [f64; 2], String);
 
 fn variable(key: &str, values: &Varied) -> Result<Variable, Error> {
-    let found = match values {
+    let variable = match values {
         Varied::Text(text) => Variable::parse(&format!("{key}={text}")),
         Varied::Listed(texts) => Variable::listed(key, texts),
     };
-    found.map_err(|fault| Error::Input(vec![fault]))
+    variable.map_err(|fault| Error::Input(vec![fault]))
 }
 
 /// The distributions among what is varied.
@@ -52,8 +52,8 @@ pub fn distributions(py: Python<'_>, vary: Vec<(String, Varied)>) -> PyResult<Ve
             }
         }
     };
-    let found: Result<Vec<_>, Error> = vary.iter().map(of).collect();
-    found.map_err(|error| exception(py, &error))
+    let distributions: Result<Vec<_>, Error> = vary.iter().map(of).collect();
+    distributions.map_err(|error| exception(py, &error))
 }
 
 /// The text of a study or a fit.
@@ -92,7 +92,7 @@ impl Sweep {
         seed: u32,
         allow_large: bool,
     ) -> PyResult<Self> {
-        let made = || -> Result<Self, Error> {
+        let planned = || -> Result<Self, Error> {
             let one = |fault: Diagnostic| Error::Input(vec![fault]);
             let variables = vary.iter().map(|(key, values)| variable(key, values));
             let points = points.as_deref().map(Points::of_columns).transpose();
@@ -117,7 +117,7 @@ impl Sweep {
             sweep.study.read()?;
             Ok(Self { sweep, runs })
         };
-        py.detach(made).map_err(|error| exception(py, &error))
+        py.detach(planned).map_err(|error| exception(py, &error))
     }
 
     fn __len__(&self) -> usize {
@@ -126,13 +126,14 @@ impl Sweep {
 
     /// What is set in every run: heads with units, and the values.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-        let mut found = Vec::new();
+        let mut columns = Vec::new();
         for (place, key) in self.sweep.keys().into_iter().enumerate() {
-            let own: Vec<&Setting> = self.runs.iter().map(|run| &run.settings[place]).collect();
-            let unit = own.first().map_or("", |setting| setting.unit());
-            found.push((sweep::headed(&key, unit), values(py, &own)?));
+            let settings: Vec<&Setting> =
+                self.runs.iter().map(|run| &run.settings[place]).collect();
+            let unit = settings.first().map_or("", |setting| setting.unit());
+            columns.push((sweep::headed(&key, unit), values(py, &settings)?));
         }
-        Ok(found)
+        Ok(columns)
     }
 
     /// Computes the runs, or those of one part of so many, or puts the parts in a folder together.
@@ -151,22 +152,24 @@ impl Sweep {
         program: PathBuf,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<SweepTable> {
-        run_beside(py, progress, |watch| {
+        run_watched(py, progress, |watch| {
             let share = share(part, join)?;
             let ended = |number: usize| watch.tell(&format!("run {number}"));
             let attend = || watch.check();
             let mut table = SweepTable::of(&self.sweep, Vec::new());
             let Some(folder) = folder else {
-                let own = self.runs.iter().filter(|run| match share {
+                let share_runs = self.runs.iter().filter(|run| match share {
                     Share::Shard(shard) => shard.holds(run),
                     _ => true,
                 });
-                let own: Vec<Run> = own.cloned().collect();
+                let share_runs: Vec<Run> = share_runs.cloned().collect();
                 let keep = |row: &Row| {
                     ended(row.number);
                     Ok(())
                 };
-                table.rows = self.sweep.compute(&own, HashMap::new(), &keep, &attend)?;
+                table.rows = self
+                    .sweep
+                    .compute(&share_runs, HashMap::new(), &keep, &attend)?;
                 return Ok(table);
             };
             let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
@@ -319,18 +322,19 @@ impl SweepTable {
 
     /// The warnings of each run, as one text.
     fn run_warnings(&self) -> Vec<String> {
-        self.rows.iter().map(Row::told_warnings).collect()
+        self.rows.iter().map(Row::joined_warnings).collect()
     }
 
     /// What was set: heads with units, and the values.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-        let mut found = Vec::new();
+        let mut columns = Vec::new();
         for (place, key) in self.keys.iter().enumerate() {
-            let own: Vec<&Setting> = self.rows.iter().map(|row| &row.settings[place]).collect();
-            let unit = own.first().map_or("", |setting| setting.unit());
-            found.push((sweep::headed(key, unit), values(py, &own)?));
+            let settings: Vec<&Setting> =
+                self.rows.iter().map(|row| &row.settings[place]).collect();
+            let unit = settings.first().map_or("", |setting| setting.unit());
+            columns.push((sweep::headed(key, unit), values(py, &settings)?));
         }
-        Ok(found)
+        Ok(columns)
     }
 
     /// The figures by their names, NaN where a run has none.

@@ -29,7 +29,7 @@ use crate::running::run;
 type Fitted = (String, MaterialCard, Vec<u8>);
 
 /// What is said of all tests: key and value.
-type Said = BTreeMap<String, String>;
+type StatedTexts = BTreeMap<String, String>;
 
 /// Fits a law, or the best of all, to tests by their names and tables.
 #[pyfunction]
@@ -43,7 +43,7 @@ pub fn fit(
     tests: Vec<(String, String)>,
     law: Option<String>,
     name: String,
-    said: Said,
+    said: StatedTexts,
     weighting: &str,
     bounds: Bounds,
     starts: u16,
@@ -118,8 +118,8 @@ fn named(name: &str) -> Result<&'static Law, Error> {
 }
 
 fn chosen<T: Copy>(what: &str, name: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
-    let found = names.iter().find(|(known, _)| *known == name);
-    found.map(|(_, choice)| *choice).ok_or_else(|| {
+    let entry = names.iter().find(|(known, _)| *known == name);
+    entry.map(|(_, choice)| *choice).ok_or_else(|| {
         let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
         let hint = format!("it must be one of {}", known.join(", "));
         input(format!("{what} `{name}` is not known"), hint)
@@ -136,7 +136,7 @@ fn drawn(drawing: &Drawing) -> Result<Vec<u8>, Error> {
 pub fn identify(
     py: Python<'_>,
     recording: (String, String),
-    said: Said,
+    said: StatedTexts,
     forms: [String; 2],
     shapes: [String; 2],
     damping_over: &str,
@@ -156,9 +156,9 @@ pub fn identify(
             ],
             argument: chosen("damping_over", damping_over, &Argument::NAMES)?,
         };
-        let found = identified(&read, settings, &|what| watch.tell(what))?;
-        let json = identification_json(&found, &read, &name).to_string();
-        let picture = drawn(&identification_picture(&found, &read))?;
-        Ok((json, law_text(&found, &read, &name), picture))
+        let identification = identified(&read, settings, &|what| watch.tell(what))?;
+        let json = identification_json(&identification, &read, &name).to_string();
+        let picture = drawn(&identification_picture(&identification, &read))?;
+        Ok((json, law_text(&identification, &read, &name), picture))
     })
 }

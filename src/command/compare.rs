@@ -179,9 +179,9 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
             "give places at rest in the axes of the study, and their unit with --unit",
         )
     })?;
-    if let Some(told) = sites.window(lattice) {
+    if let Some(warning) = sites.window(lattice) {
         let hint = "if the field is that of a whole specimen, this study has another size";
-        warn(&[Diagnostic::warning("", told).hint(hint)]);
+        warn(&[Diagnostic::warning("", warning).hint(hint)]);
     }
     Ok((imported, sites))
 }
@@ -192,7 +192,7 @@ fn summary(compared: &Comparison, differences: &[Difference]) -> String {
         compared.factor,
         compared.imported.describe(),
         table(compared, differences, false).plain(),
-        own_error(compared)
+        discretisation_error(compared)
     )
 }
 
@@ -201,20 +201,25 @@ fn table(compared: &Comparison, differences: &[Difference], with_mesh: bool) -> 
     Table::of(compared.models.fields.iter().zip(differences))
         .column("model", |(field, _)| field.model.to_owned())
         .column_if(with_mesh, "mesh", |(field, _)| field.mesh.describe())
-        .column("displacement [%]", |(_, own)| format!("{:.4}", own.percent))
-        .column("largest difference [mm]", |(_, own)| {
-            format!("{:.5}", own.largest)
+        .column("displacement [%]", |(_, difference)| {
+            format!("{:.4}", difference.percent)
         })
-        .column("at (x, y) [mm]", |(_, own)| {
-            format!("({:.3}, {:.3})", own.position[0], own.position[1])
+        .column("largest difference [mm]", |(_, difference)| {
+            format!("{:.5}", difference.largest)
+        })
+        .column("at (x, y) [mm]", |(_, difference)| {
+            format!(
+                "({:.3}, {:.3})",
+                difference.position[0], difference.position[1]
+            )
         })
         .block()
 }
 
 /// The finite elements' own error, in words.
-fn own_error(compared: &Comparison) -> String {
+fn discretisation_error(compared: &Comparison) -> String {
     match compared.models.own_percent {
-        Some(own) => format!("The finite elements' own error is estimated as {own:.4} %."),
+        Some(percent) => format!("The finite elements' own error is estimated as {percent:.4} %."),
         None => "The finite elements' own error is not known.".to_owned(),
     }
 }
@@ -239,9 +244,9 @@ fn write(
                 Grid::sheet(sheet, mesh, u).with(Array::imported(u, &expected))
             }
             ExternalField::AtPoints(points) => {
-                let own = compared.sites.at(field);
-                let grid = Grid::scattered(&points.positions, &own);
-                grid.with(Array::imported(&own, &points.displacement))
+                let displacement = compared.sites.at(field);
+                let grid = Grid::scattered(&points.positions, &displacement);
+                grid.with(Array::imported(&displacement, &points.displacement))
             }
         };
         let name = field.model.replace([' ', '-'], "_");
@@ -301,7 +306,7 @@ fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec
             compared.imported.describe()
         )),
         table(compared, differences, true),
-        Block::Paragraph(own_error(compared)),
+        Block::Paragraph(discretisation_error(compared)),
         Block::Paragraph(format!("gelbench {}", env!("CARGO_PKG_VERSION"))),
     ]
 }

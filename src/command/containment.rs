@@ -46,12 +46,12 @@ mod tests {
 
     #[test]
     fn a_fault_of_the_program_says_what_to_send() {
-        let told = message(&"index out of bounds", " (src/mesh.rs:1:2)");
+        let text = message(&"index out of bounds", " (src/mesh.rs:1:2)");
         assert!(
-            told.contains("index out of bounds (src/mesh.rs:1:2)"),
-            "{told}"
+            text.contains("index out of bounds (src/mesh.rs:1:2)"),
+            "{text}"
         );
-        assert!(told.contains("please report"), "{told}");
+        assert!(text.contains("please report"), "{text}");
         let formatted: Box<dyn Any + Send> = Box::new(format!("cell {}", 3));
         assert!(message(&*formatted, "").contains("cell 3"));
     }

@@ -100,7 +100,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         starts: arguments.starts.into(),
     };
     let base = arguments.card.as_deref().map(load).transpose()?;
-    let fit = found(arguments.law, base, &tests, &settings, memory)?;
+    let fit = chosen_fit(arguments.law, base, &tests, &settings, memory)?;
     let tests = fit.fitted_tests(&tests);
     let name = arguments
         .name
@@ -180,7 +180,7 @@ fn check_history(reading: &Statements) -> Result<(), Error> {
 }
 
 /// The fit of a law, on top of a card, or of the best law where neither is named.
-fn found(
+fn chosen_fit(
     law: Option<&'static Law>,
     base: Option<Card>,
     tests: &[TestData],
@@ -311,8 +311,8 @@ pub fn a_law() -> impl TypedValueParser<Value = &'static Law> {
 
 /// The weighting of a record.
 fn weighting(name: &str) -> Result<Weighting, Error> {
-    let found = Weighting::NAMES.iter().find(|(known, _)| *known == name);
-    found.map(|(_, weighting)| *weighting).ok_or_else(|| {
+    let entry = Weighting::NAMES.iter().find(|(known, _)| *known == name);
+    entry.map(|(_, weighting)| *weighting).ok_or_else(|| {
         let hint = format!(
             "it must be one of {}",
             Weighting::NAMES.map(|(known, _)| known).join(", ")

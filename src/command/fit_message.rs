@@ -75,7 +75,7 @@ fn protocols(fit: &Fit) -> String {
         return String::new();
     };
     let each = protocols.left_out_percent.iter();
-    let each: Vec<String> = each.map(|own| format!("{own:.2}")).collect();
+    let each: Vec<String> = each.map(|percent| format!("{percent:.2}")).collect();
     let mut text = format!(
         "  left out     each protocol is predicted by the law fitted to the others to {} % of the largest stress\n",
         each.join(", ")
@@ -92,9 +92,14 @@ fn protocols(fit: &Fit) -> String {
 
 /// Some parameters with their values.
 pub fn values(parameters: &[Parameter]) -> String {
-    let each = parameters
-        .iter()
-        .map(|own| format!("{} {} {}", own.key, digits(own.value, 4), own.unit()));
+    let each = parameters.iter().map(|parameter| {
+        format!(
+            "{} {} {}",
+            parameter.key,
+            digits(parameter.value, 4),
+            parameter.unit()
+        )
+    });
     each.collect::<Vec<_>>().join(", ")
 }
 
@@ -311,10 +316,12 @@ pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
             quality.rmse,
             quality.nmad_percent,
             quality.largest_relative_error_percent,
-            fit.protocols.as_ref().map_or("–".to_owned(), |own| format!(
-                "{:.2}",
-                own.all_left_out_percent()
-            )),
+            fit.protocols
+                .as_ref()
+                .map_or("–".to_owned(), |protocols| format!(
+                    "{:.2}",
+                    protocols.all_left_out_percent()
+                )),
             if quality.is_stable() { "yes" } else { "no" },
             if quality.is_identifiable() {
                 "yes"

@@ -97,7 +97,7 @@ fn named(
 ) -> Result<Vec<NamedGroup>, Error> {
     let states: Vec<Vec<GroupState>> = match &groups[..] {
         [first, second] => vec![first.states(Some(second)), second.states(Some(first))],
-        others => others.iter().map(|own| own.states(None)).collect(),
+        others => others.iter().map(|group| group.states(None)).collect(),
     };
     let pairs = groups.into_iter().zip(states).zip(names);
     pairs
@@ -123,9 +123,9 @@ fn write(
     let mut results = ResultFolder::open(folder, &format!("materials group {name}"), &inputs)?;
     interrupt::guard(&results);
     results.add(&format!("{name}.csv"), group_table(groups).as_bytes())?;
-    for own in groups {
-        let stem = format!("{name}-{}", own.name);
-        let test = own.group.mean_test(&own.name, &own.states);
+    for entry in groups {
+        let stem = format!("{name}-{}", entry.name);
+        let test = entry.group.mean_test(&entry.name, &entry.states);
         let data = format!("{stem}.csv");
         let conversion = Conversion {
             stress: test.stress_measure,
@@ -138,7 +138,7 @@ fn write(
             reading: Default::default(),
             base_card: None,
         };
-        let card = card_text(&own.mean, &[test], &provenance);
+        let card = card_text(&entry.mean, &[test], &provenance);
         results.add(&format!("{stem}.toml"), card.as_bytes())?;
     }
     let text = format!("{:#}\n", group_json(groups));
@@ -153,18 +153,18 @@ fn write(
 /// Mean stresses, their intervals and spread, and the difference of two groups, at a few stretches.
 fn message(groups: &[NamedGroup]) -> String {
     let mut text = String::new();
-    for own in groups {
-        let count = own.group.fits.len();
+    for entry in groups {
+        let count = entry.group.fits.len();
         text += &format!(
             "{}: {count} specimens, {}, mean law {}\n",
-            own.name,
-            own.mean.law.name,
-            values(&own.mean.parameters)
+            entry.name,
+            entry.mean.law.name,
+            values(&entry.mean.parameters)
         );
     }
     text += "  stretches         axis";
-    for own in groups {
-        text += &format!("{:>40}", format!("{} [MPa], 95 %, spread", own.name));
+    for entry in groups {
+        text += &format!("{:>40}", format!("{} [MPa], 95 %, spread", entry.name));
     }
     text += if groups.len() == 2 {
         "        difference [MPa], 95 %\n"
@@ -182,20 +182,20 @@ fn message(groups: &[NamedGroup]) -> String {
         }
         let [x, y] = state.strains;
         text += &format!("  {:>7.4} {:>7.4} {:>6}", 1.0 + x, 1.0 + y, state.axis + 1);
-        for own in groups {
-            let stress = own.states[row].stress;
+        for entry in groups {
+            let stress = entry.states[row].stress;
             let [low, high] = stress.estimate().interval.map(|end| digits(end, 3));
             let (mean, between) = (digits(stress.mean, 4), digits(stress.between, 2));
             text += &format!("{:>40}", format!("{mean} ({low} … {high}) {between}"));
         }
         if let [first, second] = groups {
-            let own = first.states[row]
+            let difference = first.states[row]
                 .stress
                 .difference(&second.states[row].stress);
-            let [low, high] = own.interval.map(|end| digits(end, 3));
+            let [low, high] = difference.interval.map(|end| digits(end, 3));
             text += &format!(
                 "{:>30}",
-                format!("{} ({low} … {high})", digits(own.value, 3))
+                format!("{} ({low} … {high})", digits(difference.value, 3))
             );
         }
         text += "\n";

@@ -119,11 +119,11 @@ pub fn run(options: Options) -> Outcome {
     interrupt::guard(&results);
     warn(results.replaces().as_slice());
     let progress = Progress::of(0);
-    let found = identify(&recording, settings, &|what| progress.tell(what))?;
+    let identification = identify(&recording, settings, &|what| progress.tell(what))?;
     progress.tell("files");
-    let json = identification_json(&found, &recording, &file_name(&path));
-    let law = law_text(&found, &recording, &file_name(&path));
-    let picture = identification_picture(&found, &recording);
+    let json = identification_json(&identification, &recording, &file_name(&path));
+    let law = law_text(&identification, &recording, &file_name(&path));
+    let picture = identification_picture(&identification, &recording);
     let warnings = add_law(
         &mut results,
         &stem,
@@ -136,13 +136,22 @@ pub fn run(options: Options) -> Outcome {
     tell_files(&files);
     print_report(|| json)?;
     warn(warnings.as_slice());
-    warn_words(found.verdict.doubts.iter().chain(&found.warnings));
+    warn_words(
+        identification
+            .verdict
+            .doubts
+            .iter()
+            .chain(&identification.warnings),
+    );
     print(&format!(
         "{}written: {} with .png and .json\n",
-        message(&found, &recording, &path),
+        message(&identification, &recording, &path),
         folder.join(format!("{stem}.toml")).display()
     ))?;
-    Ok(exit_code(found.verdict.answer, found.verdict.is_sound()))
+    Ok(exit_code(
+        identification.verdict.answer,
+        identification.verdict.is_sound(),
+    ))
 }
 
 /// Refuses a recording that is larger than the budget.
@@ -176,18 +185,18 @@ fn file_name(path: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-fn message(found: &Identification, recording: &Recording, path: &Path) -> String {
+fn message(identification: &Identification, recording: &Recording, path: &Path) -> String {
     let mut text = format!(
         "{}: {} instants\n{}noise: {} mm in the extension, {} N in the force\nmisfit: {} (1 where force, motion and forms fit together)\n",
         path.display(),
         recording.times.len(),
-        verdict(found),
-        number(found.noise[0]),
-        number(found.noise[1]),
-        number(found.misfit)
+        verdict(identification),
+        number(identification.noise[0]),
+        number(identification.noise[1]),
+        number(identification.misfit)
     );
-    for (index, (symbol, unit, function)) in found.functions().into_iter().enumerate() {
-        let rate = index == 1 && found.settings.argument == Argument::Rate;
+    for (index, (symbol, unit, function)) in identification.functions().into_iter().enumerate() {
+        let rate = index == 1 && identification.settings.argument == Argument::Rate;
         let (argument, of) = if rate {
             ("rate [mm/s]", "mm/s")
         } else {
@@ -205,12 +214,12 @@ fn message(found: &Identification, recording: &Recording, path: &Path) -> String
 }
 
 /// The verdict with its reasons.
-fn verdict(found: &Identification) -> String {
-    let mut text = format!("verdict: {}\n", found.verdict.words());
-    for reason in &found.verdict.reasons {
+fn verdict(identification: &Identification) -> String {
+    let mut text = format!("verdict: {}\n", identification.verdict.words());
+    for reason in &identification.verdict.reasons {
         let _ = writeln!(text, "  {reason}");
     }
-    if !found.is_explained() {
+    if !identification.is_explained() {
         text += "  no standard errors, intervals and bands are given: they would mean nothing\n";
     }
     text

@@ -4,7 +4,7 @@ use gelbench_base::document::inputs;
 use gelbench_report::output::identity;
 
 /// The identity of a command by what was said to it, the contents of all files that it has read, and the program itself.
-pub fn of(said: &str) -> String {
+pub fn of(statement: &str) -> String {
     let program = std::env::current_exe().ok();
-    identity(said, &inputs::read(), program.as_deref())
+    identity(statement, &inputs::read(), program.as_deref())
 }

@@ -16,8 +16,8 @@ pub fn attend() {
     let _ = ctrlc::set_handler(|| {
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
         // Held until the end: what was taken away is not written again meanwhile.
-        let broken_off = unfinished.as_ref().map(|own| own.break_off());
-        let left = match broken_off.as_ref().map(|run| run.left) {
+        let broken_off = unfinished.as_ref().map(|folder| folder.break_off());
+        let remains = match broken_off.as_ref().map(|run| run.left) {
             None | Some(Left::Nothing) => {
                 "nothing of this run is kept; results of earlier runs are unchanged"
             }
@@ -26,7 +26,7 @@ pub fn attend() {
             }
             Some(Left::Results) => "the results of this run are complete",
         };
-        let _ = writeln!(std::io::stderr(), "interrupted: {left}");
+        let _ = writeln!(std::io::stderr(), "interrupted: {remains}");
         std::process::exit(EXIT_CODE);
     });
 }

@@ -12,7 +12,7 @@ use gelbench_report::output::ResultFolder;
 const WORTH_A_FILE: Duration = Duration::from_secs(2);
 
 /// Equilibria with the number of their path.
-type Found = Vec<(usize, Milestone)>;
+type Milestones = Vec<(usize, Milestone)>;
 
 /// The equilibria of a run, path by path in the order in which it follows them, which is the same on every run.
 pub struct FolderJournal {
@@ -24,7 +24,7 @@ pub struct FolderJournal {
     /// How many paths were begun.
     paths: Cell<usize>,
     /// What is not written yet.
-    found: RefCell<Found>,
+    milestones: RefCell<Milestones>,
     /// How many parts are written.
     parts: Cell<usize>,
     written: Cell<Instant>,
@@ -37,8 +37,8 @@ impl FolderJournal {
     pub fn open(mut folder: ResultFolder) -> Self {
         let mut before: BTreeMap<usize, Vec<Milestone>> = BTreeMap::new();
         let mut parts = 0;
-        while let Some(found) = folder.kept::<Found>(&parts.to_string()) {
-            for (path, milestone) in found {
+        while let Some(milestones) = folder.kept::<Milestones>(&parts.to_string()) {
+            for (path, milestone) in milestones {
                 before.entry(path).or_default().push(milestone);
             }
             parts += 1;
@@ -48,7 +48,7 @@ impl FolderJournal {
             count: before.values().map(Vec::len).sum(),
             before: RefCell::new(before),
             paths: Cell::new(0),
-            found: RefCell::default(),
+            milestones: RefCell::default(),
             parts: Cell::new(parts),
             written: Cell::new(Instant::now()),
             fault: RefCell::new(None),
@@ -56,7 +56,7 @@ impl FolderJournal {
     }
 
     /// What deserves to be told of a run that goes on.
-    pub fn told(&self) -> Option<Diagnostic> {
+    pub fn warning(&self) -> Option<Diagnostic> {
         let message = format!(
             "the run continues from {} equilibria that it had found before it was interrupted; the times cover only the rest",
             self.count
@@ -66,22 +66,28 @@ impl FolderJournal {
 
     /// The folder, for the results, and a word where equilibria could not be kept.
     pub fn close(self) -> (ResultFolder, Option<Diagnostic>) {
-        let told = |fault| {
+        let fault_text = |fault| {
             let message = format!(
                 "equilibria could not be stored for continuing an interrupted run: {fault}"
             );
             Diagnostic::warning("", message)
         };
-        (self.folder.into_inner(), self.fault.into_inner().map(told))
+        (
+            self.folder.into_inner(),
+            self.fault.into_inner().map(fault_text),
+        )
     }
 
     /// Writes what is not written yet, unless that has failed before.
     fn write(&self) {
-        let (part, found) = (self.parts.get(), self.found.take());
+        let (part, milestones) = (self.parts.get(), self.milestones.take());
         if self.fault.borrow().is_some() {
             return;
         }
-        let kept = self.folder.borrow_mut().keep(&part.to_string(), &found);
+        let kept = self
+            .folder
+            .borrow_mut()
+            .keep(&part.to_string(), &milestones);
         self.fault.replace(kept.err());
         self.parts.set(part + 1);
         self.written.set(Instant::now());
@@ -97,7 +103,7 @@ impl Journal for FolderJournal {
 
     fn keep(&self, milestone: Milestone) {
         let path = self.paths.get() - 1;
-        self.found.borrow_mut().push((path, milestone));
+        self.milestones.borrow_mut().push((path, milestone));
         if self.written.get().elapsed() >= WORTH_A_FILE {
             self.write();
         }

@@ -234,7 +234,7 @@ pub fn check_cards(options: &CheckCards) -> Outcome {
     for name in &options.cards {
         match check_card(name, options.share) {
             Ok(line) => lines += &line,
-            Err(Error::Input(found)) => faults.extend(found),
+            Err(Error::Input(wrong)) => faults.extend(wrong),
             Err(other) => return Err(other),
         }
     }

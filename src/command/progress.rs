@@ -231,9 +231,9 @@ mod tests {
         progress.advance();
         std::thread::sleep(10 * between);
         drop(progress);
-        let told = String::from_utf8(page.0.lock().unwrap().clone()).unwrap();
+        let printed = String::from_utf8(page.0.lock().unwrap().clone()).unwrap();
         let line = "gelbench: 0 s, 1 of 3 done: corrector, 50 % stretch\n";
-        assert!(told.contains(line), "{told}");
+        assert!(printed.contains(line), "{printed}");
         let unknown = Lines::new(0, between, Page::default());
         assert_eq!(unknown.state().line(), "gelbench: 0 s: begins\n");
     }

@@ -152,15 +152,15 @@ pub fn reference(kinds: &[FileKind]) -> String {
 fn of_kind(kind: FileKind) -> String {
     let (keys, remarks) = (kind.keys(), comments(kind.template()));
     let mut tables: Vec<(&str, Vec<&FoundKey>)> = Vec::new();
-    for found in &keys {
-        let table = found
+    for entry in &keys {
+        let table = entry
             .key
             .path
             .rsplit_once('.')
             .map_or("", |(table, _)| table);
         match tables.iter_mut().find(|(known, _)| *known == table) {
-            Some((_, rows)) => rows.push(found),
-            None => tables.push((table, vec![found])),
+            Some((_, rows)) => rows.push(entry),
+            None => tables.push((table, vec![entry])),
         }
     }
     let mut text = String::new();
@@ -194,8 +194,8 @@ fn sentence(remark: &str) -> String {
     format!("{}{}{end}", first.unwrap_or_default(), letters.as_str())
 }
 
-fn line(found: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
-    let FoundKey { key, only_with } = found;
+fn line(entry: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
+    let FoundKey { key, only_with } = entry;
     let name = key.path.rsplit('.').next().unwrap_or_default();
     let takes: Vec<String> = key.takes.iter().map(takes).collect();
     let example = key.example.clone();
@@ -222,7 +222,7 @@ fn line(found: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
 
 /// What a key takes, in words.
 fn takes(takes: &Takes) -> String {
-    let whole = |[low, high]: &[usize; 2]| {
+    let integer = |[low, high]: &[usize; 2]| {
         if *high > 1 << 40 {
             format!("from {low}")
         } else {
@@ -241,12 +241,12 @@ fn takes(takes: &Takes) -> String {
             let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
             format!("list of {}", names.join(", "))
         }
-        Takes::Count(limits) => format!("whole number {}", whole(limits)),
+        Takes::Count(limits) => format!("whole number {}", integer(limits)),
         Takes::Counts(limits, word) => {
             let word = word.as_ref().map(|word| format!(", or `\"{word}\"`"));
             format!(
                 "two whole numbers {}{}",
-                whole(limits),
+                integer(limits),
                 word.unwrap_or_default()
             )
         }

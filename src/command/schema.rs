@@ -17,15 +17,15 @@ pub fn print_schema(kind: FileKind) -> Outcome {
 pub fn schema(kind: FileKind) -> Value {
     let remarks = comments(kind.template());
     let mut root = object();
-    for found in kind.keys() {
-        let mut own = any_of(&found);
-        if let Some(remark) = remarks.get(&found.key.path) {
-            own["description"] = json!(about(&found, remark));
+    for entry in kind.keys() {
+        let mut property = any_of(&entry);
+        if let Some(remark) = remarks.get(&entry.key.path) {
+            property["description"] = json!(about(&entry, remark));
         }
-        if let (Presence::Default, Some(value)) = (found.key.presence, default(&found)) {
-            own["default"] = value;
+        if let (Presence::Default, Some(value)) = (entry.key.presence, default(&entry)) {
+            property["default"] = value;
         }
-        put(&mut root, &found, own);
+        put(&mut root, &entry, property);
     }
     root["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     root["title"] = json!(format!("gelbench: {}", kind.name()));
@@ -36,36 +36,36 @@ fn object() -> Value {
     json!({ "type": "object", "properties": {}, "additionalProperties": false })
 }
 
-fn about(found: &FoundKey, remark: &str) -> String {
-    match &found.only_with {
+fn about(entry: &FoundKey, remark: &str) -> String {
+    match &entry.only_with {
         None => remark.to_owned(),
         Some((choice, names)) => format!("{remark} (with {choice} = {})", names.join(", ")),
     }
 }
 
 /// The default, where it is a value of JSON too.
-fn default(found: &FoundKey) -> Option<Value> {
-    serde_json::from_str(found.key.example.as_deref()?).ok()
+fn default(entry: &FoundKey) -> Option<Value> {
+    serde_json::from_str(entry.key.example.as_deref()?).ok()
 }
 
 /// Puts the schema of a key into that of its table.
-fn put(root: &mut Value, found: &FoundKey, own: Value) {
+fn put(root: &mut Value, entry: &FoundKey, property: Value) {
     let mut table = root;
-    let mut parts: Vec<&str> = found.key.path.split('.').collect();
+    let mut parts: Vec<&str> = entry.key.path.split('.').collect();
     let name = parts.pop().unwrap_or_default();
     for part in parts {
-        let entry = &mut table["properties"][part.trim_end_matches("[]")];
+        let next = &mut table["properties"][part.trim_end_matches("[]")];
         table = if part.ends_with("[]") {
-            &mut entry["items"]
+            &mut next["items"]
         } else {
-            entry
+            next
         };
         if table.is_null() {
             *table = object();
         }
     }
-    table["properties"][name] = own;
-    if found.key.presence == Presence::Required && found.only_with.is_none() {
+    table["properties"][name] = property;
+    if entry.key.presence == Presence::Required && entry.only_with.is_none() {
         match table["required"].as_array_mut() {
             Some(required) => required.push(json!(name)),
             None => table["required"] = json!([name]),
@@ -73,11 +73,11 @@ fn put(root: &mut Value, found: &FoundKey, own: Value) {
     }
 }
 
-fn any_of(found: &FoundKey) -> Value {
-    let mut all: Vec<Value> = found.key.takes.iter().map(of_value).collect();
+fn any_of(entry: &FoundKey) -> Value {
+    let mut all: Vec<Value> = entry.key.takes.iter().map(of_value).collect();
     match all.len() {
         0 => Value::Object(Map::new()),
-        _ if found.key.takes == [Takes::Section, Takes::Sections] => {
+        _ if entry.key.takes == [Takes::Section, Takes::Sections] => {
             // Each keyword concerns tables or lists alone.
             let mut table = object();
             table["type"] = json!(["object", "array"]);
@@ -90,17 +90,17 @@ fn any_of(found: &FoundKey) -> Value {
 }
 
 fn of_value(takes: &Takes) -> Value {
-    let whole =
+    let integer =
         |[low, high]: &[usize; 2]| json!({ "type": "integer", "minimum": low, "maximum": high });
     let pair =
-        |limits| json!({ "type": "array", "items": whole(limits), "minItems": 2, "maxItems": 2 });
+        |limits| json!({ "type": "array", "items": integer(limits), "minItems": 2, "maxItems": 2 });
     match takes {
         Takes::Text | Takes::LinearLength => json!({ "type": "string" }),
         Takes::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Takes::Flag => json!({ "type": "boolean" }),
         Takes::Choice(names) => json!({ "enum": names }),
         Takes::Choices(names) => json!({ "type": "array", "items": { "enum": names } }),
-        Takes::Count(limits) => whole(limits),
+        Takes::Count(limits) => integer(limits),
         Takes::Counts(limits, None) => pair(limits),
         Takes::Counts(limits, Some(word)) => json!({ "anyOf": [pair(limits), { "const": word }] }),
         Takes::Number(bound) => number(*bound),

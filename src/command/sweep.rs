@@ -95,7 +95,7 @@ pub fn run(options: Options) -> Outcome {
         (None, None) => Share::Whole,
     };
     let usual = Path::new("output").join(format!("{}_sweep", name(&options.study)));
-    let whole = match (&options.output, share) {
+    let root = match (&options.output, share) {
         (Some(given), _) => given.clone(),
         (None, Share::Whole) => sweep::free_folder(&sweep, usual)?,
         (None, _) => usual,
@@ -105,7 +105,7 @@ pub fn run(options: Options) -> Outcome {
         .chain(others.into_iter().flatten())
         .collect();
     let program = std::env::current_exe().ok();
-    let mut folder = SweepFolder::open(&sweep, share, &whole, &inputs, program.as_deref())?;
+    let mut folder = SweepFolder::open(&sweep, share, &root, &inputs, program.as_deref())?;
     interrupt::guard(folder.results());
     warn(folder.replaces().as_slice());
     let progress = Progress::of(folder.count() as u64);

@@ -140,7 +140,7 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<(), Error> {
 pub fn complain(error: &Error) {
     let words = match error {
         Error::Input(faults) => {
-            let _ = write!(io::stderr(), "{}", told(faults, &diagnostic));
+            let _ = write!(io::stderr(), "{}", text_of(faults, &diagnostic));
             return;
         }
         Error::Solve { fault, .. } => format!("error: {error}\n  try: {}\n", fault.advice()),
@@ -150,12 +150,12 @@ pub fn complain(error: &Error) {
 }
 
 /// The words of some faults; of many with one cause the first ones stand for all.
-fn told(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String {
+fn text_of(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String {
     const OF_ONE_CAUSE: usize = 3;
     let (mut text, mut more) = (String::new(), 0);
-    let mut told: HashMap<(&str, &str), usize> = HashMap::new();
+    let mut counts: HashMap<(&str, &str), usize> = HashMap::new();
     for fault in faults {
-        let alike = told.entry((&fault.key, &fault.message)).or_default();
+        let alike = counts.entry((&fault.key, &fault.message)).or_default();
         *alike += 1;
         if *alike <= OF_ONE_CAUSE {
             text += &words(fault)
@@ -182,7 +182,7 @@ pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Ve
     for result in results {
         match result {
             Ok(one) => good.push(one),
-            Err(Error::Input(found)) => faults.extend(found),
+            Err(Error::Input(wrong)) => faults.extend(wrong),
             Err(other) => return Err(other),
         }
     }
@@ -202,7 +202,7 @@ mod tests {
         let fault = |message: &str| Diagnostic::error("", message);
         let mut faults: Vec<Diagnostic> = (0..40).map(|_| fault("a")).collect();
         faults.push(fault("b"));
-        let text = told(&faults, &|fault| format!("{}\n", fault.message));
+        let text = text_of(&faults, &|fault| format!("{}\n", fault.message));
         assert_eq!(text, "a\na\na\nb\n  and 37 more of the same\n");
     }
 

@@ -26,8 +26,8 @@ pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     };
     let usual = || Path::new("output/validation").join(part);
     let folder = &folder.unwrap_or_else(usual);
-    let said = format!("validate {names:?} {quick}");
-    let mut results = ResultFolder::resume(folder, "validate", &[], &identity::of(&said))?;
+    let statement = format!("validate {names:?} {quick}");
+    let mut results = ResultFolder::resume(folder, "validate", &[], &identity::of(&statement))?;
     interrupt::guard(&results);
     warn(validation_time(&chosen).as_slice());
     let progress = Progress::of(chosen.len() as u64);
@@ -62,11 +62,11 @@ fn computed(
     if let Some(kept) = folder.kept(case.name) {
         return Ok(kept);
     }
-    let told = |what: &str| progress.tell(&format!("{}: {what}", case.name));
-    told("begins");
-    let found = kinds::compute_or_fail(case, studies::Progress::to(&told))?;
-    folder.keep(case.name, &found)?;
-    Ok(found)
+    let report = |what: &str| progress.tell(&format!("{}: {what}", case.name));
+    report("begins");
+    let results = kinds::compute_or_fail(case, studies::Progress::to(&report))?;
+    folder.keep(case.name, &results)?;
+    Ok(results)
 }
 
 /// What deserves to be known before slow cases are computed.

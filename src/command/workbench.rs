@@ -15,10 +15,10 @@ const INSTALL: &str = "in gelbench's repository, `cargo install --path workbench
 
 /// Opens the workbench with files on its table, and waits until it is closed.
 pub fn open(files: &[PathBuf]) -> Outcome {
-    let own = std::env::current_exe().ok();
-    let beside = own.as_deref().and_then(Path::parent);
+    let executable = std::env::current_exe().ok();
+    let folder = executable.as_deref().and_then(Path::parent);
     let path = std::env::var_os("PATH");
-    let program = installed(beside, path.as_deref())
+    let program = installed(folder, path.as_deref())
         .ok_or_else(|| Error::input("the workbench is not installed here", INSTALL))?;
     let ended = Command::new(&program).args(files).status();
     let status = ended.map_err(|cause| {
@@ -32,10 +32,10 @@ pub fn open(files: &[PathBuf]) -> Outcome {
 }
 
 /// The program beside this one, else the first one on the path.
-fn installed(beside: Option<&Path>, path: Option<&OsStr>) -> Option<PathBuf> {
+fn installed(first: Option<&Path>, path: Option<&OsStr>) -> Option<PathBuf> {
     let name = format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX);
     let on_path = path.into_iter().flat_map(std::env::split_paths);
-    let mut folders = beside.map(Path::to_owned).into_iter().chain(on_path);
+    let mut folders = first.map(Path::to_owned).into_iter().chain(on_path);
     folders.find_map(|folder| Some(folder.join(&name)).filter(|program| program.is_file()))
 }
 
@@ -46,19 +46,19 @@ mod tests {
     #[test]
     fn the_program_beside_this_one_comes_before_those_on_the_path() {
         let folders = [(); 3].map(|()| tempfile::TempDir::new().unwrap());
-        let [beside, empty, on_path] = folders.each_ref().map(tempfile::TempDir::path);
+        let [adjacent, empty, on_path] = folders.each_ref().map(tempfile::TempDir::path);
         let name = format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX);
         let path = std::env::join_paths([empty, on_path]).unwrap();
-        assert_eq!(installed(Some(beside), Some(&path)), None);
+        assert_eq!(installed(Some(adjacent), Some(&path)), None);
         std::fs::write(on_path.join(&name), "").unwrap();
         assert_eq!(
-            installed(Some(beside), Some(&path)),
+            installed(Some(adjacent), Some(&path)),
             Some(on_path.join(&name))
         );
-        std::fs::write(beside.join(&name), "").unwrap();
+        std::fs::write(adjacent.join(&name), "").unwrap();
         assert_eq!(
-            installed(Some(beside), Some(&path)),
-            Some(beside.join(&name))
+            installed(Some(adjacent), Some(&path)),
+            Some(adjacent.join(&name))
         );
         assert_eq!(installed(None, None), None);
     }

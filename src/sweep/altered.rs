@@ -156,7 +156,7 @@ impl VariedCard {
 
     /// The fault of a parameter that the card does not have.
     fn has_none(&self, key: &str, parameter: &str) -> Error {
-        let known: Vec<&str> = self.card.parameters.iter().map(|own| own.key).collect();
+        let known: Vec<&str> = self.card.parameters.iter().map(|entry| entry.key).collect();
         let message = format!("the card {} has no parameter `{parameter}`", self.card.name);
         let hint = suggestion(parameter, &known, "its parameters are");
         Error::Input(vec![Diagnostic::error(key, message).hint(hint)])
@@ -169,7 +169,7 @@ impl VariedCard {
             ["relaxation", term, _] => term
                 .parse::<usize>()
                 .ok()
-                .and_then(|own| own.checked_sub(1)),
+                .and_then(|number| number.checked_sub(1)),
             _ => None,
         };
         let index = index.map(|index| index.to_string());
@@ -197,7 +197,7 @@ impl VariedCard {
 /// Whole numbers stay whole, numbers with a unit are texts; no key takes `true` or `false` as a text.
 fn new_value(setting: &Setting) -> NewValue {
     match setting {
-        Setting::Integer(whole) => NewValue::Integer(*whole),
+        Setting::Integer(integer) => NewValue::Integer(*integer),
         Setting::Number(value, unit) if unit.is_empty() => NewValue::Float(*value),
         Setting::Number(value, unit) => NewValue::Text(format!("{value} {unit}")),
         Setting::Text(text) => match text.parse() {

@@ -44,11 +44,10 @@ impl Row {
                 at += &format!("#{times}");
             }
             for (model, quantities) in &step.models {
-                let mut found = Vec::new();
-                flatten(model, quantities, &mut found);
+                let mut flat = Vec::new();
+                flatten(model, quantities, &mut flat);
                 figures.extend(
-                    found
-                        .into_iter()
+                    flat.into_iter()
                         .map(|(name, value)| (format!("{name}@{at}"), value)),
                 );
             }
@@ -78,7 +77,7 @@ impl Row {
     }
 
     /// Its warnings as one text.
-    pub fn told_warnings(&self) -> String {
+    pub fn joined_warnings(&self) -> String {
         self.warnings.join(BETWEEN)
     }
 
@@ -86,7 +85,7 @@ impl Row {
     pub fn figure(&self, name: &str) -> Option<f64> {
         let mut figures = self.figures.iter();
         figures
-            .find(|(own, _)| own == name)
+            .find(|(key, _)| key == name)
             .map(|(_, value)| *value)
     }
 }

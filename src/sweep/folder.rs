@@ -37,8 +37,8 @@ impl Shard {
         (run.number - 1) % self.parts == self.part - 1
     }
 
-    fn folder(self, whole: &Path) -> PathBuf {
-        whole.join(format!("part_{}_of_{}", self.part, self.parts))
+    fn folder(self, root: &Path) -> PathBuf {
+        root.join(format!("part_{}_of_{}", self.part, self.parts))
     }
 }
 
@@ -57,7 +57,7 @@ pub enum Share {
 pub struct SweepFolder<'a> {
     sweep: &'a Sweep,
     share: Share,
-    whole: PathBuf,
+    root: PathBuf,
     runs: Vec<Run>,
     results: ResultFolder,
 }
@@ -71,15 +71,15 @@ impl<'a> SweepFolder<'a> {
     pub fn open(
         sweep: &'a Sweep,
         share: Share,
-        whole: &Path,
+        root: &Path,
         inputs: &[&Path],
         program: Option<&Path>,
     ) -> Result<Self, Error> {
         let mut runs = sweep.runs()?;
-        let mut folder = whole.to_owned();
+        let mut folder = root.to_owned();
         if let Share::Shard(shard) = share {
             runs.retain(|run| shard.holds(run));
-            folder = shard.folder(whole);
+            folder = shard.folder(root);
         }
         let (ready, files) = noted(|| {
             let ready = sweep.study.read();
@@ -91,7 +91,7 @@ impl<'a> SweepFolder<'a> {
         Ok(Self {
             sweep,
             share,
-            whole: whole.to_owned(),
+            root: root.to_owned(),
             runs,
             results: ResultFolder::resume(&folder, "sweep", inputs, &identity)?,
         })
@@ -156,7 +156,7 @@ impl<'a> SweepFolder<'a> {
         let keys = self.sweep.keys().len();
         let (mut rows, mut missing) = (Vec::new(), Vec::new());
         for shard in (1..=parts).filter_map(|part| Shard::new(part, parts)) {
-            let path = shard.folder(&self.whole).join(TABLE);
+            let path = shard.folder(&self.root).join(TABLE);
             match fs::read(&path) {
                 Ok(bytes) => rows.extend(read(&path, keys, &bytes)?),
                 Err(_) => missing.push(shard.part.to_string()),

@@ -92,9 +92,9 @@ impl FittedParameters {
         let mut covariance = DMatrix::zeros(count, count);
         for i in 0..count {
             for j in 0..count {
-                let own = correlation(i.max(j), i.min(j))
+                let coefficient = correlation(i.max(j), i.min(j))
                     .ok_or_else(|| wrong("contains no complete `correlation`"))?;
-                covariance[(i, j)] = errors[i] * own * errors[j];
+                covariance[(i, j)] = errors[i] * coefficient * errors[j];
             }
         }
         let factor = covariance.cholesky();

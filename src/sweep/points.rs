@@ -26,7 +26,7 @@ impl Points {
         if count == 0 {
             return Err(Diagnostic::error("", "there are no points").hint(Points::HINT));
         }
-        if let Some((head, values)) = columns.iter().find(|(_, own)| own.len() != count) {
+        if let Some((head, values)) = columns.iter().find(|(_, values)| values.len() != count) {
             let message = format!("`{head}` has {} values, others have {count}", values.len());
             return Err(Diagnostic::error("", message).hint(Points::HINT));
         }
@@ -40,7 +40,12 @@ impl Points {
             .iter()
             .map(|(head, values)| column(head, values))
             .collect::<Result<_, _>>()?;
-        let row = |index: usize| columns.iter().map(|(_, own)| own[index].clone()).collect();
+        let row = |index: usize| {
+            columns
+                .iter()
+                .map(|(_, values)| values[index].clone())
+                .collect()
+        };
         Ok(Self {
             rows: (0..count).map(row).collect(),
             keys: columns.iter().map(|(key, _)| (*key).to_owned()).collect(),

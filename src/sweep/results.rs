@@ -116,7 +116,7 @@ fn quantity(name: &str) -> &str {
 
 /// The figures of the last step alone. Where steps are varied, it differs between runs: the runs that reach it are taken together under one name.
 fn at_last_step(rows: &[Row]) -> Vec<Row> {
-    const OWN: &str = "the last step";
+    const LAST: &str = "the last step";
     let last = |row: &'_ Row| Some(parts_of(&row.figures.last()?.0).1.to_owned());
     let sound = rows.iter().filter(|row| row.fault.is_empty());
     let mut steps: Vec<String> = sound.filter_map(last).collect();
@@ -127,10 +127,10 @@ fn at_last_step(rows: &[Row]) -> Vec<Row> {
         [one] => Some(one.clone()),
         _ => None,
     };
-    let named = common.as_deref().unwrap_or(OWN);
+    let named = common.as_deref().unwrap_or(LAST);
     let of_row = |row: &Row| {
-        let own = last(row).filter(|_| row.fault.is_empty());
-        let at = common.clone().or(own);
+        let last_step = last(row).filter(|_| row.fault.is_empty());
+        let at = common.clone().or(last_step);
         let figures = row.figures.iter().filter_map(|(name, value)| {
             let (quantity, step) = parts_of(name);
             (at.as_deref() == Some(step)).then(|| (format!("{quantity}@{named}"), *value))
@@ -164,7 +164,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
         .map(|key| format!("rank correlation with {key}"))
         .collect();
     head.extend(correlations.iter().map(String::as_str));
-    let told = |value: f64| {
+    let cell = |value: f64| {
         if value.is_finite() {
             number(value)
         } else {
@@ -178,7 +178,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
         let first = [one.name.clone(), one.runs.to_string()];
         first
             .into_iter()
-            .chain(numbers.map(|value| told(*value)))
+            .chain(numbers.map(|value| cell(*value)))
             .collect()
     });
     let varied = heads(keys, rows);
@@ -214,10 +214,10 @@ pub fn cautions(rows: &[Row]) -> Vec<String> {
     });
     let mut kinds: Vec<(String, &Row, &str, usize)> = Vec::new();
     for row in rows {
-        let mut told = HashSet::new();
+        let mut seen = HashSet::new();
         for warning in &row.warnings {
             let kind = kind(warning);
-            if !told.insert(kind.clone()) {
+            if !seen.insert(kind.clone()) {
                 continue;
             }
             match kinds.iter_mut().find(|(known, ..)| *known == kind) {
@@ -226,7 +226,7 @@ pub fn cautions(rows: &[Row]) -> Vec<String> {
             }
         }
     }
-    let said = kinds.into_iter().map(|(_, row, warning, count)| {
+    let warnings = kinds.into_iter().map(|(_, row, warning, count)| {
         let others = match count {
             1 => String::new(),
             2 => " and another".to_owned(),
@@ -234,7 +234,7 @@ pub fn cautions(rows: &[Row]) -> Vec<String> {
         };
         format!("Run {}{others}: {warning}", row.number)
     });
-    biased.into_iter().chain(said).collect()
+    biased.into_iter().chain(warnings).collect()
 }
 
 /// A warning without its numbers: the same in runs in which they alone differ.
@@ -323,7 +323,7 @@ fn band(forces: &[&Statistics], along: Steps) -> Option<LineChart> {
     let mut lines = Vec::new();
     // The band of the corrected model is the filled one.
     for ModelStyle { name, key, colour } in [CORRECTED, MASS_SPRING, FINITE_ELEMENTS] {
-        let own = forces
+        let band_forces = forces
             .iter()
             .filter(|one| one.name.split('.').next() == Some(key) && one.runs >= FEWEST);
         // In the order of the path: a load factor may occur again, its second time as `0.3#2`.
@@ -332,7 +332,7 @@ fn band(forces: &[&Statistics], along: Steps) -> Option<LineChart> {
             let at = at.split('#').next()?.parse().ok()?;
             Some(along.coordinate(at))
         };
-        let steps: Vec<(f64, [f64; 3])> = own
+        let steps: Vec<(f64, [f64; 3])> = band_forces
             .filter_map(|one| Some((at(one)?, one.quantiles)))
             .collect();
         if steps.len() < 2 {

@@ -42,7 +42,7 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
             .iter()
             .map(|(name, value)| (name.as_str(), *value))
             .collect();
-        let found = names
+        let cells = names
             .iter()
             .map(|name| figures.get(name).map_or(String::new(), f64::to_string));
         let first = std::iter::once(row.number.to_string());
@@ -50,9 +50,9 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
         let last = [
             row.passed.to_string(),
             row.fault.clone(),
-            row.told_warnings(),
+            row.joined_warnings(),
         ];
-        first.chain(settings).chain(found).chain(last).collect()
+        first.chain(settings).chain(cells).chain(last).collect()
     };
     let lines = rows.iter().map(line);
     write_records(std::iter::once(head.collect()).chain(lines)).into_bytes()
@@ -82,14 +82,15 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
         .collect();
     let row = |line: &Vec<String>| {
         let settings = line[1..].iter().zip(&units);
-        let own = figures
+        let filled = figures
             .clone()
             .filter(|position| !line[*position].is_empty());
-        let own = own.map(|position| Some((head[position].clone(), line[position].parse().ok()?)));
+        let filled =
+            filled.map(|position| Some((head[position].clone(), line[position].parse().ok()?)));
         Some(Row {
             number: line[0].parse().ok()?,
             settings: settings.map(|(text, unit)| setting(text, unit)).collect(),
-            figures: own.collect::<Option<_>>()?,
+            figures: filled.collect::<Option<_>>()?,
             passed: line[figures.end].parse().ok()?,
             fault: line[figures.end + 1].clone(),
             warnings: warnings(&line[figures.end + 2]),
@@ -99,8 +100,8 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
 }
 
 fn warnings(text: &str) -> Vec<String> {
-    let own = text.split(BETWEEN).filter(|one| !one.is_empty());
-    own.map(str::to_owned).collect()
+    let parts = text.split(BETWEEN).filter(|one| !one.is_empty());
+    parts.map(str::to_owned).collect()
 }
 
 fn setting(text: &str, unit: &str) -> Setting {

@@ -73,10 +73,10 @@ fn what_is_kept_is_not_computed_again_and_a_table_is_read_as_it_was_written() {
         None,
     );
     let fault = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()), &|| ());
-    let told = fault.unwrap_err().to_string();
+    let message = fault.unwrap_err().to_string();
     assert!(
-        told.contains("run 1") && told.contains("area_term"),
-        "{told}"
+        message.contains("run 1") && message.contains("area_term"),
+        "{message}"
     );
 
     let sweep = super::tests::sweep(&["plate.width=40..60 mm:3"], None);
@@ -118,15 +118,15 @@ fn points_of_distributions_have_their_mean_and_spread() {
         };
         for (key, mean, deviation) in [(0, 0.05, 0.002), (1, 50.0, 10.0 / 12f64.sqrt())] {
             let values = column(key);
-            let found = values.iter().sum::<f64>() / 1024.0;
+            let average = values.iter().sum::<f64>() / 1024.0;
             let square = values
                 .iter()
-                .map(|value| (value - found).powi(2))
+                .map(|value| (value - average).powi(2))
                 .sum::<f64>()
                 / 1023.0;
             assert!(
-                (found - mean).abs() < 0.15 * deviation,
-                "{method:?}: {found}"
+                (average - mean).abs() < 0.15 * deviation,
+                "{method:?}: {average}"
             );
             assert!(
                 (square.sqrt() / deviation - 1.0).abs() < 0.1,
@@ -161,10 +161,10 @@ fn parameters_of_a_fit_are_drawn_with_their_correlation() {
     assert!((moment(1, 1) / 1.6e-5 - 1.0).abs() < 0.05);
     assert!((moment(0, 1) / -3.2e-5 - 1.0).abs() < 0.05);
     let none = fit.replace("0.01}", "null}");
-    let told = FittedParameters::parse("fit.json", &none)
+    let message = FittedParameters::parse("fit.json", &none)
         .unwrap_err()
         .to_string();
-    assert!(told.contains("no standard errors"), "{told}");
+    assert!(message.contains("no standard errors"), "{message}");
 }
 
 #[test]
@@ -181,8 +181,8 @@ fn a_fit_without_standard_errors_is_refused_for_its_own_reason() {
         let fit = format!(
             r#"{{"parameters": [{{"key": "c10", "unit": "MPa", "value": 0.1, "standard_error": null, "at_bound": {bound}}}], {what}}}"#
         );
-        let told = FittedParameters::parse("fit.json", &fit).unwrap_err();
-        assert!(told.to_string().contains(reason), "{told}");
+        let fault = FittedParameters::parse("fit.json", &fit).unwrap_err();
+        assert!(fault.to_string().contains(reason), "{fault}");
     }
 }
 
@@ -209,7 +209,7 @@ fn pictures_and_statistics_say_what_a_reader_expects() {
     );
     // Across a symmetric plate a force is rounding: in the table of all runs, but not in their statistics.
     let report = format!("{:?}", blocks("small", &keys, &rows, &figures));
-    let small = |row: &Row, name: &String| row.figure(name).is_some_and(|own| own.abs() < 1e-9);
+    let small = |row: &Row, name: &String| row.figure(name).is_some_and(|value| value.abs() < 1e-9);
     let all = rows[0].figures.iter().map(|(name, _)| name);
     let forces = all.filter(|name| name.contains("force_N") && name.ends_with("@0.2"));
     for name in forces {
@@ -262,8 +262,8 @@ fn faults_name_what_to_write() {
         ("a=1 – 3", "written `1..3`"),
         ("a=1 to 3 mm", "written `1..3 mm`"),
     ] {
-        let told = Variable::parse(text).unwrap_err().to_string();
-        assert!(told.contains(expected), "{text}: {told}");
+        let message = Variable::parse(text).unwrap_err().to_string();
+        assert!(message.contains(expected), "{text}: {message}");
     }
     for (vary, samples, expected) in [
         (&[][..], None, "nothing is varied"),
@@ -272,8 +272,8 @@ fn faults_name_what_to_write() {
         (&["a=1,2"], Some(4), "no distribution"),
         (&["a=1..2:1001", "b=1..2:1001"], None, "more than a million"),
     ] {
-        let told = sweep(vary, samples).runs().unwrap_err().to_string();
-        assert!(told.contains(expected), "{told}");
+        let message = sweep(vary, samples).runs().unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
     }
     for (vary, expected) in [
         ("plate.cells.2=3,4", "list of 2"),
@@ -282,9 +282,9 @@ fn faults_name_what_to_write() {
         ("material.c01=1 MPa,2 MPa", "c01"),
     ] {
         let sweep = sweep(&[vary], None);
-        let told = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()), &|| ());
-        let told = told.unwrap_err().to_string();
-        assert!(told.contains(expected), "{vary}: {told}");
+        let outcome = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()), &|| ());
+        let message = outcome.unwrap_err().to_string();
+        assert!(message.contains(expected), "{vary}: {message}");
     }
 }
 
@@ -311,8 +311,8 @@ fn points_of_another_program_are_run_in_every_combination() {
         points: sweep.points.clone(),
         ..super::tests::sweep(&["plate.width=40..60 mm"], Some(4))
     };
-    let told = drawn.runs().unwrap_err().to_string();
-    assert!(told.contains("others are to be drawn"), "{told}");
+    let message = drawn.runs().unwrap_err().to_string();
+    assert!(message.contains("others are to be drawn"), "{message}");
 }
 
 #[test]
@@ -327,11 +327,11 @@ fn tables_that_are_no_points_are_told() {
         ("plate..width\n1\n", "is not a key"),
         (". [mm]\n1\n", "is not a key"),
     ] {
-        let told = Points::parse(Path::new("p.csv"), table.as_bytes()).unwrap_err();
-        let told = told.to_string();
+        let fault = Points::parse(Path::new("p.csv"), table.as_bytes()).unwrap_err();
+        let message = fault.to_string();
         assert!(
-            told.contains(expected) && told.contains("p.csv"),
-            "{table:?}: {told}"
+            message.contains(expected) && message.contains("p.csv"),
+            "{table:?}: {message}"
         );
     }
 }
@@ -374,22 +374,25 @@ fn a_sweep_over_other_keys_or_values_goes_beside_the_one_that_is_there() {
     });
     open(&width, &|folder| assert!(folder.replaces().is_none()));
     open(&thickness, &|folder| {
-        let told = folder.replaces().unwrap().message;
-        assert!(told.contains("another sweep: it is replaced"), "{told}");
+        let message = folder.replaces().unwrap().message;
+        assert!(
+            message.contains("another sweep: it is replaced"),
+            "{message}"
+        );
     });
-    let beside = free_folder(&thickness, output.clone()).unwrap();
-    assert!(beside.ends_with("out_2"), "{beside:?}");
+    let adjacent = free_folder(&thickness, output.clone()).unwrap();
+    assert!(adjacent.ends_with("out_2"), "{adjacent:?}");
     assert_eq!(free_folder(&width, output.clone()).unwrap(), output);
     let wider = sweep(&["plate.width=40..62 mm:2"], None);
-    assert_eq!(free_folder(&wider, output.clone()).unwrap(), beside);
+    assert_eq!(free_folder(&wider, output.clone()).unwrap(), adjacent);
 }
 
 #[test]
 fn values_are_each_one_and_without_the_noise_of_their_last_digits() {
-    let told = Variable::parse("plate.width=40,50,40 mm")
+    let message = Variable::parse("plate.width=40,50,40 mm")
         .unwrap_err()
         .to_string();
-    assert!(told.contains("the value 40 occurs twice"), "{told}");
+    assert!(message.contains("the value 40 occurs twice"), "{message}");
     let Values::Listed(values) = Variable::parse("x=0.3..0.6:11").unwrap().values else {
         panic!("no grid");
     };
@@ -403,12 +406,12 @@ fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
     let position = tempfile::TempDir::new().unwrap();
     let output = position.path().join("out");
     let sweep = sweep(&["plate.width=40..60 mm:6"], None);
-    let told = std::sync::Mutex::new(Vec::new());
+    let pushed = std::sync::Mutex::new(Vec::new());
     let open = || SweepFolder::open(&sweep, Share::Whole, &output, &[], None).unwrap();
     let broken = catch_unwind(AssertUnwindSafe(|| {
-        let ended = |number: usize| told.lock().unwrap().push(number);
+        let ended = |number: usize| pushed.lock().unwrap().push(number);
         let attend = || {
-            let count = told.lock().unwrap().len();
+            let count = pushed.lock().unwrap().len();
             if count > 1 {
                 resume_unwind(Box::new("stop"));
             }
@@ -416,38 +419,47 @@ fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
         open().rows(&ended, &attend).map(drop)
     }));
     assert!(broken.is_err());
-    let ended = told.into_inner().unwrap();
+    let ended = pushed.into_inner().unwrap();
     assert!((2..6).contains(&ended.len()), "{ended:?}");
     let mut folder = open();
     let parts = folder.results().unfinished().partial.join(".parts");
     for number in &ended {
         assert!(parts.join(number.to_string()).is_file(), "run {number}");
     }
-    let found = folder.rows(&|_| (), &|| ()).unwrap();
-    assert_eq!(found, super::tests::rows(&sweep));
+    let resumed = folder.rows(&|_| (), &|| ()).unwrap();
+    assert_eq!(resumed, super::tests::rows(&sweep));
 }
 
 /// Beyond the range of the card, as `run` would say; once of all runs.
 #[test]
 fn what_deserves_attention_in_single_runs_is_told_of_all_together() {
     let mut sweep = sweep(&["plate.thickness=1 mm,2 mm"], None);
-    let told = cautions(&rows(&sweep));
-    assert!(!told.iter().any(|one| one.contains("range")), "{told:?}");
+    let warnings = cautions(&rows(&sweep));
+    assert!(
+        !warnings.iter().any(|one| one.contains("range")),
+        "{warnings:?}"
+    );
     let pressed = STUDY.replace("10 %", "-5 %").replace("20 %", "-10 %");
     sweep.study.text = pressed.replace("neo-hooke", "pva-10-yeoh");
     let rows = rows(&sweep);
-    let told = cautions(&rows);
-    let beyond: Vec<&String> = told.iter().filter(|one| one.contains("range")).collect();
+    let warnings = cautions(&rows);
+    let outside: Vec<&String> = warnings
+        .iter()
+        .filter(|one| one.contains("range"))
+        .collect();
     assert!(
-        matches!(beyond[..], [one] if one.starts_with("Run 1 and another: ")),
-        "{told:?}"
+        matches!(outside[..], [one] if one.starts_with("Run 1 and another: ")),
+        "{warnings:?}"
     );
     let keys = sweep.keys();
     let read = read(Path::new("a.csv"), keys.len(), &write(&keys, &rows)).unwrap();
     assert_eq!(read, rows);
-    assert_eq!(json(&keys, &rows)["warnings"][0], told[0]);
+    assert_eq!(json(&keys, &rows)["warnings"][0], warnings[0]);
     // Each kind of warning once, without a word before it.
-    assert!(told.iter().all(|one| !one.contains("Warning")), "{told:?}");
+    assert!(
+        warnings.iter().all(|one| !one.contains("Warning")),
+        "{warnings:?}"
+    );
 }
 
 #[test]
@@ -457,10 +469,10 @@ fn quantiles_that_leave_out_runs_without_a_solution_are_called_biased() {
     let before = cautions(&rows);
     let run = &sweep.runs().unwrap()[1];
     rows[1] = Row::failed(run, "no solution".into(), Vec::new());
-    let told = cautions(&rows);
-    assert_eq!(told.len(), before.len() + 1, "{told:?}");
+    let warnings = cautions(&rows);
+    assert_eq!(warnings.len(), before.len() + 1, "{warnings:?}");
     assert!(
-        told[0].starts_with("1 of 3 runs") && told[0].contains("biased"),
-        "{told:?}"
+        warnings[0].starts_with("1 of 3 runs") && warnings[0].contains("biased"),
+        "{warnings:?}"
     );
 }

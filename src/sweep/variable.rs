@@ -53,7 +53,7 @@ impl Setting {
             return Self::Text(unquoted.to_owned());
         }
         match (text.parse::<i64>(), number(text)) {
-            (Ok(whole), _) => Self::Integer(whole),
+            (Ok(integer), _) => Self::Integer(integer),
             (_, Some((value, unit))) => Self::Number(value, unit.to_owned()),
             _ => Self::Text(text.to_owned()),
         }
@@ -62,7 +62,7 @@ impl Setting {
     /// The number, where it is one.
     pub fn value(&self) -> Option<f64> {
         match self {
-            Self::Integer(whole) => Some(*whole as f64),
+            Self::Integer(integer) => Some(*integer as f64),
             Self::Number(value, _) => Some(*value),
             Self::Text(_) => None,
         }
@@ -79,7 +79,7 @@ impl Setting {
     /// The value without its unit.
     pub fn words(&self) -> String {
         match self {
-            Self::Integer(whole) => whole.to_string(),
+            Self::Integer(integer) => integer.to_string(),
             Self::Number(value, _) => value.to_string(),
             Self::Text(text) => text.clone(),
         }
@@ -205,8 +205,8 @@ pub fn key_and_unit(head: &str) -> (&str, &str) {
 /// Two numbers with one unit, which may stand behind the second alone.
 fn pair(first: &str, second: &str) -> Result<([f64; 2], String), String> {
     let read = |text: &str| {
-        let found = number(text.trim()).map(|(value, unit)| (value, unit.to_owned()));
-        found.ok_or_else(|| format!("`{}` is not a number", text.trim()))
+        let read_number = number(text.trim()).map(|(value, unit)| (value, unit.to_owned()));
+        read_number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
     };
     let ((a, before), (b, unit)) = (read(first)?, read(second)?);
     if before.is_empty() || before == unit {

@@ -39,7 +39,7 @@ mod browser {
     /// What is on the table, as JSON.
     #[wasm_bindgen]
     pub fn told() -> String {
-        page::told()
+        page::state()
     }
 }
 

@@ -15,7 +15,7 @@ pub struct Measure {
     /// Corrected fields that came, and the time that they took to compute in s.
     solved: Vec<f64>,
     /// What the program itself took for every frame in s, before anything was drawn.
-    own: Vec<f64>,
+    work: Vec<f64>,
     last: Option<Grip>,
 }
 
@@ -26,7 +26,7 @@ impl Measure {
             frames,
             begun: Vec::new(),
             solved: Vec::new(),
-            own: Vec::new(),
+            work: Vec::new(),
             last: None,
         }
     }
@@ -66,9 +66,9 @@ impl Measure {
     }
 
     /// Notes what the program itself took for the frame that was noted last.
-    pub fn worked(&mut self, own: Duration) {
-        if self.own.len() < self.begun.len() {
-            self.own.push(own.as_secs_f64());
+    pub fn worked(&mut self, work: Duration) {
+        if self.work.len() < self.begun.len() {
+            self.work.push(work.as_secs_f64());
         }
     }
 
@@ -81,12 +81,17 @@ impl Measure {
         let frames = pairs
             .map(|pair| 1e3 * (pair[1] - pair[0]).as_secs_f64())
             .collect();
-        let own = self.own.iter().skip(WARMING).map(|own| 1e3 * own).collect();
+        let work = self
+            .work
+            .iter()
+            .skip(WARMING)
+            .map(|work| 1e3 * work)
+            .collect();
         let solved = self.solved.iter().map(|seconds| 1e3 * seconds).collect();
-        let [[frame, worst], [own, most], [field, slowest]] =
-            [frames, own, solved].map(median_and_worst);
+        let [[frame, worst], [work, most], [field, slowest]] =
+            [frames, work, solved].map(median_and_worst);
         Some(format!(
-            "{} frames: median {frame:.1} ms, worst {worst:.1} ms; the program's own work: median {own:.1} ms, worst {most:.1} ms; \
+            "{} frames: median {frame:.1} ms, worst {worst:.1} ms; the program's own work: median {work:.1} ms, worst {most:.1} ms; \
              {} corrected fields: median {field:.1} ms, worst {slowest:.1} ms",
             self.frames,
             self.solved.len()

@@ -10,12 +10,12 @@ use crate::logic::scene::Model;
 use crate::views::app::Workbench;
 
 thread_local! {
-    static TOLD: RefCell<String> = const { RefCell::new(String::new()) };
+    static STATE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
 /// What is on the table, as JSON: the study, whether everything is solved, the forces in N, the deviations in %.
-pub fn told() -> String {
-    TOLD.with_borrow(Clone::clone)
+pub fn state() -> String {
+    STATE.with_borrow(Clone::clone)
 }
 
 /// A link that restores a study, which the page's own address becomes too.
@@ -38,21 +38,24 @@ pub fn tell(bench: &Workbench, context: &Context) {
             "moment": shown.solved.moment,
             "settled": shown.settled,
             "seconds": shown.seconds,
-            "departure_percent": deviation.map(|found| found.departure),
+            "departure_percent": deviation.map(|deviation| deviation.departure),
         }))
     };
     let [springs, corrected, elements] = Model::ALL.map(model);
     let fits = bench
         .materials()
-        .found()
-        .and_then(|found| found.as_ref().ok());
-    let answer = bench.fields().found().and_then(|found| found.as_ref().ok());
+        .ranking()
+        .and_then(|ranking| ranking.as_ref().ok());
+    let answer = bench
+        .fields()
+        .answer()
+        .and_then(|answer| answer.as_ref().ok());
     let frames = answer.and_then(|answer| answer.corrected.as_ref());
     let report = bench
         .studies()
-        .found()
-        .and_then(|found| found.as_ref().ok());
-    let told = json!({
+        .report()
+        .and_then(|report| report.as_ref().ok());
+    let state = json!({
         "drawn": context.cumulative_pass_nr(),
         "size": [room.width(), room.height()],
         "pixels_per_point": context.pixels_per_point(),
@@ -60,9 +63,9 @@ pub fn tell(bench: &Workbench, context: &Context) {
         "tab": format!("{:?}", bench.tab()),
         "places": bench.positions().iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
         "moving": table.moving().map(|moving| [moving.clock(), moving.computed(), moving.duration()]),
-        "told": bench.said(),
+        "told": bench.message(),
         "grip_at": bench.grip_at().map(|at| [at.x, at.y]),
-        "fits": fits.map(|found| found.fits.iter().map(|fit| (&fit.law, &fit.parameters)).collect::<Vec<_>>()),
+        "fits": fits.map(|ranking| ranking.fits.iter().map(|fit| (&fit.law, &fit.parameters)).collect::<Vec<_>>()),
         "verdicts": frames.map(|(frames, _)| frames.iter().map(|frame| (&frame.verdict, &frame.forces)).collect::<Vec<_>>()),
         "report": report.map(|report| (&report.title, report.passed, report.parts.len())),
         "study": table.scene().study(),
@@ -73,5 +76,5 @@ pub fn tell(bench: &Workbench, context: &Context) {
         "elements": elements,
         "frames": bench.measured(),
     });
-    TOLD.with_borrow_mut(|text| *text = told.to_string());
+    STATE.with_borrow_mut(|text| *text = state.to_string());
 }

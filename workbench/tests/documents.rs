@@ -192,7 +192,7 @@ fn exports_of_several_files_have_a_folder_of_their_own_and_replace_nothing_unask
     bench.run_steps(2);
     bench.get_by_label("the fields as VTK …").click();
     bench.step();
-    until(&mut bench, |bench| bench.said() != "writing …");
+    until(&mut bench, |bench| bench.message() != "writing …");
     let asks = "springs.vtu is there already";
     bench.run_steps(3);
     assert_eq!(*asked.borrow(), [Choice::Folder("sheet".to_owned())]);
@@ -253,8 +253,8 @@ fn a_study_that_was_written_is_not_lost_to_another_one() {
 fn a_desktop_without_dialogues_says_what_is_missing() {
     let (mut bench, _) = answered(&[]);
     press(&mut bench, Modifiers::COMMAND, Key::O);
-    let said = state(&bench).said();
-    assert!(said.contains("xdg-desktop-portal"), "{said}");
+    let message = state(&bench).message();
+    assert!(message.contains("xdg-desktop-portal"), "{message}");
 }
 
 #[test]

@@ -23,11 +23,11 @@ const ENDINGS: [&str; 8] = ["toml", "csv", "txt", "vtu", "vtk", "pvd", "msh", "f
 /// How long one file may take until it is shown or its fault is told.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-fn files_in(folder: &Path, found: &mut Vec<PathBuf>) {
+fn files_in(folder: &Path, paths: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         match entry.path() {
-            path if path.is_dir() => files_in(&path, found),
-            path => found.push(path),
+            path if path.is_dir() => files_in(&path, paths),
+            path => paths.push(path),
         }
     }
 }
@@ -35,12 +35,12 @@ fn files_in(folder: &Path, found: &mut Vec<PathBuf>) {
 /// The files of all corpora.
 fn corpora() -> Vec<(PathBuf, Vec<u8>)> {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz");
-    let mut found = Vec::new();
+    let mut paths = Vec::new();
     for folder in ["corpus", "regressions"] {
-        files_in(&fuzz.join(folder), &mut found);
+        files_in(&fuzz.join(folder), &mut paths);
     }
-    assert!(found.len() > 100, "{}", found.len());
-    let read = found.into_iter().map(|path| {
+    assert!(paths.len() > 100, "{}", paths.len());
+    let read = paths.into_iter().map(|path| {
         let content = std::fs::read(&path).unwrap();
         (path, content)
     });
@@ -81,9 +81,9 @@ fn every_file_is_understood_or_refused_in_time_under_every_ending() {
     let mut slowest = (Duration::ZERO, String::new());
     let mut understood = 0;
     for (path, content) in corpora() {
-        let own = path.file_name().unwrap().to_string_lossy().into_owned();
+        let file_name = path.file_name().unwrap().to_string_lossy().into_owned();
         let names = ENDINGS.map(|ending| format!("dropped.{ending}"));
-        for name in names.into_iter().chain([own]) {
+        for name in names.into_iter().chain([file_name]) {
             let (done, ended) = channel();
             let (file, bytes) = (name.clone(), content.clone());
             let begun = Instant::now();
@@ -91,7 +91,7 @@ fn every_file_is_understood_or_refused_in_time_under_every_ending() {
             let answer = ended.recv_timeout(PATIENCE);
             let took = begun.elapsed();
             match answer {
-                Ok(found) => understood += usize::from(found),
+                Ok(read) => understood += usize::from(read),
                 Err(cause) => panic!("{} as {name}: {cause} after {took:?}", path.display()),
             }
             if took > slowest.0 {

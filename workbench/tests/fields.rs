@@ -13,7 +13,7 @@ use common::{Bench, small, state, state_mut, until, window};
 const MESH: &str = "mesh of the field";
 
 fn looked(bench: &Workbench) -> bool {
-    bench.fields().found().is_some_and(|found| found.is_ok())
+    bench.fields().answer().is_some_and(|answer| answer.is_ok())
 }
 
 fn opened() -> Bench {
@@ -30,8 +30,8 @@ fn opened() -> Bench {
 
 /// Where the middle of an edge is on the screen.
 fn place_of(bench: &Bench, edge: &str) -> Pos2 {
-    let found = state(bench).fields().found().unwrap().as_ref().unwrap();
-    let Drawing::Mesh(figure) = &found.preview.drawing else {
+    let answer = state(bench).fields().answer().unwrap().as_ref().unwrap();
+    let Drawing::Mesh(figure) = &answer.preview.drawing else {
         panic!("a mesh is drawn");
     };
     let group = figure.groups.iter().find(|group| group.name == edge);
@@ -58,7 +58,7 @@ fn click(bench: &mut Bench, at: Pos2) {
     }
 }
 
-fn said(bench: &Bench, edge: &str) -> Edge {
+fn statement_of(bench: &Bench, edge: &str) -> Edge {
     state(bench).fields().edge(edge).unwrap().clone()
 }
 
@@ -71,7 +71,7 @@ fn an_edge_that_is_clicked_asks_what_is_known_of_it() {
         ("top", "free", Edge::Free),
         ("bottom", "free", Edge::Free),
     ] {
-        assert_eq!(said(&bench, edge), Edge::Unnamed);
+        assert_eq!(statement_of(&bench, edge), Edge::Unnamed);
         let at = place_of(&bench, edge);
         click(&mut bench, at);
         assert!(
@@ -80,15 +80,15 @@ fn an_edge_that_is_clicked_asks_what_is_known_of_it() {
         );
         bench.get_by_label(word).click();
         bench.step();
-        assert_eq!(said(&bench, edge), expected);
+        assert_eq!(statement_of(&bench, edge), expected);
         click(&mut bench, Pos2::new(1390.0, 990.0));
         assert!(bench.query_by_label(&format!("the edge {edge}")).is_none());
     }
     bench.get_by_label("correct").click();
     bench.step();
     let corrected = |bench: &Workbench| {
-        let found = bench.fields().found().unwrap().as_ref().unwrap();
-        found.corrected.is_some()
+        let answer = bench.fields().answer().unwrap().as_ref().unwrap();
+        answer.corrected.is_some()
     };
     until(&mut bench, corrected);
     bench.step();
@@ -104,15 +104,18 @@ fn a_known_edge_takes_its_displacement_and_a_wrong_one_is_told() {
     bench.get_by_label("known").click();
     bench.step();
     bench.step();
-    assert!(matches!(said(&bench, "left"), Edge::Known(_)));
+    assert!(matches!(statement_of(&bench, "left"), Edge::Known(_)));
     state_mut(&mut bench)
         .fields_mut()
-        .say("left", Edge::Known(["nothing".into(), String::new()]));
+        .state_edge("left", Edge::Known(["nothing".into(), String::new()]));
     click(&mut bench, Pos2::new(1390.0, 990.0));
     bench.get_by_label("correct").click();
     bench.step();
     until(&mut bench, |bench| {
-        bench.fields().found().is_some_and(|found| found.is_err())
+        bench
+            .fields()
+            .answer()
+            .is_some_and(|answer| answer.is_err())
     });
     bench.step();
     assert!(
@@ -134,11 +137,11 @@ fn warnings_name_what_the_view_offers() {
     for setting in &TEXTS {
         assert!(bench.query_by_label(setting.label).is_some(), "{setting:?}");
     }
-    let found = state(&bench).fields().found().unwrap().as_ref().unwrap();
+    let answer = state(&bench).fields().answer().unwrap().as_ref().unwrap();
     let gap = &TEXTS[3];
-    let said = format!("state the edge with “{}”", gap.label);
-    let warnings = found.preview.warnings.join("\n");
-    assert!(warnings.contains(&said), "{warnings}");
+    let advice = format!("state the edge with “{}”", gap.label);
+    let warnings = answer.preview.warnings.join("\n");
+    assert!(warnings.contains(&advice), "{warnings}");
     assert!(!warnings.contains(gap.option), "{warnings}");
-    assert!(bench.query_by_label_contains(&said).is_some());
+    assert!(bench.query_by_label_contains(&advice).is_some());
 }

@@ -83,13 +83,13 @@ fn warnings_of_the_command_stand_on_the_sheet() {
         let name = "study.toml".to_owned();
         let files = vec![(name.clone(), study.into_bytes())];
         let question = StudyQuestion { study: name, files };
-        let told = Runner.answer(&question).unwrap().told;
+        let warnings = Runner.answer(&question).unwrap().told;
         let [ours] = state(&bench).table.warnings() else {
             panic!("{:?}", state(&bench).table.warnings());
         };
         assert_eq!(ours.rule, rule);
         let ours = ours.to_string();
-        assert!(told.contains(&ours), "{ours} is not among {told:?}");
+        assert!(warnings.contains(&ours), "{ours} is not among {warnings:?}");
         let sentence = bench.query_by_label(&ours);
         assert!(sentence.is_some(), "the whole sentence stands below");
     }
@@ -169,9 +169,9 @@ fn the_report_is_shown_after_a_run_with_contents_that_lead_to_its_headings() {
     bench.run_steps(2);
     bench.get_by_label("run").click();
     bench.step();
-    until(&mut bench, |bench| bench.studies().found().is_some());
+    until(&mut bench, |bench| bench.studies().report().is_some());
     bench.run_steps(60);
-    let report = state(&bench).studies().found().unwrap().as_ref().unwrap();
+    let report = state(&bench).studies().report().unwrap().as_ref().unwrap();
     let title = report.title.clone();
     let heading = report.parts.iter().rev().find_map(|part| match part {
         gelbench_workbench::logic::report::Part::Heading(_, text) => Some(text.clone()),
@@ -204,8 +204,8 @@ fn the_wheel_zooms_about_the_pointer_and_the_background_is_pulled() {
     let mut bench = window([1200.0, 800.0], small());
     settled(&mut bench);
     let grip = |bench: &Bench| {
-        let found = bench.get_by_label_contains("grip of the corrected springs");
-        found.rect()
+        let handle = bench.get_by_label_contains("grip of the corrected springs");
+        handle.rect()
     };
     let before = grip(&bench);
     let at = before.center() - vec2(100.0, 0.0);

@@ -74,14 +74,14 @@ fn native(study: &str, model: Model) -> [f64; 2] {
     Engine::default().answer(&task).result.unwrap().force
 }
 
-fn compare_forces(told: &Value) {
-    let study = told["study"].as_str().unwrap();
+fn compare_forces(state: &Value) {
+    let study = state["study"].as_str().unwrap();
     for (name, model) in ["springs", "corrected", "elements"]
         .into_iter()
         .zip(Model::ALL)
     {
         let here = native(study, model);
-        let there = &told[name]["force"];
+        let there = &state[name]["force"];
         assert!(
             same(there[0].as_f64().unwrap(), here[0]),
             "{name}: {there} in the browser, {here:?} here"
@@ -89,31 +89,31 @@ fn compare_forces(told: &Value) {
     }
 }
 
-fn settled(told: &Value) -> bool {
-    told["settled"] == json!(true)
+fn settled(state: &Value) -> bool {
+    state["settled"] == json!(true)
 }
 
 fn the_page_loads_follows_the_hand_and_finds_what_the_desktop_finds() {
     let mut page = Browser::open([1400, 900]);
     let loaded = page.loaded();
-    let told = page.until(settled);
+    let state = page.until(settled);
     println!(
         "loaded in {:.2} s, solved {:.2} s after that",
         loaded.as_secs_f64(),
         page.since_loaded().as_secs_f64()
     );
     assert!(loaded < Duration::from_secs(10), "{loaded:?}");
-    compare_forces(&told);
-    let at = [0, 1].map(|axis| told["grip_at"][axis].as_f64().unwrap());
-    let before = told["stretch"].as_f64().unwrap();
+    compare_forces(&state);
+    let at = [0, 1].map(|axis| state["grip_at"][axis].as_f64().unwrap());
+    let before = state["stretch"].as_f64().unwrap();
     page.drag(at, [at[0] + 90.0, at[1] - 15.0]);
     let pulled =
-        page.until(|told| settled(told) && told["stretch"].as_f64().unwrap() > before + 0.05);
+        page.until(|state| settled(state) && state["stretch"].as_f64().unwrap() > before + 0.05);
     compare_forces(&pulled);
     page.picture("sheet_pulled");
     page.press_with_control("z");
-    let back = page.until(|told| settled(told) && told["stretch"] == json!(before));
-    assert_eq!(back["study"], told["study"]);
+    let back = page.until(|state| settled(state) && state["stretch"] == json!(before));
+    assert_eq!(back["study"], state["study"]);
     tests_are_fitted(&mut page);
     fields_are_corrected(&mut page);
     studies_are_run(&mut page);
@@ -123,9 +123,9 @@ fn the_page_loads_follows_the_hand_and_finds_what_the_desktop_finds() {
 fn tests_are_fitted(page: &mut Browser) {
     let text = include_str!("../../materials/data/treloar_1944_uniaxial.csv");
     page.drop_file("treloar_1944_uniaxial.csv", text);
-    page.until(|told| told["tab"] == json!("Material"));
+    page.until(|state| state["tab"] == json!("Material"));
     page.press_with_control("Enter");
-    let told = page.until(|told| told["fits"].is_array());
+    let state = page.until(|state| state["fits"].is_array());
     let question = FitQuestion {
         tests: vec![TestFile {
             name: "treloar_1944_uniaxial.csv".into(),
@@ -136,7 +136,7 @@ fn tests_are_fitted(page: &mut Browser) {
     };
     let here = Fitter.answer(&question).unwrap().ranking.unwrap();
     let laws: Vec<&str> = here.fits.iter().map(|fit| fit.law.as_str()).collect();
-    let there = told["fits"].as_array().unwrap();
+    let there = state["fits"].as_array().unwrap();
     let there: Vec<&str> = there.iter().map(|fit| fit[0].as_str().unwrap()).collect();
     assert_eq!(there, laws);
 }
@@ -144,9 +144,9 @@ fn tests_are_fitted(page: &mut Browser) {
 fn fields_are_corrected(page: &mut Browser) {
     let text = include_str!("../../examples/measured_plate.csv");
     page.drop_file("measured_plate.csv", text);
-    page.until(|told| told["tab"] == json!("Field"));
+    page.until(|state| state["tab"] == json!("Field"));
     page.press_with_control("Enter");
-    let told = page.until(|told| told["verdicts"].is_array());
+    let state = page.until(|state| state["verdicts"].is_array());
     let files = vec![("measured_plate.csv".into(), text.into())];
     let question = FieldQuestion {
         edges: ["bottom", "left", "right", "top"]
@@ -157,7 +157,7 @@ fn fields_are_corrected(page: &mut Browser) {
     };
     let here = FieldCorrector.answer(&question).unwrap();
     let (frames, _) = here.corrected.unwrap();
-    for (frame, there) in frames.iter().zip(told["verdicts"].as_array().unwrap()) {
+    for (frame, there) in frames.iter().zip(state["verdicts"].as_array().unwrap()) {
         assert_eq!(there[0], json!(frame.verdict));
         for (number, (edge, forces)) in frame.forces.iter().enumerate() {
             let value = there[1][number][1][0][0].as_f64().unwrap();
@@ -172,10 +172,10 @@ fn fields_are_corrected(page: &mut Browser) {
 fn studies_are_run(page: &mut Browser) {
     let text = include_str!("../../examples/nonlinear_spring.toml");
     page.drop_file("nonlinear_spring.toml", text);
-    page.until(|told| told["tab"] == json!("Study"));
+    page.until(|state| state["tab"] == json!("Study"));
     page.press_with_control("Enter");
-    let told = page.until(|told| told["report"].is_array());
-    assert_eq!(told["report"][1], json!(true), "{}", told["report"]);
+    let state = page.until(|state| state["report"].is_array());
+    assert_eq!(state["report"][1], json!(true), "{}", state["report"]);
 }
 
 /// What is there to be pressed stands inside of the window; whether it can be read is for people to see in the pictures.
@@ -194,9 +194,9 @@ fn every_view_is_seen_in_every_size_and_light(page: &mut Browser) {
             ("sheet", "Sheet"),
         ] {
             page.press_button(tab);
-            let told = page.until(|told| told["tab"] == json!(name));
+            let state = page.until(|state| state["tab"] == json!(name));
             for label in ["sheet", "material", "measured field", "study", "export"] {
-                let at = [0, 1].map(|axis| told["places"][label][axis].as_f64());
+                let at = [0, 1].map(|axis| state["places"][label][axis].as_f64());
                 let inside = |axis: usize| {
                     let position = at[axis].unwrap();
                     0.0 < position && position < f64::from(size[axis])
@@ -215,19 +215,19 @@ fn a_finger_pulls_the_grip_where_pixels_are_small() {
         ..Scene::default()
     };
     let mut page = Browser::open_fine([800, 700], 2.0, &scene.study());
-    let told = page.until(settled);
+    let state = page.until(settled);
     let number = |value: &Value| value.as_f64().unwrap();
-    assert_eq!(number(&told["pixels_per_point"]), 2.0);
+    assert_eq!(number(&state["pixels_per_point"]), 2.0);
     assert_eq!(
-        [0, 1].map(|axis| number(&told["size"][axis])),
+        [0, 1].map(|axis| number(&state["size"][axis])),
         [800.0, 700.0]
     );
-    let at = [0, 1].map(|axis| number(&told["grip_at"][axis]));
-    let before = number(&told["stretch"]);
+    let at = [0, 1].map(|axis| number(&state["grip_at"][axis]));
+    let before = number(&state["stretch"]);
     page.drag_with_a_finger(at, [at[0] + 40.0, at[1] + 4.0]);
-    let pulled = page.until(|told| settled(told) && number(&told["stretch"]) > before + 0.05);
-    let force = |told: &Value| number(&told["corrected"]["force"][0]);
-    assert!(force(&pulled) > force(&told), "{pulled}");
+    let pulled = page.until(|state| settled(state) && number(&state["stretch"]) > before + 0.05);
+    let force = |state: &Value| number(&state["corrected"]["force"][0]);
+    assert!(force(&pulled) > force(&state), "{pulled}");
     page.picture("sheet_touched_800_fine");
 }
 
@@ -239,12 +239,14 @@ fn frames_are_timed() {
         };
         let mut page = Browser::open_with([1200, 800], &scene.study(), 600);
         let begun = Instant::now();
-        let told = page.until_within(Duration::from_secs(240), |told| told["frames"].is_string());
+        let state = page.until_within(Duration::from_secs(240), |state| {
+            state["frames"].is_string()
+        });
         println!(
             "{} × {} cells: {} ({:.0} s)",
             cells[0],
             cells[1],
-            told["frames"],
+            state["frames"],
             begun.elapsed().as_secs_f64()
         );
     }
@@ -264,23 +266,27 @@ fn a_link_restores_the_sheet_with_a_card_of_its_own() {
     scene.grip.displacement = [30.0, 6.0];
     scene.grip.angle = 0.1;
     let mut page = Browser::open_with([1000, 700], &scene.study(), 0);
-    let told = page.until(settled);
-    let study = told["study"].as_str().unwrap();
+    let state = page.until(settled);
+    let study = state["study"].as_str().unwrap();
     let restored = Scene::open("link.toml".as_ref(), study, &[]).unwrap();
     assert!((restored.grip.angle - scene.grip.angle).abs() < 1e-12);
     let grip = scene.grip;
     assert_eq!(Scene { grip, ..restored }, scene);
-    compare_forces(&told);
+    compare_forces(&state);
 }
 
 fn the_sheet_is_let_go_and_held_again_in_the_browser() {
     let mut page = Browser::open([1000, 700]);
     page.until(settled);
     page.press("l");
-    page.until(|told| told["moving"][0].as_f64().is_some_and(|clock| clock > 0.02));
+    page.until(|state| {
+        state["moving"][0]
+            .as_f64()
+            .is_some_and(|clock| clock > 0.02)
+    });
     page.picture("sheet_let_go");
     page.press("Escape");
-    page.until(|told| told["moving"].is_null());
+    page.until(|state| state["moving"].is_null());
 }
 
 fn pictures_tables_and_fields_go_out_of_the_browser() {
@@ -295,13 +301,13 @@ fn pictures_tables_and_fields_go_out_of_the_browser() {
         ("force over stretch as PNG", "force.png", b"\x89PNG"),
     ] {
         page.press_button("export");
-        page.until(|told| told["places"][offer].is_array());
+        page.until(|state| state["places"][offer].is_array());
         page.picture("export");
         page.press_button(offer);
-        page.until(|told| {
-            told["told"]
+        page.until(|state| {
+            state["told"]
                 .as_str()
-                .is_some_and(|told| told.starts_with(file))
+                .is_some_and(|message| message.starts_with(file))
         });
         let path = folder.join(file);
         let begun = Instant::now();
@@ -312,7 +318,7 @@ fn pictures_tables_and_fields_go_out_of_the_browser() {
             );
             std::thread::sleep(Duration::from_millis(50));
         }
-        page.until(|told| told["places"][offer].is_null());
+        page.until(|state| state["places"][offer].is_null());
         assert!(std::fs::read(&path).unwrap().starts_with(begin), "{offer}");
     }
 }
@@ -320,15 +326,19 @@ fn pictures_tables_and_fields_go_out_of_the_browser() {
 fn the_first_two_minutes() {
     let mut page = Browser::open([1400, 900]);
     page.picture("newcomer_0_at_once");
-    let told = page.until(settled);
+    let state = page.until(settled);
     page.picture("newcomer_1_settled");
-    let at = [0, 1].map(|axis| told["grip_at"][axis].as_f64().unwrap());
+    let at = [0, 1].map(|axis| state["grip_at"][axis].as_f64().unwrap());
     page.drag(at, [at[0] + 120.0, at[1] - 30.0]);
     page.picture("newcomer_2_while_it_follows");
     page.until(settled);
     page.picture("newcomer_3_pulled");
     page.press_button("release");
-    page.until(|told| told["moving"][0].as_f64().is_some_and(|clock| clock > 0.01));
+    page.until(|state| {
+        state["moving"][0]
+            .as_f64()
+            .is_some_and(|clock| clock > 0.01)
+    });
     page.picture("newcomer_4_let_go");
     page.press("Escape");
     for (number, scene) in [
@@ -344,7 +354,7 @@ fn the_first_two_minutes() {
         page.press_button(scene);
         std::thread::sleep(Duration::from_millis(300));
         match scene.starts_with('4') {
-            true => page.until(|told| told["verdicts"].is_array()),
+            true => page.until(|state| state["verdicts"].is_array()),
             false => page.until(settled),
         };
         page.picture(&format!("newcomer_{}_{}", 5 + number, &scene[..1]));

@@ -39,8 +39,8 @@ fn the_grip_follows_the_mouse_and_the_models_follow_the_grip() {
     bench.step();
     bench.drag_at(from);
     bench.step();
-    for way in 1..=10 {
-        bench.hover_at(from + vec2(6.0 * way as f32, 0.0));
+    for step in 1..=10 {
+        bench.hover_at(from + vec2(6.0 * step as f32, 0.0));
         bench.step();
     }
     bench.drop_at(from + vec2(60.0, 0.0));
@@ -135,8 +135,8 @@ fn every_guided_scene_is_solved_without_a_fault() {
             Shows::Sheet(scene) => assert_eq!(*state(&bench).table.scene(), scene(), "{label}"),
             Shows::MeasuredField => {
                 let corrected = |bench: &Workbench| {
-                    let found = bench.fields().found();
-                    found.is_some_and(|found| found.as_ref().unwrap().corrected.is_some())
+                    let answer = bench.fields().answer();
+                    answer.is_some_and(|answer| answer.as_ref().unwrap().corrected.is_some())
                 };
                 until(&mut bench, corrected);
                 bench.step();
@@ -176,8 +176,11 @@ fn a_dropped_file_that_nothing_reads_says_what_would_be() {
     for (name, content) in [("photo.jpg", &b"\xff\xd8"[..]), ("notes.md", b"# notes")] {
         state_mut(&mut bench).open(name, content);
         bench.step();
-        let said = state(&bench).said();
-        assert!(said.contains(name) && said.contains("(.toml"), "{said}");
+        let message = state(&bench).message();
+        assert!(
+            message.contains(name) && message.contains("(.toml"),
+            "{message}"
+        );
         assert_eq!(state(&bench).tab(), Tab::Sheet, "nothing else happens");
         assert!(state(&bench).studies().files().is_empty());
         assert!(bench.query_by_label_contains(name).is_some());
@@ -193,7 +196,7 @@ fn the_points_of_a_dropped_test_are_drawn_at_once() {
     until(&mut bench, |bench| bench.materials().seen().is_some());
     bench.run_steps(2);
     let materials = state(&bench).materials();
-    assert!(materials.found().is_none(), "nothing was fitted");
+    assert!(materials.ranking().is_none(), "nothing was fitted");
     let lines = &materials.seen().unwrap().lines;
     assert_eq!(lines.len(), 1);
     assert!(lines[0].points.len() > 20 && lines[0].stroke == Stroke::Points);
@@ -204,8 +207,8 @@ fn the_points_of_a_dropped_test_are_drawn_at_once() {
     );
     // A file that does not say what was measured is asked about at once too.
     state_mut(&mut bench).open("bare.csv", b"strain,stress\n0.1,0.01\n0.2,0.02\n0.3,0.03\n");
-    until(&mut bench, |bench| bench.materials().found().is_some());
-    assert!(state(&bench).materials().found().unwrap().is_err());
+    until(&mut bench, |bench| bench.materials().ranking().is_some());
+    assert!(state(&bench).materials().ranking().unwrap().is_err());
 }
 
 #[test]
@@ -217,8 +220,13 @@ fn a_dropped_test_is_fitted_and_the_sheet_is_made_of_it() {
     bench.step();
     bench.get_by_label("fit").click();
     bench.step();
-    until(&mut bench, |bench| bench.materials().found().is_some());
-    let ranking = state(&bench).materials().found().unwrap().as_ref().unwrap();
+    until(&mut bench, |bench| bench.materials().ranking().is_some());
+    let ranking = state(&bench)
+        .materials()
+        .ranking()
+        .unwrap()
+        .as_ref()
+        .unwrap();
     assert!(ranking.fits.len() > 5, "{}", ranking.fits.len());
     bench.step();
     bench.get_by_label("use it for the sheet").click();

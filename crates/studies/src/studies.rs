@@ -34,15 +34,15 @@ pub use steps::Steps;
 /// Reports the progress of a computation, and may keep its equilibria in a journal.
 #[derive(Clone, Copy)]
 pub struct Progress<'a> {
-    told: &'a dyn Fn(&str),
+    report: &'a dyn Fn(&str),
     journal: Option<&'a dyn Journal>,
 }
 
 impl<'a> Progress<'a> {
-    /// Reports to `told`.
-    pub fn to(told: &'a dyn Fn(&str)) -> Self {
+    /// Reports to `report`.
+    pub fn to(report: &'a dyn Fn(&str)) -> Self {
         Self {
-            told,
+            report,
             journal: None,
         }
     }
@@ -62,7 +62,7 @@ impl<'a> Progress<'a> {
 
     /// Reports what is being done.
     pub fn tell(&self, what: &str) {
-        (self.told)(what);
+        (self.report)(what);
     }
 
     /// For a path that reports its load factors to `reached`.
@@ -284,22 +284,22 @@ impl Kind {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::within(budget);
-        let (title, made, output) = {
+        let (title, content, output) = {
             let document = Document::parse(&file, text, &faults);
             let defaults = self.defaults(&document, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
             let title = self.title(&root, text, folder);
-            let made = read(&root, folder);
+            let content = read(&root, folder);
             let output = self.output(&root);
             root.unknown_keys();
-            (title, made, output)
+            (title, content, output)
         };
         let defaults = faults.defaults();
         let warnings = faults.finish()?;
         Ok(Loaded {
             title,
-            made,
+            made: content,
             output,
             defaults,
             warnings,
@@ -369,7 +369,7 @@ impl PreparedStudy {
     /// Values of specimen, material and load that were used because the study does not state them, as `plate.length = "150 mm"`.
     pub fn physical_defaults(&self) -> impl Iterator<Item = &str> {
         const PHYSICAL: [&str; 3] = ["material.", "plate.", "load."];
-        let is_physical = |said: &&str| PHYSICAL.iter().any(|table| said.starts_with(table));
+        let is_physical = |key: &&str| PHYSICAL.iter().any(|table| key.starts_with(table));
         self.defaults.iter().map(String::as_str).filter(is_physical)
     }
 

@@ -29,7 +29,7 @@ pub fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
     // The finite elements stand first.
     let shifted = differences
         .first()
-        .filter(|own| doubt.is_none() && own.is_shifted());
+        .filter(|difference| doubt.is_none() && difference.is_shifted());
     doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
 }
 

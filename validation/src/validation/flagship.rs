@@ -185,13 +185,13 @@ fn table_of_laws(found: &[Found]) -> Block {
         let own = || found.iter().filter(|found| found.law == *law);
         let mut starts = BTreeMap::new();
         for climbed in own().filter_map(|found| found.climbed.as_ref().ok()) {
-            let by_path = if climbed.way.by_load_path.is_empty() {
+            let by_path = if climbed.provenance.by_load_path.is_empty() {
                 ""
             } else {
                 ", finer grids by load steps"
             };
             *starts
-                .entry(format!("{}{by_path}", climbed.way.start))
+                .entry(format!("{}{by_path}", climbed.provenance.start))
                 .or_insert(0) += 1;
         }
         let starts: Vec<String> = starts

@@ -21,16 +21,16 @@ pub struct Deviation {
 impl Deviation {
     /// Of a model on the lattice; nothing where the sheet is at rest, or the elements' field on the lattice is not known.
     pub fn of(scene: &Scene, lattice: &Mesh, model: &Solved, elements: &Solved) -> Option<Self> {
-        let (found, expected) = (&model.displacement[..], elements.on_lattice.as_deref()?);
-        if scene.grip == Grip::default() || found.len() != expected.len() {
+        let (computed, expected) = (&model.displacement[..], elements.on_lattice.as_deref()?);
+        if scene.grip == Grip::default() || computed.len() != expected.len() {
             return None;
         }
         let areas = lattice.corner_areas();
         let linear = linear_between_grips(scene, lattice);
         let departure = expected.weighted_distance(&linear, &areas);
         Some(Self {
-            displacement: area_weighted_percent(lattice, found, expected),
-            departure: 100.0 * found.weighted_distance(expected, &areas) / departure,
+            displacement: area_weighted_percent(lattice, computed, expected),
+            departure: 100.0 * computed.weighted_distance(expected, &areas) / departure,
             force: force_percent(model.force, elements.force),
         })
     }

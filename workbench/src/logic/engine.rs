@@ -165,7 +165,7 @@ impl Engine {
             Model::Elements => bodies.warnings(),
             _ => Vec::new(),
         };
-        let (mesh, lattice) = (&bodies.made(task.model).mesh, &bodies.lattice);
+        let (mesh, lattice) = (&bodies.built(task.model).mesh, &bodies.lattice);
         let on_lattice =
             (task.model == Model::Elements).then(|| mesh.displacement_on(&displacement, lattice));
         Ok(Solved {
@@ -215,10 +215,10 @@ fn multipliers(
         &model.held(),
         LinearSolver::Direct,
     );
-    let found = tangent.and_then(|mut tangent| {
+    let computed = tangent.and_then(|mut tangent| {
         compliance(&mut tangent, &model, Stage::first(1.0), corrected, &change)
     });
-    found.map_err(|fault| Error::Solve {
+    computed.map_err(|fault| Error::Solve {
         model: "multipliers".into(),
         step: grip.describe(),
         fault,

@@ -126,16 +126,16 @@ impl Worker for FieldCorrector {
     const NAME: &'static str = "corrector";
 
     fn answer(&mut self, question: &FieldQuestion) -> Result<FieldAnswer, Fault> {
-        let answered = with_own_files(question, || answer(question));
+        let answered = with_files_of(question, || answer(question));
         answered.map_err(|error| settings::fault(error.into()))
     }
 }
 
 /// Does something with the files of a question, and with no others.
-fn with_own_files<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
+fn with_files_of<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
     let card = &question.card;
-    let own = (card.reference(), card.text.clone().into_bytes());
-    let files: Vec<NamedFile> = question.files.iter().cloned().chain([own]).collect();
+    let card_file = (card.reference(), card.text.clone().into_bytes());
+    let files: Vec<NamedFile> = question.files.iter().cloned().chain([card_file]).collect();
     with_files(paths(&files), work)
 }
 
@@ -152,8 +152,8 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     let estimates = study.estimate(&|_| ())?;
     let results = results(question, &study, &estimates, begun);
     let mut report = Report::from(results);
-    for said in &mut report.told {
-        *said = settings::worded(said);
+    for sentence in &mut report.told {
+        *sentence = settings::worded(sentence);
     }
     let frames = || study.series.frames.iter().zip(&estimates);
     for (frame, estimate) in frames() {
@@ -187,14 +187,14 @@ fn results(
 /// # Errors
 /// As of the correction itself.
 pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
-    with_own_files(question, || {
+    with_files_of(question, || {
         let begun = Instant::now();
         let mut study = MarkerStudy::prepare(request(question)?)?;
         let estimates = study.estimate(&|_| ())?;
         let mut files: Vec<NamedFile> = Vec::new();
         for (frame, estimate) in study.series.frames.iter().zip(&estimates) {
-            let own = FrameFiles::new(&study, frame, estimate);
-            output::write_frame(&mut files, &own.grids, &own.tables)?;
+            let frame_files = FrameFiles::new(&study, frame, estimate);
+            output::write_frame(&mut files, &frame_files.grids, &frame_files.tables)?;
         }
         let players = SERIES.map(|series| {
             let player = vtk::collection(&played(&study, series));
@@ -228,10 +228,10 @@ impl FieldQuestion {
             .chain(names)
             .collect();
         let card = self.card.reference();
-        let mut said = self.clone();
+        let mut question = self.clone();
         // The gap is in the file of what is known.
-        said.edge_gap.clear();
-        let texts = settings::TEXTS.iter().zip(said.texts());
+        question.edge_gap.clear();
+        let texts = settings::TEXTS.iter().zip(question.texts());
         let options = [(settings::MATERIAL.option, card.as_str())]
             .into_iter()
             .chain(texts.map(|(setting, text)| (setting.option, text.as_str())))
@@ -293,11 +293,11 @@ fn preview(study: &MarkerStudy) -> Preview {
         markers: markers
             .iter()
             .map(|marker| {
-                let found = [0, 1].map(|axis| marker.position[axis] + marker.displacement[axis]);
-                [marker.position, found]
+                let moved = [0, 1].map(|axis| marker.position[axis] + marker.displacement[axis]);
+                [marker.position, moved]
             })
             .collect(),
-        warnings: study.warnings.iter().map(settings::told).collect(),
+        warnings: study.warnings.iter().map(settings::warning_text).collect(),
     }
 }
 
@@ -310,12 +310,16 @@ fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Co
     };
     let size = |values: &[f64], node: usize| values[2 * node].hypot(values[2 * node + 1]);
     let residuals = frame.markers.iter().zip(&estimate.markers);
-    let residual = |(marker, found): (
+    let residual = |(marker, marker_estimate): (
         &gelbench::markers::Marker,
         &Option<gelbench::estimation::MarkerEstimate>,
     )| {
-        let found = found.as_ref()?;
-        Some((marker.position, found.residual, found.trust))
+        let marker_estimate = marker_estimate.as_ref()?;
+        Some((
+            marker.position,
+            marker_estimate.residual,
+            marker_estimate.trust,
+        ))
     };
     let forces = estimate.forces.iter().map(|force| {
         let axes = force

@@ -307,12 +307,12 @@ mod tests {
                 .with_parameter(&card, parameter.key, 1.5 * parameter.value)
                 .unwrap();
             let read = moved.read().unwrap();
-            let found = read
+            let changed = read
                 .parameters
                 .iter()
                 .find(|other| other.key == parameter.key)
                 .unwrap();
-            assert!((found.value / parameter.value - 1.5).abs() < 1e-12);
+            assert!((changed.value / parameter.value - 1.5).abs() < 1e-12);
             assert!(!moved.is_shipped());
         }
     }

@@ -188,7 +188,7 @@ fn grids(mut bodies: Bodies, fields: &[ShownField]) -> Result<Vec<NamedFile>, Er
             past: &[],
             viscous: None,
         };
-        let body = bodies.made(*model);
+        let body = bodies.built(*model);
         let grid = Grid::sheet(sheet, &body.mesh, displacement);
         files.push((format!("{}.vtu", file_name(*model)), vtk::grid(&grid)));
         if let Some(springs) = body.springs() {
@@ -264,8 +264,8 @@ pub fn archive(files: &[NamedFile]) -> Result<Vec<u8>, String> {
         let written = archive.write_all(content);
         written.map_err(|cause| format!("{name}: {cause}"))?;
     }
-    let whole = archive.finish();
-    whole
+    let finished = archive.finish();
+    finished
         .map(Cursor::into_inner)
         .map_err(|cause| cause.to_string())
 }

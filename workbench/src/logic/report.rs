@@ -41,13 +41,13 @@ pub struct Report {
 impl From<Results> for Report {
     fn from(results: Results) -> Self {
         let passed = results.passed();
-        let mut told = results.read_warnings;
-        told.extend(sentences(&results.outcome));
+        let mut messages = results.read_warnings;
+        messages.extend(sentences(&results.outcome));
         let files = files(&results.outcome);
         Self {
             title: results.title,
             passed,
-            told,
+            told: messages,
             parts: parts(results.outcome),
             files,
             seconds: results.seconds,
@@ -60,8 +60,8 @@ fn sentences(outcome: &Outcome) -> Vec<String> {
         Some(advice) => format!("{}; {advice}", end.message),
         None => end.message.clone(),
     });
-    let said = outcome.doubts().chain(outcome.warnings());
-    ends.chain(said).collect()
+    let remarks = outcome.doubts().chain(outcome.warnings());
+    ends.chain(remarks).collect()
 }
 
 /// Tables and fields: those that the command writes, but for pictures.
@@ -94,7 +94,7 @@ fn parts(outcome: Outcome) -> Vec<Part> {
             }
         });
     }
-    let left = figures.into_iter().flatten();
-    parts.extend(left.map(|figure| Part::Picture(figure.drawing, figure.caption)));
+    let unplaced = figures.into_iter().flatten();
+    parts.extend(unplaced.map(|figure| Part::Picture(figure.drawing, figure.caption)));
     parts
 }

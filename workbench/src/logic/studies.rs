@@ -56,8 +56,8 @@ mod tests {
     use crate::logic::report::Part;
 
     fn run(study: &str, text: &str, others: &[NamedFile]) -> Result<Report, Fault> {
-        let own = (study.to_owned(), text.as_bytes().to_vec());
-        let files = others.iter().cloned().chain([own]).collect();
+        let study_file = (study.to_owned(), text.as_bytes().to_vec());
+        let files = others.iter().cloned().chain([study_file]).collect();
         let study = study.to_owned();
         Runner.answer(&StudyQuestion { study, files })
     }

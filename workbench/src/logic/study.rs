@@ -106,7 +106,7 @@ impl Scene {
         let enclosed = enclosed.and_then(|card| serde_json::from_str(card).ok());
         // A card that is known is newer than the one that the study was saved with.
         let cards: Vec<CardFile> = cards.iter().cloned().chain(enclosed).collect();
-        let (text, own) = with_known_card(text, &cards);
+        let (text, known_card) = with_known_card(text, &cards);
         let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
         let look = shown.and_then(|look| serde_json::from_str(look).ok());
         let scene = match kind_of(&file.display().to_string(), &text)? {
@@ -125,7 +125,7 @@ impl Scene {
             }
         };
         Ok(Self {
-            card: own.unwrap_or(scene.card),
+            card: known_card.unwrap_or(scene.card),
             look: look.unwrap_or(scene.look),
             ..scene
         })
@@ -183,14 +183,14 @@ fn with_known_card(text: &str, cards: &[CardFile]) -> (String, Option<CardFile>)
     let Some(named) = material.and_then(|material| material.get_mut("card")) else {
         return unchanged();
     };
-    let own = |card: &&CardFile| Some(card.reference().as_str()) == named.as_str();
-    let Some(own) = cards.iter().filter(|card| !card.is_shipped()).find(own) else {
+    let known = |card: &&CardFile| Some(card.reference().as_str()) == named.as_str();
+    let Some(known) = cards.iter().filter(|card| !card.is_shipped()).find(known) else {
         return unchanged();
     };
     *named = "neo-hooke".into();
     let comments = text.lines().filter(|line| line.starts_with(LOOK));
     let comments: String = comments.map(|line| format!("{line}\n")).collect();
-    (format!("{comments}{table}"), Some(own.clone()))
+    (format!("{comments}{table}"), Some(known.clone()))
 }
 
 fn card_file(card: Card) -> CardFile {
@@ -344,8 +344,8 @@ mod tests {
         assert_eq!(open(&text, &[]).unwrap(), scene, "the card is enclosed");
         let mut newer = scene.card.clone();
         newer.text.push_str("# once more\n");
-        let found = open(&text, std::slice::from_ref(&newer)).unwrap();
-        assert_eq!(found.card, newer);
+        let opened = open(&text, std::slice::from_ref(&newer)).unwrap();
+        assert_eq!(opened.card, newer);
         let bare = text.lines().filter(|line| !line.starts_with(CARD));
         let bare = bare.collect::<Vec<_>>().join("\n");
         assert_eq!(open(&bare, &[scene.card.clone()]).unwrap(), scene);

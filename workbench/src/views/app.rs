@@ -93,7 +93,7 @@ pub struct Workbench {
     guided: Option<usize>,
     shows_guide: bool,
     shows_controls: Option<bool>,
-    told: String,
+    message: String,
     grip_at: Option<egui::Pos2>,
     /// Where some of the buttons stand in the last frame, by their words.
     positions: BTreeMap<String, egui::Pos2>,
@@ -133,7 +133,7 @@ impl Workbench {
             guided: None,
             shows_guide: true,
             shows_controls: None,
-            told: String::new(),
+            message: String::new(),
             grip_at: None,
             positions: BTreeMap::new(),
             measure: None,
@@ -167,8 +167,8 @@ impl Workbench {
     }
 
     /// What the program has said last, as of a file that it has written.
-    pub fn said(&self) -> &str {
-        &self.told
+    pub fn message(&self) -> &str {
+        &self.message
     }
 
     /// Where the buttons stand in the last frame that a program may press: by their words, in points.
@@ -209,8 +209,8 @@ impl Workbench {
             self.keys(ui);
         }
         Panel::top("bar").show(ui, |ui| self.bar(ui));
-        if !self.told.is_empty() {
-            Panel::bottom("told").show(ui, |ui| self.told(ui));
+        if !self.message.is_empty() {
+            Panel::bottom("told").show(ui, |ui| self.show_message(ui));
         }
         if self.is_guided() {
             Panel::top("guide").show(ui, |ui| self.guide(ui));
@@ -252,7 +252,7 @@ impl Workbench {
         for arrived in arrived.unwrap_or_default() {
             match arrived {
                 Ok((name, content)) => self.open(&name, &content),
-                Err(fault) => self.told = fault,
+                Err(fault) => self.message = fault,
             }
         }
         for engine in &mut self.engines {
@@ -263,10 +263,10 @@ impl Workbench {
         match self.exports.receive() {
             None => (),
             Some(Ok(written)) => {
-                self.told.clear();
+                self.message.clear();
                 self.give(written);
             }
-            Some(Err(fault)) => self.told = format!("{}; {}", fault.message, fault.advice),
+            Some(Err(fault)) => self.message = format!("{}; {}", fault.message, fault.advice),
         }
         self.receive_files(context);
         self.play(context);
@@ -349,7 +349,7 @@ impl Workbench {
         self.studies.stop();
         self.table.forget_tasks();
         if busy && !moved {
-            self.told = "stopped; the next change starts a new computation".to_owned();
+            self.message = "stopped; the next change starts a new computation".to_owned();
         }
     }
 

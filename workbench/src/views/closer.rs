@@ -26,8 +26,8 @@ const WHEEL: f32 = 250.0;
 
 impl Closer {
     /// A view of the whole from there; `middle` is that of the sheet.
-    pub fn of(self, whole: View, middle: Pos2) -> View {
-        whole.closer(middle, self.factor, self.shift)
+    pub fn of(self, full: View, middle: Pos2) -> View {
+        full.closer(middle, self.factor, self.shift)
     }
 
     /// Follows the wheel, two fingers, and the pointer that pulls the background; a double click shows the whole again.

@@ -18,8 +18,8 @@ pub fn colour_bar(ui: &Ui, name: &str, span: Span, area: Rect) {
     let painter = ui.painter();
     painter.add(Shape::mesh(colours(bar)));
     let ends = [(bar.left(), -ARROW, 0.0), (bar.right(), ARROW, 1.0)];
-    for ((end, way, share), _) in ends.into_iter().zip(span.exceeded).filter(|(_, is)| *is) {
-        let tip = pos2(end + way, bar.center().y);
+    for ((end, offset, share), _) in ends.into_iter().zip(span.exceeded).filter(|(_, is)| *is) {
+        let tip = pos2(end + offset, bar.center().y);
         let corners = vec![pos2(end, bar.top()), tip, pos2(end, bar.bottom())];
         let ink = colour(share, [0.0, 1.0]);
         painter.add(Shape::convex_polygon(corners, ink, Stroke::NONE));

@@ -61,9 +61,9 @@ pub fn most_of(values: impl IntoIterator<Item = (f64, f64)>) -> Option<Span> {
         .filter(|(value, area)| value.is_finite() && *area > 0.0)
         .collect();
     let all = range(values.iter().map(|(value, _)| *value))?;
-    let whole: f64 = values.iter().map(|(_, area)| area).sum();
-    let [low, _] = around(&values, all, 0.02 * whole);
-    let [_, high] = around(&values, all, 0.98 * whole);
+    let total: f64 = values.iter().map(|(_, area)| area).sum();
+    let [low, _] = around(&values, all, 0.02 * total);
+    let [_, high] = around(&values, all, 0.98 * total);
     let low = if low > 0.0 && low < 0.1 * high {
         0.0
     } else {

@@ -11,7 +11,7 @@ use crate::logic::table::Table;
 const CELLS: [usize; 2] = [4, 120];
 
 /// The room to the left of what stands beside something.
-pub const BESIDE: Margin = Margin {
+pub const COLUMN_MARGIN: Margin = Margin {
     left: 12,
     right: 0,
     top: 0,
@@ -102,7 +102,7 @@ fn outline(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
 }
 
 /// The cards to choose from: those that come along, and the user's own.
-pub fn card(ui: &mut Ui, label: &str, chosen: &mut CardFile, own: &[CardFile]) {
+pub fn card(ui: &mut Ui, label: &str, chosen: &mut CardFile, user_cards: &[CardFile]) {
     ComboBox::from_label(label)
         .selected_text(&chosen.name)
         .width(150.0)
@@ -112,7 +112,7 @@ pub fn card(ui: &mut Ui, label: &str, chosen: &mut CardFile, own: &[CardFile]) {
                     *chosen = CardFile::shipped(name).expect("a shipped card");
                 }
             }
-            for card in own {
+            for card in user_cards {
                 if ui
                     .selectable_label(chosen.name == card.name, &card.name)
                     .clicked()

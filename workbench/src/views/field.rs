@@ -27,7 +27,7 @@ const EXAMPLE: &[u8] = include_bytes!("../../../examples/measured_plate.csv");
 pub struct Fields {
     question: FieldQuestion,
     corrector: Background<FieldCorrector>,
-    found: Option<Result<FieldAnswer, Fault>>,
+    answer: Option<Result<FieldAnswer, Fault>>,
     frame: usize,
     field: usize,
     residuals: bool,
@@ -45,7 +45,7 @@ impl Fields {
         Self {
             question: FieldQuestion::of(Vec::new(), card),
             corrector: Background::new(wake),
-            found: None,
+            answer: None,
             frame: 0,
             field: 0,
             residuals: true,
@@ -94,12 +94,12 @@ impl Fields {
             correct,
             ..self.question.clone()
         };
-        self.done = Some(self.said_of_edges());
+        self.done = Some(self.stated_question());
         self.corrector.ask(question);
     }
 
     /// The question without the edges of which nothing is said.
-    fn said_of_edges(&self) -> FieldQuestion {
+    fn stated_question(&self) -> FieldQuestion {
         let mut question = self.question.clone();
         question.edges.retain(|_, edge| *edge != Edge::Unnamed);
         question
@@ -127,7 +127,7 @@ impl Fields {
                     .retain(|name, _| preview.edges.contains(name));
                 self.seen = Some(preview.clone());
             }
-            self.found = Some(answer);
+            self.answer = Some(answer);
             self.frame = usize::MAX;
         }
     }
@@ -143,13 +143,13 @@ impl Fields {
     }
 
     /// What was found.
-    pub fn found(&self) -> Option<&Result<FieldAnswer, Fault>> {
-        self.found.as_ref()
+    pub fn answer(&self) -> Option<&Result<FieldAnswer, Fault>> {
+        self.answer.as_ref()
     }
 
     /// What of it may go out, by name.
     pub fn offers(&self) -> Vec<(String, Wanted)> {
-        let Some(Ok(FieldAnswer { preview, corrected })) = &self.found else {
+        let Some(Ok(FieldAnswer { preview, corrected })) = &self.answer else {
             return Vec::new();
         };
         let mut offers = Vec::new();
@@ -177,7 +177,7 @@ impl Fields {
     }
 
     /// Says what is known of an edge.
-    pub fn say(&mut self, name: &str, edge: Edge) {
+    pub fn state_edge(&mut self, name: &str, edge: Edge) {
         self.question.edges.insert(name.to_owned(), edge);
     }
 
@@ -193,21 +193,23 @@ impl Fields {
             if self.question.files.is_empty() {
                 return None;
             }
-            let found = self.found.take();
-            let answer = found.as_ref().and_then(|found| found.as_ref().ok());
+            let answered = self.answer.take();
+            let answer = answered
+                .as_ref()
+                .and_then(|answered| answered.as_ref().ok());
             let corrected = answer.is_some_and(|answer| answer.corrected.is_some());
             let file = if corrected && ui.available_width() > WIDE {
                 ui.columns(2, |columns| {
-                    self.question(&mut columns[0], table, found.as_ref());
-                    let beside = Frame::new().inner_margin(controls::BESIDE);
-                    let beside = beside.show(&mut columns[1], |ui| self.results(ui, answer));
-                    beside.inner
+                    self.question(&mut columns[0], table, answered.as_ref());
+                    let column = Frame::new().inner_margin(controls::COLUMN_MARGIN);
+                    let column = column.show(&mut columns[1], |ui| self.results(ui, answer));
+                    column.inner
                 })
             } else {
-                self.question(ui, table, found.as_ref());
+                self.question(ui, table, answered.as_ref());
                 self.results(ui, answer)
             };
-            self.found = found.or(self.found.take());
+            self.answer = answered.or(self.answer.take());
             file
         });
         scroll.inner
@@ -218,10 +220,10 @@ impl Fields {
         &mut self,
         ui: &mut Ui,
         table: &mut Table,
-        found: Option<&Result<FieldAnswer, Fault>>,
+        answer: Option<&Result<FieldAnswer, Fault>>,
     ) {
-        self.said(ui, table);
-        if let Some(Err(fault)) = found {
+        self.inputs(ui, table);
+        if let Some(Err(fault)) = answer {
             figures::fault(ui, fault);
         }
         if let Some(preview) = self.seen.take() {
@@ -231,8 +233,8 @@ impl Fields {
     }
 
     fn results(&mut self, ui: &mut Ui, answer: Option<&FieldAnswer>) -> Option<NamedFile> {
-        let (frames, found) = answer?.corrected.as_ref()?;
-        if self.done.as_ref() != Some(&self.said_of_edges()) {
+        let (frames, report) = answer?.corrected.as_ref()?;
+        if self.done.as_ref() != Some(&self.stated_question()) {
             let ink = ui.visuals().warn_fg_color;
             ui.colored_label(
                 ink,
@@ -240,8 +242,8 @@ impl Fields {
             );
         }
         self.frames(ui, frames);
-        let file = study::outputs(ui, &found.files);
-        ui.collapsing("report", |ui| report::show(ui, "field", found));
+        let file = study::outputs(ui, &report.files);
+        ui.collapsing("report", |ui| report::show(ui, "field", report));
         file
     }
 
@@ -267,14 +269,14 @@ impl Fields {
         });
         if let Some(number) = gone {
             self.question.files.remove(number);
-            (self.found, self.seen) = (None, None);
+            (self.answer, self.seen) = (None, None);
             if !self.question.files.is_empty() {
                 self.look();
             }
         }
     }
 
-    fn said(&mut self, ui: &mut Ui, table: &mut Table) {
+    fn inputs(&mut self, ui: &mut Ui, table: &mut Table) {
         let mut chosen = table.scene().card.clone();
         controls::card(ui, settings::MATERIAL.label, &mut chosen, table.cards());
         if chosen != table.scene().card {

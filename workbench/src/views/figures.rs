@@ -90,10 +90,10 @@ fn row(ui: &mut Ui, table: &Table, model: Model, moment: bool) {
         }
     }
     match table.deviation(model) {
-        Some(found) => {
-            ui.monospace(format!("{:8.4}", found.displacement));
-            ui.monospace(format!("{:8.3}", found.departure));
-            ui.monospace(format!("{:+8.3}", found.force));
+        Some(deviation) => {
+            ui.monospace(format!("{:8.4}", deviation.displacement));
+            ui.monospace(format!("{:8.3}", deviation.departure));
+            ui.monospace(format!("{:+8.3}", deviation.force));
         }
         None => {
             for _ in 0..3 {

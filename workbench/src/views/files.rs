@@ -36,7 +36,7 @@ pub enum Event {
         /// The view whose document they are, and where that is, if it is anywhere.
         document: Option<(Tab, Option<PathBuf>)>,
         /// Where they are, in words.
-        said: String,
+        message: String,
     },
     /// Nothing was written, for a reason.
     Failed(String),
@@ -48,7 +48,7 @@ pub fn plain(name: &str) -> String {
 }
 
 /// The path that a name is, where it is a whole one: names in a browser are none.
-pub fn whole_path(name: &str) -> Option<PathBuf> {
+pub fn absolute_path(name: &str) -> Option<PathBuf> {
     let path = Path::new(name);
     path.is_absolute().then(|| path.to_owned())
 }

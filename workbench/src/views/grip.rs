@@ -128,11 +128,11 @@ fn moved(ui: &Ui, pulled: &Response, view: View, grip: Grip) -> Option<Grip> {
     if pulled.clicked() || pulled.drag_started() {
         pulled.request_focus();
     }
-    let way = pulled.drag_delta();
-    if !pulled.dragged() || way == Vec2::ZERO {
+    let drag = pulled.drag_delta();
+    if !pulled.dragged() || drag == Vec2::ZERO {
         return None;
     }
-    let [mut dx, mut dy] = view.way(way);
+    let [mut dx, mut dy] = view.vector(drag);
     // With Shift along the axis alone, with Ctrl across it.
     let keys = ui.input(|input| input.modifiers);
     (dx, dy) = (
@@ -173,7 +173,7 @@ fn by_keys(ui: &Ui, pulled: &Response, id: Id, scene: &Scene) -> Option<Grip> {
             let [more, less] = [more, less].map(|key| input.num_presses(key) as f64);
             more - less
         };
-        let way = vec2(
+        let direction = vec2(
             pressed(Key::ArrowRight, Key::ArrowLeft) as f32,
             pressed(Key::ArrowUp, Key::ArrowDown) as f32,
         );
@@ -182,7 +182,10 @@ fn by_keys(ui: &Ui, pulled: &Response, id: Id, scene: &Scene) -> Option<Grip> {
         let step = 0.01 * scene.size[0] * fine;
         let [x, y] = scene.grip.displacement;
         let to = Grip {
-            displacement: [x + step * f64::from(way.x), y + step * f64::from(way.y)],
+            displacement: [
+                x + step * f64::from(direction.x),
+                y + step * f64::from(direction.y),
+            ],
             angle: scene.grip.angle + (fine * turn).to_radians(),
         };
         (to != scene.grip).then_some(to)

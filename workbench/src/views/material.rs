@@ -22,7 +22,7 @@ use crate::logic::table::Table;
 pub struct Materials {
     question: FitQuestion,
     fitter: Background<Fitter>,
-    found: Option<Result<Ranking, Fault>>,
+    ranking: Option<Result<Ranking, Fault>>,
     chosen: usize,
     /// The points of the tests, as they were read last.
     seen: Option<LineChart>,
@@ -36,7 +36,7 @@ impl Materials {
         Self {
             question: FitQuestion::default(),
             fitter: Background::new(wake),
-            found: None,
+            ranking: None,
             chosen: 0,
             seen: None,
             read: None,
@@ -52,7 +52,7 @@ impl Materials {
 
     /// Has the tests read, so that their points can be seen.
     fn look(&mut self) {
-        (self.found, self.chosen) = (None, 0);
+        (self.ranking, self.chosen) = (None, 0);
         match self.question.tests.is_empty() {
             true => self.seen = None,
             false => self.ask(false),
@@ -72,7 +72,7 @@ impl Materials {
             return;
         };
         self.seen = answer.as_ref().ok().map(|answer| answer.measured.clone());
-        self.found = answer.map(|answer| answer.ranking).transpose();
+        self.ranking = answer.map(|answer| answer.ranking).transpose();
         self.chosen = 0;
     }
 
@@ -94,8 +94,8 @@ impl Materials {
     }
 
     /// What was fitted last.
-    pub fn found(&self) -> Option<&Result<Ranking, Fault>> {
-        self.found.as_ref()
+    pub fn ranking(&self) -> Option<&Result<Ranking, Fault>> {
+        self.ranking.as_ref()
     }
 
     /// What of it may go out, by name.
@@ -105,8 +105,11 @@ impl Materials {
             let chart = material_chart(card);
             offers.extend(exports::chart("the card's curves", "curves", &chart));
         }
-        let found = self.found.as_ref().and_then(|found| found.as_ref().ok());
-        if let Some(fit) = found.and_then(|ranking| ranking.fits.get(self.chosen)) {
+        let ranking = self
+            .ranking
+            .as_ref()
+            .and_then(|ranking| ranking.as_ref().ok());
+        if let Some(fit) = ranking.and_then(|ranking| ranking.fits.get(self.chosen)) {
             for (number, chart) in fit.charts.iter().enumerate() {
                 let what = ["the fit", "its residuals"][number.min(1)];
                 let name = ["fit", "residuals"][number.min(1)];
@@ -128,8 +131,8 @@ impl Materials {
             if wide {
                 ui.columns(2, |columns| {
                     let saves = self.card(&mut columns[0], table);
-                    let beside = Frame::new().inner_margin(controls::BESIDE);
-                    beside.show(&mut columns[1], |ui| self.tests(ui, table));
+                    let column = Frame::new().inner_margin(controls::COLUMN_MARGIN);
+                    column.show(&mut columns[1], |ui| self.tests(ui, table));
                     saves
                 })
             } else if self.question.tests.is_empty() {
@@ -193,7 +196,7 @@ impl Materials {
         }
         self.reading(ui);
         self.law(ui);
-        match (&self.found, &self.seen) {
+        match (&self.ranking, &self.seen) {
             (None, None) => (),
             (None, Some(measured)) => {
                 ui.label(RichText::new(&measured.title).small());

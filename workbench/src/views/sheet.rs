@@ -84,27 +84,27 @@ impl Sheets {
             self.closer.follow(ui, &background, row.center());
         }
         for (number, model) in models.iter().enumerate() {
-            let own = areas[if over { 0 } else { number }];
+            let row_area = areas[if over { 0 } else { number }];
             let line = if over { 15.0 * number as f32 } else { 0.0 };
             let position = Place {
                 ui,
-                painter: ui.painter().with_clip_rect(own),
+                painter: ui.painter().with_clip_rect(row_area),
                 table,
-                view: self.view(table.scene(), own - AROUND),
+                view: self.view(table.scene(), row_area - AROUND),
                 range,
                 outline_only: over && number > 0,
             };
             self.sheet(&position, *model);
-            label(&position, *model, own.min + vec2(6.0, 4.0 + line));
+            label(&position, *model, row_area.min + vec2(6.0, 4.0 + line));
             let view = position.view;
             if table.played().is_some() {
                 held = Some(Held::nothing(view.at([table.scene().size[0], 0.0])));
             } else if number == 0 || !over {
-                let mut inside = ui.new_child(UiBuilder::new().max_rect(own));
-                inside.shrink_clip_rect(own);
-                let own = grip::show(&inside, table.scene(), view, model.name());
-                if held.is_none() || own.to.is_some() || own.holding || own.released {
-                    held = Some(own);
+                let mut inside = ui.new_child(UiBuilder::new().max_rect(row_area));
+                inside.shrink_clip_rect(row_area);
+                let grip = grip::show(&inside, table.scene(), view, model.name());
+                if held.is_none() || grip.to.is_some() || grip.holding || grip.released {
+                    held = Some(grip);
                 }
             }
         }
@@ -144,8 +144,8 @@ impl Sheets {
         let [length, width] = scene.size;
         let (axis, across) = (scene.axis(), 0.5 * width + self.room[1]);
         let right = length * (1.0 + self.room[0]);
-        let whole = View::fit([[0.0, axis - across], [right, axis + across]], screen);
-        self.closer.of(whole, screen.center())
+        let full = View::fit([[0.0, axis - across], [right, axis + across]], screen);
+        self.closer.of(full, screen.center())
     }
 
     fn sheet(&mut self, position: &Place, model: Model) {
@@ -278,12 +278,12 @@ fn warnings(ui: &mut Ui, table: &Table, row: Rect) {
         return;
     }
     let headlines: Vec<String> = warnings.iter().map(headline).collect();
-    let whole: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    let sentences: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     let ink = ui.visuals().warn_fg_color;
     let words = RichText::new(format!("warning: {}", headlines.join(" · "))).color(ink);
     let mut row = ui.new_child(UiBuilder::new().max_rect(row.shrink2(vec2(6.0, 0.0))));
     let label = row.add(Label::new(words).truncate());
-    label.on_hover_text(whole.join("\n\n"));
+    label.on_hover_text(sentences.join("\n\n"));
 }
 
 /// The lines on a deformed mesh.
@@ -333,8 +333,8 @@ impl Lines<'_> {
             ..
         } = self.position;
         let corrected = table.shown(Model::Corrected);
-        let found = corrected.and_then(|shown| shown.solved.multipliers.as_ref());
-        let Some(values) = found.filter(|values| values.len() == self.displacement.len()) else {
+        let computed = corrected.and_then(|shown| shown.solved.multipliers.as_ref());
+        let Some(values) = computed.filter(|values| values.len() == self.displacement.len()) else {
             return;
         };
         let sizes = values.chunks_exact(2).map(|value| value[0].hypot(value[1]));
@@ -348,9 +348,9 @@ impl Lines<'_> {
         for node in (0..self.mesh.nodes.len()).step_by(every) {
             let from = self.moved(node);
             let to = [0, 1].map(|axis| from[axis] + scale * values[2 * node + axis]);
-            let way = view.at(to) - view.at(from);
-            if way.length() > 1.5 {
-                painter.arrow(view.at(from), way, stroke);
+            let arrow = view.at(to) - view.at(from);
+            if arrow.length() > 1.5 {
+                painter.arrow(view.at(from), arrow, stroke);
             }
         }
     }

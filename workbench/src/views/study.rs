@@ -20,7 +20,7 @@ pub struct Studies {
     text: String,
     files: Vec<NamedFile>,
     runner: Background<Runner>,
-    found: Option<Result<Report, Fault>>,
+    report: Option<Result<Report, Fault>>,
     /// Whether the report has just come, and is scrolled to.
     arrived: bool,
     /// Whether the text is unfolded or folded in the next frame.
@@ -43,7 +43,7 @@ impl Studies {
             text: plate::DEFAULT.to_owned(),
             files: Vec::new(),
             runner: Background::new(wake),
-            found: None,
+            report: None,
             arrived: false,
             unfolds: Some(true),
         }
@@ -51,7 +51,7 @@ impl Studies {
 
     /// Takes a study.
     pub fn put(&mut self, name: &str, text: String) {
-        (self.name, self.text, self.found) = (plain(name), text, None);
+        (self.name, self.text, self.report) = (plain(name), text, None);
         self.unfolds = Some(true);
     }
 
@@ -71,7 +71,7 @@ impl Studies {
     pub fn receive(&mut self) {
         if let Some(answer) = self.runner.answers().pop() {
             (self.arrived, self.unfolds) = (answer.is_ok(), Some(answer.is_err()));
-            self.found = Some(answer);
+            self.report = Some(answer);
         }
     }
 
@@ -86,16 +86,16 @@ impl Studies {
     }
 
     /// What was found.
-    pub fn found(&self) -> Option<&Result<Report, Fault>> {
-        self.found.as_ref()
+    pub fn report(&self) -> Option<&Result<Report, Fault>> {
+        self.report.as_ref()
     }
 
     /// What of it may go out, by name.
     pub fn offers(&self) -> Vec<Offer> {
         let all = "everything that `gelbench run` writes".to_owned();
         let mut offers = vec![(all, Wanted::Study(self.question()))];
-        let found = self.found.as_ref().and_then(|found| found.as_ref().ok());
-        let parts = found.map_or(&[][..], |report| &report.parts).iter();
+        let report = self.report.as_ref().and_then(|report| report.as_ref().ok());
+        let parts = report.map_or(&[][..], |report| &report.parts).iter();
         let drawings = parts.filter_map(|part| match part {
             Part::Picture(drawing, _) => Some(drawing),
             _ => None,
@@ -126,18 +126,18 @@ impl Studies {
     pub fn show(&mut self, ui: &mut Ui) -> Option<Asks> {
         let scroll = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let example = self.editor(ui);
-            let file = match &self.found {
+            let file = match &self.report {
                 None => None,
                 Some(Err(fault)) => {
                     figures::fault(ui, fault);
                     None
                 }
-                Some(Ok(found)) => {
+                Some(Ok(report)) => {
                     if std::mem::take(&mut self.arrived) {
                         ui.scroll_to_cursor(Some(Align::TOP));
                     }
-                    let file = outputs(ui, &found.files);
-                    report::show(ui, "report", found);
+                    let file = outputs(ui, &report.files);
+                    report::show(ui, "report", report);
                     file
                 }
             };
@@ -179,19 +179,19 @@ impl Studies {
     /// Runs the study.
     pub fn run(&mut self) {
         let question = self.question();
-        self.found = None;
+        self.report = None;
         self.runner.ask(question);
     }
 
     fn question(&self) -> StudyQuestion {
         let study = self.name.clone();
-        let own = self.file();
+        let edited = self.file();
         let others = self
             .files
             .iter()
             .filter(|(name, _)| *name != study)
             .cloned();
-        let files = others.chain([own]).collect();
+        let files = others.chain([edited]).collect();
         StudyQuestion { study, files }
     }
 }

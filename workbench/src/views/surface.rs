@@ -75,12 +75,12 @@ impl View {
 
     /// What lies at a place of the screen, in mm.
     pub fn position(&self, on_screen: Pos2) -> [f64; 2] {
-        self.way(on_screen - self.origin)
+        self.vector(on_screen - self.origin)
     }
 
     /// What a way on the screen is in mm.
-    pub fn way(&self, on_screen: eframe::egui::Vec2) -> [f64; 2] {
-        [on_screen.x, -on_screen.y].map(|way| f64::from(way / self.scale))
+    pub fn vector(&self, on_screen: eframe::egui::Vec2) -> [f64; 2] {
+        [on_screen.x, -on_screen.y].map(|length| f64::from(length / self.scale))
     }
 }
 
@@ -135,8 +135,8 @@ mod tests {
     fn a_way_on_the_screen_is_the_way_of_the_places() {
         let screen = Rect::from_min_max(pos2(10.0, 20.0), pos2(310.0, 120.0));
         let view = View::fit([[0.0, 0.0], [150.0, 40.0]], screen);
-        let way = view.at([30.0, 20.0]) - view.at([20.0, 15.0]);
-        let [x, y] = view.way(way);
+        let arrow = view.at([30.0, 20.0]) - view.at([20.0, 15.0]);
+        let [x, y] = view.vector(arrow);
         assert!((x - 10.0).abs() < 1e-4 && (y - 5.0).abs() < 1e-4);
         let [x, y] = view.position(view.at([30.0, 20.0]));
         assert!((x - 30.0).abs() < 1e-4 && (y - 20.0).abs() < 1e-4);

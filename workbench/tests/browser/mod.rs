@@ -116,7 +116,7 @@ impl Browser {
             "Page.navigate",
             &json!({ "url": format!("http://127.0.0.1:{port}/{rest}") }),
         );
-        browser.until(|told| told.is_object());
+        browser.until(|state| state.is_object());
         (browser.loaded, browser.loaded_at) = (begun.elapsed(), Instant::now());
         browser
     }
@@ -140,9 +140,9 @@ impl Browser {
     #[track_caller]
     pub fn show(&mut self, size: [u32; 2], light: bool) {
         self.set(size, light);
-        self.until(|told| {
-            let drawn = [0, 1].map(|axis| told["size"][axis].as_f64().map(|side| side as u32));
-            drawn == size.map(Some) && told["dark"] == json!(!light)
+        self.until(|state| {
+            let drawn = [0, 1].map(|axis| state["size"][axis].as_f64().map(|side| side as u32));
+            drawn == size.map(Some) && state["dark"] == json!(!light)
         });
     }
 
@@ -180,11 +180,11 @@ impl Browser {
     }
 
     fn evaluate(&mut self, script: &str) -> Value {
-        let found = self.call(
+        let reply = self.call(
             "Runtime.evaluate",
             &json!({ "expression": script, "returnByValue": true }),
         );
-        found["result"]["value"].clone()
+        reply["result"]["value"].clone()
     }
 
     /// What the page tells, as soon as something holds of it.
@@ -198,13 +198,13 @@ impl Browser {
     pub fn until_within(&mut self, patience: Duration, holds: impl Fn(&Value) -> bool) -> Value {
         let begun = Instant::now();
         loop {
-            let told = self.evaluate("window.gelbench ? window.gelbench.told() : null");
-            if told.is_object() && holds(&told) {
-                return told;
+            let state = self.evaluate("window.gelbench ? window.gelbench.told() : null");
+            if state.is_object() && holds(&state) {
+                return state;
             }
             if begun.elapsed() > patience {
                 let page = self.evaluate("document.body.innerText");
-                panic!("it does not come about: {told}; the page says {page}");
+                panic!("it does not come about: {state}; the page says {page}");
             }
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -285,7 +285,7 @@ impl Browser {
             for aside in [1.0, 0.0] {
                 let drawn = self.until(|_| true)["drawn"].as_u64();
                 self.mouse("mouseMoved", [at[0] + aside, at[1]]);
-                self.until(|told| told["drawn"].as_u64() > drawn);
+                self.until(|state| state["drawn"].as_u64() > drawn);
             }
             let still = self.position(name);
             if still == at {
@@ -298,8 +298,8 @@ impl Browser {
 
     #[track_caller]
     fn position(&mut self, name: &str) -> [f64; 2] {
-        let told = self.until(|told| told["places"][name].is_array());
-        [0, 1].map(|axis| told["places"][name][axis].as_f64().expect("a place"))
+        let state = self.until(|state| state["places"][name].is_array());
+        [0, 1].map(|axis| state["places"][name][axis].as_f64().expect("a place"))
     }
 
     /// Presses a key.

@@ -33,13 +33,13 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         Some("wasm") => "application/wasm",
         _ => "application/octet-stream",
     };
-    let found = std::fs::read(folder.join(name));
-    let status = if found.is_ok() {
+    let content = std::fs::read(folder.join(name));
+    let status = if content.is_ok() {
         "200 OK"
     } else {
         "404 Not Found"
     };
-    let body = found.unwrap_or_default();
+    let body = content.unwrap_or_default();
     write!(
         stream,
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n",

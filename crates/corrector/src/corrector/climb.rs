@@ -18,7 +18,7 @@ use crate::multigrid::{Multigrid, NotPositiveDefinite};
 use crate::problem::ClampedPlate;
 
 mod ascent;
-mod fall;
+mod correction_history;
 mod forces;
 mod grid;
 mod interactive;
@@ -26,6 +26,7 @@ mod level;
 mod load_path;
 mod mesh;
 mod multipliers;
+mod provenance;
 mod ratios;
 mod sheet;
 mod start;
@@ -33,17 +34,16 @@ mod sweep;
 mod tangents;
 #[cfg(test)]
 mod tests;
-mod way;
 
 pub use crate::problem::RigidMotion;
-use fall::Fall;
+use correction_history::CorrectionHistory;
 pub use grid::{Field, Grid};
 pub use interactive::{Grips, Interactive};
 use level::{Ending, Level};
 pub use mesh::between_nodes;
+pub use provenance::{Provenance, Start};
 pub(super) use ratios::{Ratios, geometric_tail};
 use sheet::{Inverted, Sheet};
-pub use way::{Start, Way};
 
 /// Accuracy of the climb.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +86,7 @@ pub struct ClimbSolution {
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
     /// The way to the field.
-    pub way: Way,
+    pub provenance: Provenance,
 }
 
 /// A plate's grids, ready to correct at any stretch.
@@ -215,35 +215,39 @@ impl<'a> Climb<'a> {
         index: usize,
         field: &mut Field,
         enough: &dyn Fn(f64, f64) -> bool,
-    ) -> Result<Fall, SolveFault> {
+    ) -> Result<CorrectionHistory, SolveFault> {
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
-        let mut whole: Option<Fall> = None;
+        let mut history: Option<CorrectionHistory> = None;
         self.check_operators()?;
         for _ in 0..LINEARISATIONS {
             let level = &mut self.levels[index];
             level
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
-            let first = whole.as_ref().map(Fall::first);
+            let first = history.as_ref().map(CorrectionHistory::first);
             let ending = Ending {
                 most,
                 weakest: self.weakest,
-                enough: &|own, left| enough(first.unwrap_or(own), left),
+                enough: &|first_here, remaining_error| {
+                    enough(first.unwrap_or(first_here), remaining_error)
+                },
             };
             let mut reached = level
                 .iterate(sheet, field, &mut self.multigrid, &ending)
                 .map_err(|Inverted| inverted())?;
-            if let Some(whole) = whole.take() {
-                reached = whole.followed_by(reached);
+            if let Some(history) = history.take() {
+                reached = history.followed_by(reached);
             }
-            if enough(reached.first(), reached.left()) {
+            if enough(reached.first(), reached.remaining_error()) {
                 return Ok(reached);
             }
-            whole = Some(reached);
+            history = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.left() / whole.first()),
+            residual: history.map_or(f64::NAN, |history| {
+                history.remaining_error() / history.first()
+            }),
             tolerance: self.settings.tolerance,
         })
     }

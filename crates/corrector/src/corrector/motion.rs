@@ -136,18 +136,18 @@ impl<'a> EquationOfMotion<'a> {
             let first = smoothed.len();
             let rest = count - first;
             // A remainder of one or two instants would have no equation.
-            let own = if rest < instants + 3 { rest } else { instants };
+            let count = if rest < instants + 3 { rest } else { instants };
             let stacked = |fields: &[Vec<f64>]| -> Vec<f64> {
-                fields[first..first + own]
+                fields[first..first + count]
                     .iter()
                     .flat_map(|field| self.free(field))
                     .collect()
             };
-            let size = own * self.assembly.free().len();
+            let size = count * self.assembly.free().len();
             let condition = StackedEquations {
                 equation: self,
                 first,
-                instants: own,
+                instants: count,
             };
             let corrector = Corrector::new(vec![Box::new(condition)], vec![1.0; size], settings);
             let correction = corrector.correct(&stacked(data), &stacked(start))?;
@@ -155,7 +155,7 @@ impl<'a> EquationOfMotion<'a> {
                 .field()
                 .chunks_exact(self.assembly.free().len())
                 .enumerate();
-            smoothed.extend(fields.map(|(i, field)| self.whole(first + i, field)));
+            smoothed.extend(fields.map(|(i, field)| self.all_unknowns(first + i, field)));
         }
         Ok(smoothed)
     }
@@ -170,7 +170,7 @@ impl<'a> EquationOfMotion<'a> {
     }
 
     /// The whole field of an instant from its free unknowns.
-    fn whole(&self, instant: usize, free: &[f64]) -> Vec<f64> {
+    fn all_unknowns(&self, instant: usize, free: &[f64]) -> Vec<f64> {
         let size = self.motion.energy.unknowns();
         let (mut field, mut rate, mut second) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
         let time = self.time(instant);
@@ -187,7 +187,7 @@ impl<'a> EquationOfMotion<'a> {
         let numbered: Vec<_> = states.iter().enumerate().collect();
         let fields: Vec<Vec<f64>> = numbered
             .par_iter()
-            .map(|(i, state)| self.whole(first + i, state))
+            .map(|(i, state)| self.all_unknowns(first + i, state))
             .collect();
         let frames = fields.par_iter().enumerate();
         let frames = frames
@@ -268,8 +268,9 @@ impl<'a> EquationOfMotion<'a> {
     fn value(&self, row: usize, interval: &Interval, states: &[Vec<f64>]) -> Vec<f64> {
         let mut sum = vec![0.0; self.assembly.free().len()];
         for (instant, inertia, elastic) in self.terms(row) {
-            let own = states[instant].iter().zip(&interval.frames[instant].force);
-            for ((sum, unknown), (u, force)) in sum.iter_mut().zip(self.assembly.free()).zip(own) {
+            let pairs = states[instant].iter().zip(&interval.frames[instant].force);
+            for ((sum, unknown), (u, force)) in sum.iter_mut().zip(self.assembly.free()).zip(pairs)
+            {
                 *sum += inertia * self.inertia(*unknown) * u + elastic * force;
             }
         }
@@ -282,7 +283,7 @@ impl<'a> EquationOfMotion<'a> {
     /// ∂F/∂u of a row with respect to one of its instants, on the pattern of the stiffness: symmetric.
     fn block(&self, row: usize, instant: usize, interval: &Interval) -> Vec<f64> {
         let mut terms = self.terms(row).into_iter();
-        let Some((_, inertia, elastic)) = terms.find(|own| own.0 == instant) else {
+        let Some((_, inertia, elastic)) = terms.find(|term| term.0 == instant) else {
             return vec![0.0; self.assembly.pattern().entries()];
         };
         let mut values: Vec<f64> = interval.frames[instant]

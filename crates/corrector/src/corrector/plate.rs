@@ -6,7 +6,7 @@
 //! | T: grips | on the short sides | known displacement in mm | η in mm |
 //! | T: traction-free edges | on the long sides, without corners | balance of forces in N | η in mm²/N |
 
-use super::climb::{Climb, Way};
+use super::climb::{Climb, Provenance};
 use super::condition::{Condition, Equilibrium, Linear};
 pub use super::specimen::EQUILIBRIUM;
 use super::specimen::{CorrectedField, correct_by, state_at};
@@ -53,7 +53,7 @@ pub struct CorrectedState {
     /// The multipliers, condition after condition.
     pub multipliers: Vec<Multipliers>,
     /// The way of the climb to the field; `None` where the method was direct.
-    pub way: Option<Way>,
+    pub provenance: Option<Provenance>,
 }
 
 /// The difference scheme of a plate on the nodes of a lattice, ready to correct fields on them.
@@ -206,7 +206,7 @@ impl<'a> PlateCorrector<'a> {
         stretch: f64,
     ) -> Result<CorrectedState, Error> {
         let climbed = climb.correct(stretch)?;
-        let way = climbed.way.clone();
+        let provenance = climbed.provenance.clone();
         let all = climb.multipliers(data, &climbed, stretch)?;
         let of_condition = |condition: &dyn Condition| {
             let unknowns = condition.unknowns().unwrap_or_default();
@@ -230,7 +230,7 @@ impl<'a> PlateCorrector<'a> {
         corrected.measures.force = climbed.force;
         Ok(CorrectedState {
             multipliers,
-            way: Some(way),
+            provenance: Some(provenance),
             ..corrected
         })
     }
@@ -242,7 +242,7 @@ impl<'a> PlateCorrector<'a> {
             state,
             steps: Vec::new(),
             multipliers: Vec::new(),
-            way: None,
+            provenance: None,
         }
     }
 }

@@ -76,16 +76,16 @@ impl<const NODES: usize> Rule<NODES> {
 
 /// Value and derivative of each node's polynomial, which is one there and zero at the other nodes.
 fn lagrange<const NODES: usize>(nodes: &[f64], position: f64) -> [[f64; 2]; NODES] {
-    std::array::from_fn(|own| {
-        let others = || (0..NODES).filter(move |other| *other != own);
-        let factor = |other: usize| 1.0 / (nodes[own] - nodes[other]);
+    std::array::from_fn(|node| {
+        let others = || (0..NODES).filter(move |other| *other != node);
+        let factor = |other: usize| 1.0 / (nodes[node] - nodes[other]);
         let without = |left_out: usize| -> f64 {
             let kept = others().filter(|other| *other != left_out);
             kept.map(|other| (position - nodes[other]) * factor(other))
                 .product()
         };
         let slope = others().map(|other| factor(other) * without(other)).sum();
-        [without(own), slope]
+        [without(node), slope]
     })
 }
 

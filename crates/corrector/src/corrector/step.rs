@@ -116,7 +116,11 @@ impl Corrector<'_> {
             }
             // The linearised conditions ask for a part of the step in proportion to its length only.
             let asked = merit.system.values.iter().map(|c| (1.0 - length) * c);
-            let excess: Vec<f64> = values.iter().zip(asked).map(|(c, own)| c - own).collect();
+            let excess: Vec<f64> = values
+                .iter()
+                .zip(asked)
+                .map(|(c, required)| c - required)
+                .collect();
             let back = factor.project(&excess, &vec![0.0; field.len()]).ok()?;
             let returned = moved(&field, 1.0, &back.step);
             let next = self.values(&returned).ok()?;
@@ -171,9 +175,9 @@ impl Corrector<'_> {
         let mut rows = vec![Vec::new(); field.len()];
         let (mut first, mut any) = (0, false);
         for condition in &self.conditions {
-            let own = &multipliers[first..first + condition.rows()];
+            let multipliers_of_condition = &multipliers[first..first + condition.rows()];
             first += condition.rows();
-            if let Some(curvature) = condition.curvature(field, own).ok()? {
+            if let Some(curvature) = condition.curvature(field, multipliers_of_condition).ok()? {
                 any = true;
                 for (row, entries) in rows.iter_mut().enumerate() {
                     entries.extend_from_slice(curvature.row(row));

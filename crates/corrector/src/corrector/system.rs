@@ -133,7 +133,8 @@ impl<'a> Corrector<'a> {
     /// Names the rows that depend on each other.
     pub(super) fn dependent(&self, system: &System) -> SolveFault {
         const MOST_NAMES: usize = 8;
-        let Some(found) = dependence::find(&system.jacobian, &system.values, system.size) else {
+        let Some(dependent) = dependence::find(&system.jacobian, &system.values, system.size)
+        else {
             return SolveFault::Singular;
         };
         let mut names = Vec::new();
@@ -153,11 +154,11 @@ impl<'a> Corrector<'a> {
                     }),
             );
         }
-        let rows = found.rows.iter().take(MOST_NAMES);
+        let rows = dependent.rows.iter().take(MOST_NAMES);
         SolveFault::Dependent {
             rows: rows.filter_map(|row| names.get(*row).cloned()).collect(),
-            more: found.rows.len().saturating_sub(MOST_NAMES),
-            contradictory: found.contradictory,
+            more: dependent.rows.len().saturating_sub(MOST_NAMES),
+            contradictory: dependent.contradictory,
         }
     }
 

@@ -72,16 +72,16 @@ fn a_corrected_field_is_stable() {
     };
     assert!(correct(-0.1).is_ok());
     assert!(correct(0.3).is_ok());
-    let found = correct(-0.4).map(|found| found.measures.force);
+    let corrected = correct(-0.4).map(|corrected| corrected.measures.force);
     assert!(
         matches!(
-            found,
+            corrected,
             Err(Error::Solve {
                 fault: SolveFault::NotPositiveDefinite,
                 ..
             })
         ),
-        "{found:?}"
+        "{corrected:?}"
     );
 }
 
@@ -194,10 +194,10 @@ fn multipliers_are_derivatives_of_the_minimum_by_the_right_hand_side() {
             let row = inner.rows() / 2;
             conditions.insert(0, Box::new(Offset { inner, row, offset }));
             let general = Corrector::new(conditions, vec![1.0; data.len()], SETTINGS);
-            let found = general.correct(data, data).unwrap();
-            let distance = difference(found.field(), data);
+            let corrected = general.correct(data, data).unwrap();
+            let distance = difference(corrected.field(), data);
             let square: f64 = distance.iter().map(|d| d * d).sum();
-            (0.5 * square, found.multipliers[0].values[row])
+            (0.5 * square, corrected.multipliers[0].values[row])
         };
         let (step, (_, multiplier)) = (1e-4, minimum(0.0));
         let slope = (minimum(step).0 - minimum(-step).0) / (2.0 * step);

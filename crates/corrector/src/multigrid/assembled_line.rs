@@ -36,21 +36,21 @@ impl NullaryFnOnce for AssembleLine<'_> {
             stride,
             nodes,
         } = self;
-        let beside = Beside { left, right, nodes };
+        let adjacent = Beside { left, right, nodes };
         let mut arrays = target.chunks_exact_mut(stride);
         let mut next = || &mut arrays.next().expect("an array a coefficient")[1..=nodes];
         for numbers in SYMMETRIC {
-            beside.own(numbers, next());
+            adjacent.diagonal(numbers, next());
         }
         for numbers in FULL {
-            beside.north(numbers, next());
+            adjacent.north(numbers, next());
         }
         for numbers in FULL {
-            beside.east(numbers, next());
+            adjacent.east(numbers, next());
         }
         for above in [true, false] {
             for numbers in SYMMETRIC {
-                beside.corner(numbers, above, next());
+                adjacent.corner(numbers, above, next());
             }
         }
         invert(target, stride, nodes);
@@ -92,7 +92,7 @@ impl<'a> Beside<'a> {
 
     /// Own block, symmetric: Σ (P + Q)/3 + s (R + Rᵀ), s = sx sy.
     #[inline(always)]
-    fn own(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
+    fn diagonal(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
         let ((pa, pb), (pc, pd)) = (self.left(p), self.right(p));
         let ((qa, qb), (qc, qd)) = (self.left(q), self.right(q));
         let ((ra, rb), (rc, rd)) = (self.left(r), self.right(r));
@@ -150,8 +150,8 @@ impl<'a> Beside<'a> {
 #[inline(always)]
 fn invert(target: &mut [f32], stride: usize, nodes: usize) {
     let (blocks, inverses) = target.split_at_mut(INVERSE[0] * stride);
-    let own = |k: usize| &blocks[k * stride + 1..][..nodes];
-    let (a, b, c) = (own(0), own(1), own(2));
+    let diagonal = |k: usize| &blocks[k * stride + 1..][..nodes];
+    let (a, b, c) = (diagonal(0), diagonal(1), diagonal(2));
     let mut arrays = inverses.chunks_exact_mut(stride);
     let mut next = || &mut arrays.next().expect("three arrays")[1..=nodes];
     let (first, second, third) = (next(), next(), next());

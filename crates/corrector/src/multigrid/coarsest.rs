@@ -106,9 +106,9 @@ impl Factor {
             let first = self.first(i);
             for j in first..=i {
                 let begin = self.first(j).max(first);
-                let (own, other) = (self.row(i, begin), self.row(j, begin));
+                let (row, other) = (self.row(i, begin), self.row(j, begin));
                 let known = j - begin;
-                let rest = own[known] - dot(&own[..known], &other[..known]);
+                let rest = row[known] - dot(&row[..known], &other[..known]);
                 let entry = match i == j {
                     true if rest > 0.0 => rest.sqrt(),
                     true => return false,
@@ -157,9 +157,9 @@ impl Factor {
             let row = self.row(i, first);
             let known = i - first;
             b[i] /= row[known];
-            let own = b[i];
+            let pivot = b[i];
             for (b, entry) in b[first..i].iter_mut().zip(row) {
-                *b -= entry * own;
+                *b -= entry * pivot;
             }
         }
     }

@@ -95,28 +95,30 @@ impl Multigrid {
 
     fn descend(&mut self, index: usize) {
         let (coarser, finer) = self.levels.split_at_mut(index);
-        let own = &mut finer[0];
-        let (Some(transfer), Some(below)) = (&own.transfer, coarser.last_mut()) else {
+        let level = &mut finer[0];
+        let (Some(transfer), Some(below)) = (&level.transfer, coarser.last_mut()) else {
             let factor = self.coarsest.as_mut();
             let factor = factor.expect("the coarsest grid has a factor");
-            factor.solve(&own.b, &mut own.x);
+            factor.solve(&level.b, &mut level.x);
             return;
         };
-        own.x.clear();
-        let is_held = |line| own.lines.holds(line);
-        (own.stencil).smooth(&mut own.x, &own.b, is_held, Sweep::DownFromZero);
-        own.lines.factorise(&own.stencil);
-        (own.lines).smooth(&own.stencil, &mut own.x, &own.b, false);
-        own.stencil.residual(&own.x, &own.b, &mut own.r);
-        transfer.restrict(&own.r, &mut below.b);
+        level.x.clear();
+        let is_held = |line| level.lines.holds(line);
+        (level.stencil).smooth(&mut level.x, &level.b, is_held, Sweep::DownFromZero);
+        level.lines.factorise(&level.stencil);
+        (level.lines).smooth(&level.stencil, &mut level.x, &level.b, false);
+        level.stencil.residual(&level.x, &level.b, &mut level.r);
+        transfer.restrict(&level.r, &mut below.b);
         self.descend(index - 1);
         let (coarser, finer) = self.levels.split_at_mut(index);
-        let own = &mut finer[0];
-        if let Some(transfer) = &own.transfer {
-            transfer.prolong(&coarser[index - 1].x, &mut own.x);
+        let level = &mut finer[0];
+        if let Some(transfer) = &level.transfer {
+            transfer.prolong(&coarser[index - 1].x, &mut level.x);
         }
-        (own.lines).smooth(&own.stencil, &mut own.x, &own.b, true);
-        let is_held = |line| own.lines.holds(line);
-        own.stencil.smooth(&mut own.x, &own.b, is_held, Sweep::Up);
+        (level.lines).smooth(&level.stencil, &mut level.x, &level.b, true);
+        let is_held = |line| level.lines.holds(line);
+        level
+            .stencil
+            .smooth(&mut level.x, &level.b, is_held, Sweep::Up);
     }
 }

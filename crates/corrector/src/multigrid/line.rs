@@ -77,7 +77,7 @@ fn subtract<S: Simd>(
 fn subtract_beside<S: Simd>(
     simd: S,
     r: [S::f32s; 2],
-    [before, own]: [LineStencil; 2],
+    [before, current]: [LineStencil; 2],
     [left, right]: [Pair; 2],
     position: usize,
 ) -> [S::f32s; 2] {
@@ -85,19 +85,19 @@ fn subtract_beside<S: Simd>(
     let r = subtract(
         simd,
         r,
-        own.block::<S>(EAST, middle),
+        current.block::<S>(EAST, middle),
         load_pair::<S>(right, middle),
     );
     let r = subtract(
         simd,
         r,
-        own.block::<S>(NORTH_EAST, middle),
+        current.block::<S>(NORTH_EAST, middle),
         load_pair::<S>(right, position + 2),
     );
     let r = subtract(
         simd,
         r,
-        own.block::<S>(SOUTH_EAST, middle),
+        current.block::<S>(SOUTH_EAST, middle),
         load_pair::<S>(right, position),
     );
     let r = subtract(
@@ -125,20 +125,20 @@ fn subtract_beside<S: Simd>(
 fn subtract_along<S: Simd>(
     simd: S,
     r: [S::f32s; 2],
-    own: LineStencil,
+    current: LineStencil,
     x: Pair,
     position: usize,
 ) -> [S::f32s; 2] {
     let r = subtract(
         simd,
         r,
-        own.block::<S>(NORTH, position + 1),
+        current.block::<S>(NORTH, position + 1),
         load_pair::<S>(x, position + 2),
     );
     subtract(
         simd,
         r,
-        own.block::<S>(transposed(NORTH), position),
+        current.block::<S>(transposed(NORTH), position),
         load_pair::<S>(x, position),
     )
 }
@@ -147,22 +147,22 @@ fn subtract_along<S: Simd>(
 #[inline(always)]
 pub fn residual<S: Simd>(
     simd: S,
-    [before, own]: [LineStencil; 2],
+    [before, current]: [LineStencil; 2],
     [left, middle, right]: [Pair; 3],
     b: Pair,
     position: usize,
 ) -> [S::f32s; 2] {
     let b = load_pair::<S>(b, position + 1);
-    let r = subtract_beside(simd, b, [before, own], [left, right], position);
-    let r = subtract_along(simd, r, own, middle, position);
-    let block = own.block::<S>(ITSELF, position + 1);
+    let r = subtract_beside(simd, b, [before, current], [left, right], position);
+    let r = subtract_along(simd, r, current, middle, position);
+    let block = current.block::<S>(ITSELF, position + 1);
     subtract(simd, r, block, load_pair::<S>(middle, position + 1))
 }
 
 /// r = b − K x on a line.
 pub struct LineResidual<'a> {
     pub before: LineStencil<'a>,
-    pub own: LineStencil<'a>,
+    pub current: LineStencil<'a>,
     pub x: [Pair<'a>; 3],
     pub b: Pair<'a>,
     pub r_x: &'a mut [f32],
@@ -176,7 +176,7 @@ impl WithSimd for LineResidual<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         for position in (0..self.r_x.len() - 2).step_by(S::F32_LANES) {
             let middle = position + 1;
-            let stencils = [self.before, self.own];
+            let stencils = [self.before, self.current];
             let [r_x, r_y] = residual(simd, stencils, self.x, self.b, position);
             store::<S>(self.r_x, middle, r_x);
             store::<S>(self.r_y, middle, r_y);
@@ -187,9 +187,9 @@ impl WithSimd for LineResidual<'_> {
 /// Gauss–Seidel on a line, in two colours.
 pub struct SmoothLine<'a> {
     pub before: LineStencil<'a>,
-    pub own: LineStencil<'a>,
+    pub current: LineStencil<'a>,
     /// The lines before and after; none where they are zero.
-    pub beside: Option<[Pair<'a>; 2]>,
+    pub adjacent: Option<[Pair<'a>; 2]>,
     pub b: Pair<'a>,
     pub x_x: &'a mut [f32],
     pub x_y: &'a mut [f32],
@@ -200,13 +200,13 @@ pub struct SmoothLine<'a> {
 
 /// One at the nodes of a colour, zero at the others, from a place that is even.
 pub const OWN: [[f32; VECTOR]; 2] = {
-    let mut own = [[0.0; VECTOR]; 2];
+    let mut current = [[0.0; VECTOR]; 2];
     let mut position = 0;
     while position < VECTOR {
-        own[position % 2][position] = 1.0;
+        current[position % 2][position] = 1.0;
         position += 1;
     }
-    own
+    current
 };
 
 impl WithSimd for SmoothLine<'_> {
@@ -220,23 +220,25 @@ impl WithSimd for SmoothLine<'_> {
         let [g_x, g_y] = self.scratch;
         for position in (0..nodes).step_by(S::F32_LANES) {
             let b = load_pair::<S>(self.b, position + 1);
-            let [x, y] = match self.beside {
-                Some(beside) => subtract_beside(simd, b, [self.before, self.own], beside, position),
+            let [x, y] = match self.adjacent {
+                Some(adjacent) => {
+                    subtract_beside(simd, b, [self.before, self.current], adjacent, position)
+                }
                 None => b,
             };
             store::<S>(g_x, position, x);
             store::<S>(g_y, position, y);
         }
         for colour in [self.first, 1 - self.first] {
-            let own = load::<S>(&OWN[colour], 0);
+            let current = load::<S>(&OWN[colour], 0);
             let other = load::<S>(&OWN[1 - colour], 0);
             for position in (0..nodes).step_by(S::F32_LANES) {
                 let g = [load::<S>(g_x, position), load::<S>(g_y, position)];
-                let r = subtract_along(simd, g, self.own, [self.x_x, self.x_y], position);
-                let [a, b, c, d] = self.own.block::<S>(INVERSE, position + 1);
+                let r = subtract_along(simd, g, self.current, [self.x_x, self.x_y], position);
+                let [a, b, c, d] = self.current.block::<S>(INVERSE, position + 1);
                 let [x, y] = load_pair::<S>([self.x_x, self.x_y], position + 1);
-                let x = combine(simd, [own, other], [combine(simd, [a, b], r), x]);
-                let y = combine(simd, [own, other], [combine(simd, [c, d], r), y]);
+                let x = combine(simd, [current, other], [combine(simd, [a, b], r), x]);
+                let y = combine(simd, [current, other], [combine(simd, [c, d], r), y]);
                 store::<S>(self.x_x, position + 1, x);
                 store::<S>(self.x_y, position + 1, y);
             }

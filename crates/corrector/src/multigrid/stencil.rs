@@ -107,7 +107,7 @@ impl Stencil {
         r.for_each_free_line(|line, r_x, r_y| {
             Arch::new().dispatch(LineResidual {
                 before: self.line(line - 1),
-                own: self.line(line),
+                current: self.line(line),
                 x: [x.line(line - 1), x.line(line), x.line(line + 1)],
                 b: b.line(line),
                 r_x,
@@ -128,7 +128,7 @@ impl Stencil {
         let lines = self.lines;
         let down = sweep == Sweep::DownFromZero;
         for parity in if down { [1, 0] } else { [0, 1] } {
-            x.for_each_of_parity(parity, |line, beside: Neighbours, x_x, x_y| {
+            x.for_each_of_parity(parity, |line, adjacent: Neighbours, x_x, x_y| {
                 if left_out(line) {
                     return;
                 }
@@ -138,9 +138,9 @@ impl Stencil {
                     }
                     Arch::new().dispatch(SmoothLine {
                         before: self.line(line - 1),
-                        own: self.line(line),
-                        beside: (!down || parity == 0)
-                            .then(|| [beside.line(line - 1), beside.line(line + 1)]),
+                        current: self.line(line),
+                        adjacent: (!down || parity == 0)
+                            .then(|| [adjacent.line(line - 1), adjacent.line(line + 1)]),
                         b: b.line(line),
                         x_x,
                         x_y,

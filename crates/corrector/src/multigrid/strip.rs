@@ -210,9 +210,9 @@ impl Strip {
         let lanes = numbers.chunks_exact_mut(LANES);
         match self.axis {
             Axis::X => {
-                let own = stencil.line(position);
+                let line_stencil = stencil.line(position);
                 for (k, lanes) in [0, 1, 2, 7, 8, 9, 10].into_iter().zip(lanes) {
-                    lanes.copy_from_slice(&own.array(k)[1 + batch * LANES..][..LANES]);
+                    lanes.copy_from_slice(&line_stencil.array(k)[1 + batch * LANES..][..LANES]);
                 }
             }
             Axis::Y => {
@@ -272,9 +272,12 @@ impl Strip {
                     let batches = x[1..].chunks_exact_mut(LANES).enumerate();
                     for (batch, x) in batches {
                         let position = batch * positions + line - start;
-                        let own = &corrections[(2 * position + component) * LANES..][..LANES];
-                        for ((x, correction), own) in x.iter_mut().zip(own).zip(&OWN[colour]) {
-                            *x += own * correction;
+                        let correction_of_line =
+                            &corrections[(2 * position + component) * LANES..][..LANES];
+                        for ((x, correction), correction_of_line) in
+                            x.iter_mut().zip(correction_of_line).zip(&OWN[colour])
+                        {
+                            *x += correction_of_line * correction;
                         }
                     }
                 }
@@ -283,9 +286,11 @@ impl Strip {
                 let (batch, lane) = (line / 2 / LANES, line / 2 % LANES);
                 for (component, x) in [x_x, x_y].into_iter().enumerate() {
                     let first = 2 * batch * positions + component;
-                    let own = corrections[first * LANES + lane..].iter().step_by(PAIR);
+                    let correction_of_line =
+                        corrections[first * LANES + lane..].iter().step_by(PAIR);
                     let x = x[start + 1..=self.range.end].iter_mut();
-                    x.zip(own).for_each(|(x, correction)| *x += correction);
+                    x.zip(correction_of_line)
+                        .for_each(|(x, correction)| *x += correction);
                 }
             }),
         }

@@ -120,8 +120,8 @@ fn the_coarsest_grid_is_solved() {
         *multigrid.right_hand_side(0) = b.clone();
         let (x, mut r) = (multigrid.cycle(0).clone(), Vector::zeros(lines));
         multigrid.stencil(0).residual(&x, &b, &mut r);
-        let left = (product(&r, &r) / product(&b, &b)).sqrt();
-        assert!(left < 1e-5, "{size:?}: {left}");
+        let remaining = (product(&r, &r) / product(&b, &b)).sqrt();
+        assert!(remaining < 1e-5, "{size:?}: {remaining}");
     }
 }
 

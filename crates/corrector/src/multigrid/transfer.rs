@@ -62,10 +62,10 @@ impl Interpolation {
 /// The shares of up to four nodes at a place, by the polynomial through them.
 fn shares(nodes: &[f64], position: f64) -> [f64; 4] {
     let mut shares = [0.0; 4];
-    for (i, (share, own)) in shares.iter_mut().zip(nodes).enumerate() {
+    for (i, (share, node)) in shares.iter_mut().zip(nodes).enumerate() {
         let others = nodes.iter().enumerate().filter(|(other, _)| *other != i);
         *share = others
-            .map(|(_, other)| (position - other) / (own - other))
+            .map(|(_, other)| (position - other) / (node - other))
             .product();
     }
     shares

@@ -30,7 +30,7 @@ impl NullaryFnOnce for Factorise<'_> {
     fn call(self) {
         let mut before: Option<[Lanes; 7]> = None;
         for numbers in self.factors.chunks_exact_mut(FACTOR) {
-            let mut own: [Lanes; 7] = split(numbers);
+            let mut block: [Lanes; 7] = split(numbers);
             for lane in 0..LANES {
                 if let Some([p, q, r, a, b, c, d]) = &before {
                     // S⁻¹ E by columns, then Eᵀ of it.
@@ -42,11 +42,11 @@ impl NullaryFnOnce for Factorise<'_> {
                         p[lane] * b[lane] + q[lane] * d[lane],
                         q[lane] * b[lane] + r[lane] * d[lane],
                     ];
-                    own[0][lane] -= a[lane] * first[0] + c[lane] * first[1];
-                    own[1][lane] -= a[lane] * second[0] + c[lane] * second[1];
-                    own[2][lane] -= b[lane] * second[0] + d[lane] * second[1];
+                    block[0][lane] -= a[lane] * first[0] + c[lane] * first[1];
+                    block[1][lane] -= a[lane] * second[0] + c[lane] * second[1];
+                    block[2][lane] -= b[lane] * second[0] + d[lane] * second[1];
                 }
-                let [a, b, c] = [own[0][lane], own[1][lane], own[2][lane]];
+                let [a, b, c] = [block[0][lane], block[1][lane], block[2][lane]];
                 let determinant = a * c - b * b;
                 // Places beside the grid have no stiffness.
                 let inverse = if determinant == 0.0 {
@@ -54,14 +54,14 @@ impl NullaryFnOnce for Factorise<'_> {
                 } else {
                     1.0 / determinant
                 };
-                own[0][lane] = c * inverse;
-                own[1][lane] = -b * inverse;
-                own[2][lane] = a * inverse;
+                block[0][lane] = c * inverse;
+                block[1][lane] = -b * inverse;
+                block[2][lane] = a * inverse;
             }
-            for (target, own) in numbers.chunks_exact_mut(LANES).zip(&own) {
-                target.copy_from_slice(own);
+            for (target, block) in numbers.chunks_exact_mut(LANES).zip(&block) {
+                target.copy_from_slice(block);
             }
-            before = Some(own);
+            before = Some(block);
         }
     }
 }

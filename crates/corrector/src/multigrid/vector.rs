@@ -125,14 +125,14 @@ impl Vector {
         let [x, y] = &mut self.components;
         let (even_x, odd_x) = x.split_at_mut(even);
         let (even_y, odd_y) = y.split_at_mut(even);
-        let (x, y, beside) = match parity {
+        let (x, y, adjacent) = match parity {
             0 => (even_x, even_y, [&*odd_x, &*odd_y]),
             _ => (odd_x, odd_y, [&*even_x, &*even_y]),
         };
         let neighbours = Neighbours {
             lines,
             parity,
-            values: beside,
+            values: adjacent,
         };
         let last = lines.count - 1;
         let visit = |(position, (x, y)): (usize, (&mut [f32], &mut [f32]))| {

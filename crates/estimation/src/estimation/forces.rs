@@ -43,7 +43,7 @@ impl NearestField<'_> {
     pub fn forces(
         &self,
         reach: f64,
-        own: Option<&MeshError>,
+        mesh_error: Option<&MeshError>,
         law: &[[f64; 2]],
     ) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
@@ -51,8 +51,8 @@ impl NearestField<'_> {
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
             let (grip, row) = self.grip_of(index, axis, &slopes)?;
             let force = dot(&grip.marks, &reactions);
-            let mesh = own.map_or(0.0, |own| {
-                own.forces[index][axis] + dot(&row, own.parameters.as_slice())
+            let mesh = mesh_error.map_or(0.0, |mesh_error| {
+                mesh_error.forces[index][axis] + dot(&row, mesh_error.parameters.as_slice())
             });
             let division = self.equations.bodies[index].division_error(&reactions, axis);
             let by_law = law.get(index).map_or(0.0, |deviations| deviations[axis]);
@@ -71,7 +71,7 @@ impl NearestField<'_> {
     pub(super) fn law_parameters(
         &self,
         reach: f64,
-        own: Option<&MeshError>,
+        mesh_error: Option<&MeshError>,
     ) -> Vec<FoundParameter> {
         let first = self.equations.motion.parameters();
         let regressed = self.equations.task.knowledge.law.iter();
@@ -79,7 +79,7 @@ impl NearestField<'_> {
         let estimate = |(index, parameter): (usize, &Parameter)| {
             let position = first + index;
             let error = self.fit.covariance[(position, position)].max(0.0).sqrt();
-            let mesh = own.map_or(0.0, |own| own.parameters[position]);
+            let mesh = mesh_error.map_or(0.0, |mesh_error| mesh_error.parameters[position]);
             let value = Estimate::new(self.parameters[position], error.hypot(mesh), reach);
             (parameter.key.into(), parameter.unit().into(), value)
         };
@@ -90,37 +90,39 @@ impl NearestField<'_> {
     /// Forces that a parameter of the law follows are no check.
     pub(super) fn force_checks(
         &self,
-        own: Option<&MeshError>,
+        mesh_error: Option<&MeshError>,
         scale: &ScaleChange,
         law: &[[f64; 2]],
     ) -> Result<Vec<ForceCheck>, Error> {
         const REDUNDANT: f64 = 1e-3;
-        let with_all = self.forces(1.0, own, law)?;
+        let with_all = self.forces(1.0, mesh_error, law)?;
         let plain = self.forces(1.0, None, &[])?;
         let mut checks = Vec::new();
         let knowledge = self.equations.task.knowledge;
         for measured in &knowledge.forces {
             let axis = measured.axis;
             let sum = |forces: &[EdgeForce]| {
-                let own = forces.iter().filter(|force| force.edge == measured.edge);
-                own.fold([0.0, 0.0], |[value, square], force| {
+                let on_edge = forces.iter().filter(|force| force.edge == measured.edge);
+                on_edge.fold([0.0, 0.0], |[value, square], force| {
                     let force = &force.force[axis];
                     [value + force.value, square + force.standard_error.powi(2)]
                 })
             };
-            let ([estimated, noise], [_, whole]) = (sum(&plain), sum(&with_all));
+            let ([estimated, noise], [_, complete]) = (sum(&plain), sum(&with_all));
             let variance = measured.standard_deviation.powi(2);
-            let left = if knowledge.forces_are_checks {
+            let variance_of_force = if knowledge.forces_are_checks {
                 variance + noise
             } else {
                 variance - noise
             };
-            if left > REDUNDANT * variance {
+            if variance_of_force > REDUNDANT * variance {
                 let bodies = self.equations.bodies.iter().zip(&scale.forces);
                 let of_edge = bodies.filter(|(body, _)| body.name == measured.edge);
                 let by_scale: f64 = of_edge.map(|(_, change)| change[axis]).sum();
                 let by_scale = knowledge.scale_deviation * by_scale;
-                let spread = (left + (whole - noise).max(0.0)).sqrt().hypot(by_scale);
+                let spread = (variance_of_force + (complete - noise).max(0.0))
+                    .sqrt()
+                    .hypot(by_scale);
                 checks.push(ForceCheck {
                     measured: measured.clone(),
                     estimated,
@@ -161,7 +163,7 @@ impl NearestField<'_> {
                 .map(|(local, weight)| weight * mesh.gradients(cell, local).1 * energy(cell, local))
                 .sum()
         };
-        let whole: f64 = (0..mesh.cell_count()).map(over).sum();
+        let total: f64 = (0..mesh.cell_count()).map(over).sum();
         let free = edges.iter().filter(|edge| !edge.is_loaded());
         let along = |pair: &[usize]| {
             let [a, b] = [mesh.nodes[pair[0]], mesh.nodes[pair[1]]];
@@ -172,6 +174,6 @@ impl NearestField<'_> {
         let around = free
             .flat_map(|edge| edge.segment.nodes.windows(2))
             .map(along);
-        around.sum::<f64>() / whole.max(f64::MIN_POSITIVE)
+        around.sum::<f64>() / total.max(f64::MIN_POSITIVE)
     }
 }

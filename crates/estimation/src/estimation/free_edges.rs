@@ -26,8 +26,8 @@ pub fn search<'a>(
     edges: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     match nearest(task, &edges, MOST_STEPS) {
-        Ok(found) if found.ends_at_gross_errors() => Ok((found, edges)),
-        Ok(found) => from_loaded(task, found, edges),
+        Ok(nearest_field) if nearest_field.ends_at_gross_errors() => Ok((nearest_field, edges)),
+        Ok(nearest_field) => from_loaded(task, nearest_field, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }
 }
@@ -45,8 +45,8 @@ fn nearest<'a>(task: &Task<'a>, edges: &[Edge], most: usize) -> Result<NearestFi
             knowledge: &knowledge,
             ..task.clone()
         };
-        if let Ok(found) = Equations::new(&exact, edges)?.run(most) {
-            return equations.run_near(&found, most);
+        if let Ok(nearest_field) = Equations::new(&exact, edges)?.run(most) {
+            return equations.run_near(&nearest_field, most);
         }
     }
     equations.run(most)
@@ -59,8 +59,8 @@ fn nearest_from<'a>(
     most: usize,
     before: &NearestField,
 ) -> Result<NearestField<'a>, Error> {
-    let found = Equations::new(task, edges)?.run_near(before, most);
-    found.or_else(|_| nearest(task, edges, most))
+    let nearest_field = Equations::new(task, edges)?.run_near(before, most);
+    nearest_field.or_else(|_| nearest(task, edges, most))
 }
 
 /// The edges to be tested, the longest first.
@@ -76,7 +76,7 @@ fn open(edges: &[Edge]) -> Vec<usize> {
 /// Frees edges as long as the data do not contradict it.
 fn from_loaded<'a>(
     task: &Task<'a>,
-    mut found: NearestField<'a>,
+    mut nearest_field: NearestField<'a>,
     mut edges: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     let open = open(&edges);
@@ -87,22 +87,22 @@ fn from_loaded<'a>(
         if !freed.iter().any(Edge::is_loaded) {
             break;
         }
-        if found.is_pulled(index)? {
+        if nearest_field.is_pulled(index)? {
             edges[index].probability = Some(0.0);
             continue;
         }
         // Where no equilibrium with the free edge is found, the edge is not free.
-        let trial = nearest_from(task, &freed, TRIAL_STEPS, &found);
+        let trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
         let probability = trial
             .as_ref()
-            .map_or(0.0, |trial| probability(&found, trial));
+            .map_or(0.0, |trial| probability(&nearest_field, trial));
         edges[index].probability = Some(probability);
         if let (Ok(trial), true) = (trial, probability >= level) {
             edges[index].condition = EdgeCondition::Free;
-            found = trial;
+            nearest_field = trial;
         }
     }
-    settle(task, found, edges)
+    settle(task, nearest_field, edges)
 }
 
 /// Releases edges that are free at first, where the data contradict that.
@@ -116,26 +116,26 @@ fn from_free<'a>(
     for index in &open {
         edges[*index].condition = EdgeCondition::Free;
     }
-    let mut found = nearest(task, &edges, MOST_STEPS)?;
+    let mut nearest_field = nearest(task, &edges, MOST_STEPS)?;
     for index in open {
         let mut released = edges.clone();
         released[index].condition = given[index].condition;
-        let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &found) else {
+        let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &nearest_field) else {
             continue;
         };
-        let probability = probability(&trial, &found);
+        let probability = probability(&trial, &nearest_field);
         if probability < level {
-            (edges, found) = (released, trial);
+            (edges, nearest_field) = (released, trial);
         }
         edges[index].probability = Some(probability);
     }
-    settle(task, found, edges)
+    settle(task, nearest_field, edges)
 }
 
 /// The nearest field with the edges that the data have left loaded as edges of the body.
 fn settle<'a>(
     task: &Task<'a>,
-    found: NearestField<'a>,
+    nearest_field: NearestField<'a>,
     mut edges: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     let before = singular_corners(&edges);
@@ -143,9 +143,12 @@ fn settle<'a>(
         edge.of_body = true;
     }
     if singular_corners(&edges) == before {
-        Ok((found, edges))
+        Ok((nearest_field, edges))
     } else {
-        Ok((nearest_from(task, &edges, MOST_STEPS, &found)?, edges))
+        Ok((
+            nearest_from(task, &edges, MOST_STEPS, &nearest_field)?,
+            edges,
+        ))
     }
 }
 
@@ -168,7 +171,7 @@ impl NearestField<'_> {
         const SURE: f64 = 10.0;
         let forces = self.forces(1.0, None, &[])?;
         let bodies = self.equations.bodies.iter();
-        let own = bodies
+        let force = bodies
             .zip(&forces)
             .find(|(body, _)| body.edges.contains(&index));
         let size = |force: &EdgeForce| force.force[0].value.hypot(force.force[1].value);
@@ -177,7 +180,9 @@ impl NearestField<'_> {
             x.hypot(y)
         };
         let most = forces.iter().map(size).fold(0.0, f64::max);
-        Ok(own.is_some_and(|(_, own)| size(own) > LARGE * most && size(own) > SURE * error(own)))
+        Ok(force.is_some_and(|(_, force)| {
+            size(force) > LARGE * most && size(force) > SURE * error(force)
+        }))
     }
 
     /// Σ w ω r² where every marker is off by a millionth of what they move: data without noise have no more digits.

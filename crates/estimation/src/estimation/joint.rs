@@ -226,12 +226,12 @@ fn frame_outcomes(
             .beginning_at(others.as_ref().unwrap_or(&course.values));
         let outcome = |index: usize| {
             let frame = descent.frames[index];
-            let found = frame.cross_predict(&law, Some(&course.states[index]))?;
+            let prediction = frame.cross_predict(&law, Some(&course.states[index]))?;
             let share = parts[index].information.dot(inverse) / course.values.len() as f64;
-            Ok(frame_outcome(frame, found, share, others.is_some()))
+            Ok(frame_outcome(frame, prediction, share, others.is_some()))
         };
-        let found = members.into_par_iter().map(outcome);
-        outcomes.extend(found.collect::<Result<Vec<FrameOutcome>, Error>>()?);
+        let prediction = members.into_par_iter().map(outcome);
+        outcomes.extend(prediction.collect::<Result<Vec<FrameOutcome>, Error>>()?);
     }
     Ok(outcomes)
 }

@@ -62,49 +62,55 @@ pub struct Judgement {
 /// # Errors
 /// Where the tangent cannot be used to solve systems.
 pub fn judge(
-    found: &mut NearestField,
+    nearest_field: &mut NearestField,
     edges: &[Edge],
-    own: Option<&MeshError>,
+    mesh_error: Option<&MeshError>,
 ) -> Result<Judgement, Error> {
-    let all = released(found, edges, &|_| true);
+    let all = released(nearest_field, edges, &|_| true);
     let (fit, variances) = match &all {
         Some(all) => (&all.fit, &all.variances),
-        None => (&found.fit, &found.variances),
+        None => (&nearest_field.fit, &nearest_field.variances),
     };
-    let sound = soundness(&found.observations().weights, fit, variances);
-    let Some(rows) = Rows::new(found, &sound, own) else {
+    let sound = soundness(&nearest_field.observations().weights, fit, variances);
+    let Some(rows) = Rows::new(nearest_field, &sound, mesh_error) else {
         return Ok(Judgement::default());
     };
-    let granted = found.granted(edges)?;
-    let base = Model::of_search(&rows, found).granting(&rows, &granted);
+    let granted = nearest_field.granted(edges)?;
+    let base = Model::of_search(&rows, nearest_field).granting(&rows, &granted);
     let mut noises = base.noises(&rows);
     let noise = noises.first();
-    let columns = found.alternatives(own)?;
-    let all = all.map(|scored| Model::of_score(&rows, found, &scored).granting(&rows, &granted));
+    let columns = nearest_field.alternatives(mesh_error)?;
+    let all =
+        all.map(|scored| Model::of_score(&rows, nearest_field, &scored).granting(&rows, &granted));
     let basis = Basis {
-        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, own),
+        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, mesh_error),
         rows: &rows,
         base: &base,
     };
     let trials = columns.iter().map(|(alternative, design)| {
-        basis.try_out(found, alternative.clone(), &base.with(&rows, [design]))
+        basis.try_out(
+            nearest_field,
+            alternative.clone(),
+            &base.with(&rows, [design]),
+        )
     });
     let mut trials: Vec<Trial> = trials.collect();
     let together = all
         .as_ref()
-        .map(|model| basis.try_out(found, Alternative::Edges, model));
+        .map(|model| basis.try_out(nearest_field, Alternative::Edges, model));
     let correlation = noise.map(|noise| rows.correlation(noise));
-    let few = few(correlation, found);
+    let few = few(correlation, nearest_field);
     let level = if few.is_some() { STRICT } else { LEVEL };
     let against = improvement(trials.iter().chain(&together), level);
     let mut contradiction = None;
     if against.is_some() {
-        let (of_edges, contradicted) = basis.of_edges(found, edges, &granted, (together, level))?;
+        let (of_edges, contradicted) =
+            basis.of_edges(nearest_field, edges, &granted, (together, level))?;
         trials.extend(of_edges);
         contradiction = contradicted;
     }
     // An alternative that hardly changes the misfit explains nothing.
-    let residual_rms = base.residual_rms(&rows, found);
+    let residual_rms = base.residual_rms(&rows, nearest_field);
     trials.retain(|trial| trial.residual_rms < EXPLAINS * residual_rms);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let answer = answer(against, few, correlation);
@@ -114,10 +120,10 @@ pub fn judge(
     let verdict = Verdict {
         answer,
         correlation,
-        worst: against.and_then(|_| rows.worst(found)),
+        worst: against.and_then(|_| rows.worst(nearest_field)),
         reasons: against.or(few).into_iter().collect(),
         trials,
-        residual_rms: Some(residual_rms).filter(|left| left.is_finite()),
+        residual_rms: Some(residual_rms).filter(|rms| rms.is_finite()),
     };
     Ok(Judgement {
         noises,
@@ -152,27 +158,32 @@ impl Basis<'_> {
     /// beside the trial with all edges released.
     fn of_edges(
         &self,
-        found: &mut NearestField,
+        nearest_field: &mut NearestField,
         edges: &[Edge],
         granted: &[Granted],
         (together, level): (Option<Trial>, f64),
     ) -> Result<(Vec<Trial>, Option<Contradiction>), Error> {
-        let each = self.edge_by_edge(found, edges, granted);
+        let each = self.edge_by_edge(nearest_field, edges, granted);
         let contradiction = contradicted(together.as_ref(), &each, level);
         let mut trials: Vec<Trial> = together.filter(|_| each.len() > 1).into_iter().collect();
         let first = contradiction.iter().find_map(|all| all.edges.first());
         if let Some((name, _)) = first {
-            trials.extend(self.other_conditions(found, edges, granted, name));
+            trials.extend(self.other_conditions(nearest_field, edges, granted, name));
         }
         trials.extend(each);
-        let moved = found.moved_edges(edges)?.into_iter();
-        trials.extend(moved.filter_map(|edge| self.moved(found, edge)));
+        let moved = nearest_field.moved_edges(edges)?.into_iter();
+        trials.extend(moved.filter_map(|edge| self.moved(nearest_field, edge)));
         Ok((trials, contradiction))
     }
 
-    fn try_out(&self, found: &NearestField, alternative: Alternative, model: &Model) -> Trial {
+    fn try_out(
+        &self,
+        nearest_field: &NearestField,
+        alternative: Alternative,
+        model: &Model,
+    ) -> Trial {
         Trial {
-            residual_rms: model.residual_rms(self.rows, found),
+            residual_rms: model.residual_rms(self.rows, nearest_field),
             ..self.reference.test(alternative, model)
         }
     }
@@ -180,15 +191,16 @@ impl Basis<'_> {
     /// What each of the edges with a stated condition explains by itself where it is released.
     fn edge_by_edge(
         &self,
-        found: &NearestField,
+        nearest_field: &NearestField,
         edges: &[Edge],
         granted: &[Granted],
     ) -> Vec<Trial> {
         let names = stated(edges).into_iter();
         let trials = names.filter_map(|name| {
-            let scored = released(found, edges, &|other| other == name)?;
-            let model = Model::of_score(self.rows, found, &scored).granting(self.rows, granted);
-            Some(self.try_out(found, Alternative::Edge(name.to_owned()), &model))
+            let scored = released(nearest_field, edges, &|other| other == name)?;
+            let model =
+                Model::of_score(self.rows, nearest_field, &scored).granting(self.rows, granted);
+            Some(self.try_out(nearest_field, Alternative::Edge(name.to_owned()), &model))
         });
         trials.collect()
     }
@@ -196,26 +208,31 @@ impl Basis<'_> {
     /// What an edge with a stated condition explains with each of those that it may have instead.
     fn other_conditions(
         &self,
-        found: &NearestField,
+        nearest_field: &NearestField,
         edges: &[Edge],
         granted: &[Granted],
         name: &str,
     ) -> Vec<Trial> {
         let trials = OTHER_CONDITIONS.into_iter().filter_map(|condition| {
-            let scored = with_condition(found, edges, condition, &|other| other == name)?;
-            let model = Model::of_score(self.rows, found, &scored).granting(self.rows, granted);
+            let scored = with_condition(nearest_field, edges, condition, &|other| other == name)?;
+            let model =
+                Model::of_score(self.rows, nearest_field, &scored).granting(self.rows, granted);
             let edge = name.to_owned();
             let alternative = Alternative::Condition { edge, condition };
-            Some(self.try_out(found, alternative, &model))
+            Some(self.try_out(nearest_field, alternative, &model))
         });
         trials.collect()
     }
 
     /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
-    fn moved(&self, found: &NearestField, (part, design): MovedEdge) -> Option<Trial> {
+    fn moved(&self, nearest_field: &NearestField, (part, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
         let model = self.base.with(self.rows, [&design]);
-        Some(self.try_out(found, Alternative::MovedEdge { part, outwards }, &model))
+        Some(self.try_out(
+            nearest_field,
+            Alternative::MovedEdge { part, outwards },
+            &model,
+        ))
     }
 }
 
@@ -226,8 +243,9 @@ fn improvement<'a>(trials: impl Iterator<Item = &'a Trial>, level: f64) -> Optio
 }
 
 /// Noise with too few independent values, which is no evidence against the equations.
-fn few(correlation: Option<NoiseCorrelation>, found: &NearestField) -> Option<Reason> {
-    let few = |one: &NoiseCorrelation| 2.0 * one.independent - found.fit.effective < INDEPENDENT;
+fn few(correlation: Option<NoiseCorrelation>, nearest_field: &NearestField) -> Option<Reason> {
+    let few =
+        |one: &NoiseCorrelation| 2.0 * one.independent - nearest_field.fit.effective < INDEPENDENT;
     correlation.filter(few).map(|one| Reason::Few {
         length: one.length,
         independent: one.independent,
@@ -251,13 +269,17 @@ fn is_stated(edge: &Edge) -> bool {
 }
 
 /// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
-fn released(found: &NearestField, edges: &[Edge], goes: &dyn Fn(&str) -> bool) -> Option<Scored> {
-    with_condition(found, edges, EdgeCondition::Unknown, goes)
+fn released(
+    nearest_field: &NearestField,
+    edges: &[Edge],
+    goes: &dyn Fn(&str) -> bool,
+) -> Option<Scored> {
+    with_condition(nearest_field, edges, EdgeCondition::Unknown, goes)
 }
 
 /// The same with another condition of these edges; `None` too where they have it.
 fn with_condition(
-    found: &NearestField,
+    nearest_field: &NearestField,
     edges: &[Edge],
     condition: EdgeCondition,
     goes: &dyn Fn(&str) -> bool,
@@ -271,9 +293,9 @@ fn with_condition(
         }
     }
     let search = any
-        .then(|| Equations::new(&found.equations.task, &relaxed).ok())
+        .then(|| Equations::new(&nearest_field.equations.task, &relaxed).ok())
         .flatten()?;
-    search.score(found).ok()
+    search.score(nearest_field).ok()
 }
 
 fn contradicted(together: Option<&Trial>, each: &[Trial], level: f64) -> Option<Contradiction> {
@@ -325,14 +347,14 @@ impl Rows {
     }
 
     /// The place at which the mean residual of a marker and its neighbours is largest.
-    fn worst(&self, found: &NearestField) -> Option<Worst> {
+    fn worst(&self, nearest_field: &NearestField) -> Option<Worst> {
         const NEIGHBOURS: usize = 8;
         let around = nearest(self.sites.positions(), NEIGHBOURS);
         let mean = |index: usize| {
             let members = around[index].iter().chain([&index]);
             let sum = members.fold([0.0; 2], |sum, one| {
                 let row = 2 * self.chosen[*one];
-                [0, 1].map(|axis| sum[axis] + found.fit.residual[row + axis])
+                [0, 1].map(|axis| sum[axis] + nearest_field.fit.residual[row + axis])
             });
             sum.map(|sum| sum / (around[index].len() + 1) as f64)
         };

@@ -43,9 +43,9 @@ pub fn with_observed_noise<T>(
 ) -> Result<(T, Option<f64>), Error> {
     let mut ratio = None;
     loop {
-        let (found, other) = search(observations)?;
+        let (result, other) = search(observations)?;
         if !observations.take(&other) {
-            return Ok((found, ratio));
+            return Ok((result, ratio));
         }
         ratio = ratio.or(other.ratio);
     }
@@ -55,7 +55,7 @@ pub fn with_observed_noise<T>(
 fn is_sound(marker: &Option<MarkerEstimate>) -> bool {
     marker
         .as_ref()
-        .is_some_and(|own| own.standardised_residual < GROSS)
+        .is_some_and(|marker| marker.standardised_residual < GROSS)
 }
 
 impl OtherNoise {
@@ -106,16 +106,16 @@ impl NearestField<'_> {
         let size = |values: &dyn Fn(usize) -> f64| {
             let all = observations.chosen.iter().enumerate();
             let sound = all.filter(|(_, index)| is_sound(&markers[**index]));
-            let rows = sound.flat_map(|(own, _)| [2 * own, 2 * own + 1]);
+            let rows = sound.flat_map(|(row, _)| [2 * row, 2 * row + 1]);
             let squares = rows.map(|row| observations.weights[row] * values(row).powi(2));
             squares.sum::<f64>().sqrt()
         };
-        let left = size(&|row| self.fit.residual[row]);
-        if left <= ROUNDING * size(&|row| observations.displacements[row / 2][row % 2]) {
+        let residual = size(&|row| self.fit.residual[row]);
+        if residual <= ROUNDING * size(&|row| observations.displacements[row / 2][row % 2]) {
             return true;
         }
         let difference = self.mesh_difference(edges);
-        difference.is_some_and(|own| size(&|row| own.markers[row]) > MUCH * left)
+        difference.is_some_and(|difference| size(&|row| difference.markers[row]) > MUCH * residual)
     }
 
     /// The variation of the markers' noise from place to place; outliers count too, except those that no noise explains.
@@ -125,15 +125,15 @@ impl NearestField<'_> {
             return None;
         }
         let estimates = observations.chosen.iter().map(|index| &markers[*index]);
-        let left = estimates.enumerate().map(|(index, own)| {
-            is_sound(own).then(|| {
+        let residuals = estimates.enumerate().map(|(index, marker)| {
+            is_sound(marker).then(|| {
                 [0, 1].map(|axis| {
                     let row = 2 * index + axis;
                     observations.weights[row].sqrt() * self.fit.residual[row]
                 })
             })
         });
-        Unevenness::found(&observations.positions, &left.collect::<Vec<_>>())
+        Unevenness::found(&observations.positions, &residuals.collect::<Vec<_>>())
     }
 
     /// The ratio of the markers' scatter to their stated noise, from the median of the standardised residuals, where
@@ -188,10 +188,10 @@ impl NearestField<'_> {
             weights: &observations.weights,
             variances: &self.variances,
         };
-        let (own, information) = (&self.fit.covariance, rows.information());
+        let (covariance_before, information) = (&self.fit.covariance, rows.information());
         let widened = judged.noises.iter().map(|noise| {
             let middle = rows.spread(noise, &sites) + &self.fit.held;
-            let covariance = own * middle * own;
+            let covariance = covariance_before * middle * covariance_before;
             (covariance.dot(&information), covariance, noise)
         });
         let (_, covariance, noise) = widened.max_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -25,21 +25,21 @@ impl NearestField<'_> {
     /// The field with all results that follow from it.
     pub fn into_estimate(mut self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
         let mesh_error = self.mesh_error(edges);
-        let own = mesh_error.as_ref();
-        let judged = judge(&mut self, edges, own)?;
+        let mesh_error = mesh_error.as_ref();
+        let judged = judge(&mut self, edges, mesh_error)?;
         let markers = self.markers();
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
-        let begun = self.take_uncertainty(edges, own, &judged)?;
+        let begun = self.take_uncertainty(edges, mesh_error, &judged)?;
         let larger = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         // A misfit is not noise.
         let is_noise = judged.verdict.answer != Answer::NotExplained;
         Ok(FieldEstimate {
-            displacement_error: self.displacement_error(own),
-            cells: self.cells(own)?,
-            holds_mesh_error: own.is_some(),
+            displacement_error: self.displacement_error(mesh_error),
+            cells: self.cells(mesh_error)?,
+            holds_mesh_error: mesh_error.is_some(),
             imbalance: self.imbalance(),
             growth: self.growth(edges),
             verdict: judged.verdict.with_forces(&begun.force_checks),
@@ -70,7 +70,7 @@ impl NearestField<'_> {
     fn take_uncertainty(
         &mut self,
         edges: &[Edge],
-        own: Option<&MeshError>,
+        mesh_error: Option<&MeshError>,
         judged: &Judgement,
     ) -> Result<FieldEstimate, Error> {
         let rows = self.linear.design.nrows() as f64;
@@ -79,7 +79,7 @@ impl NearestField<'_> {
         let by_law = self.law_deviations(&considered)?;
         let scale = self.scale_answer();
         let scale_change = self.scale_change(&scale)?;
-        let before = self.force_checks(own, &scale_change, &by_law)?;
+        let before = self.force_checks(mesh_error, &scale_change, &by_law)?;
         let freedom = self.widen(judged).unwrap_or(white);
         let is_plain =
             self.equations.task.knowledge.robust == Robust::No && judged.noises.is_empty();
@@ -91,11 +91,11 @@ impl NearestField<'_> {
         // Where the data are not explained, residuals taken for noise would hide a wrong force.
         let force_checks = match judged.verdict.answer {
             Answer::NotExplained => before,
-            _ => self.force_checks(own, &scale_change, &by_law)?,
+            _ => self.force_checks(mesh_error, &scale_change, &by_law)?,
         };
         self.take_scale(&scale);
-        let forces = self.forces(reach, own, &by_law)?;
-        let parameters = self.law_parameters(reach, own);
+        let forces = self.forces(reach, mesh_error, &by_law)?;
+        let parameters = self.law_parameters(reach, mesh_error);
         // Forces keep unknown places on the side that is possible.
         self.consider(considered);
         Ok(FieldEstimate {
@@ -124,7 +124,7 @@ impl NearestField<'_> {
             .collect()
     }
 
-    fn displacement_error(&self, own: Option<&MeshError>) -> Vec<f64> {
+    fn displacement_error(&self, mesh_error: Option<&MeshError>) -> Vec<f64> {
         let unknowns = (0..self.field.len()).into_par_iter();
         let error = |unknown: usize| {
             let row: Vec<f64> = self
@@ -133,19 +133,19 @@ impl NearestField<'_> {
                 .iter()
                 .map(|column| column[unknown])
                 .collect();
-            let mesh = own.map_or(0.0, |own| own.displacement[unknown]);
+            let mesh = mesh_error.map_or(0.0, |mesh_error| mesh_error.displacement[unknown]);
             self.error(&row).hypot(mesh)
         };
         unknowns.map(error).collect()
     }
 
-    fn cells(&self, own: Option<&MeshError>) -> Result<Vec<StressEstimate>, Error> {
+    fn cells(&self, mesh_error: Option<&MeshError>) -> Result<Vec<StressEstimate>, Error> {
         let mesh = self.equations.task.specimen.mesh;
         let cells = (0..mesh.cell_count()).into_par_iter();
         let neighbours = self.neighbours();
-        match own {
-            Some(own) => cells
-                .map(|cell| self.cell(cell, &neighbours, own.gradients[cell]))
+        match mesh_error {
+            Some(mesh_error) => cells
+                .map(|cell| self.cell(cell, &neighbours, mesh_error.gradients[cell]))
                 .collect(),
             None => {
                 let recovered = Recovery::new(mesh).gradient(&self.field);
@@ -160,15 +160,17 @@ impl NearestField<'_> {
     /// The laws about that of the field, each with the column of its parameter: of those that are found, or else are considered.
     fn neighbours(&self) -> Vec<(usize, Neighbours)> {
         let equations = &self.equations;
-        let found = equations.neighbours(&self.parameters);
+        let fitted = equations.neighbours(&self.parameters);
         let considered = equations.task.knowledge.uncertain_law();
         let considered = considered.map_or(Vec::new(), |law| law.neighbours());
-        let first = if found.is_empty() {
+        let first = if fitted.is_empty() {
             self.parameters.len()
         } else {
             equations.motion.parameters()
         };
-        (first..).zip(found.into_iter().chain(considered)).collect()
+        (first..)
+            .zip(fitted.into_iter().chain(considered))
+            .collect()
     }
 
     fn cell(
@@ -248,18 +250,21 @@ impl NearestField<'_> {
 
     /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not.
     fn marker(&self, index: usize, limit: f64) -> MarkerEstimate {
-        let left = &self.fit.residual;
-        let residual = Vector2::new(left[2 * index], left[2 * index + 1]);
+        let residuals = &self.fit.residual;
+        let residual = Vector2::new(residuals[2 * index], residuals[2 * index + 1]);
         let rows = self.linear.design.rows(2 * index, 2);
         let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
         let trust = self.variances.trust[index];
         let weights = &self.observations().weights;
-        let own = Vector2::from_fn(|axis, _| self.variances.sound / weights[2 * index + axis]);
-        let covariance =
-            Matrix2::from_diagonal(&own) + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
+        let variances =
+            Vector2::from_fn(|axis, _| self.variances.sound / weights[2 * index + axis]);
+        let covariance = Matrix2::from_diagonal(&variances)
+            + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
         let solved = covariance
             .try_inverse()
-            .map_or(residual.component_div(&own), |inverse| inverse * residual);
+            .map_or(residual.component_div(&variances), |inverse| {
+                inverse * residual
+            });
         let square = residual.dot(&solved).max(0.0);
         MarkerEstimate {
             residual: residual.into(),

@@ -117,27 +117,30 @@ impl<'a> Equations<'a> {
     /// As [`Self::run`].
     pub fn run_near(
         mut self,
-        found: &NearestField,
+        nearest_field: &NearestField,
         most: usize,
     ) -> Result<NearestField<'a>, Error> {
-        let (state, variances) = self.near(found)?;
+        let (state, variances) = self.near(nearest_field)?;
         self.run_from(state, variances, VARIANCE_STEPS, most)
     }
 
     /// The state near the field of another search, and its variances but for those of the edges.
-    fn near(&mut self, found: &NearestField) -> Result<(SearchState, VarianceComponents), Error> {
-        let mut parameters = self.nearest_parameters(&found.field);
-        let others = &found.parameters[found.equations.motion.parameters()..];
+    fn near(
+        &mut self,
+        nearest_field: &NearestField,
+    ) -> Result<(SearchState, VarianceComponents), Error> {
+        let mut parameters = self.nearest_parameters(&nearest_field.field);
+        let others = &nearest_field.parameters[nearest_field.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
         parameters.resize(self.parameter_count(), 0.0);
         let mut state = SearchState {
             parameters,
-            field: found.field.clone(),
+            field: nearest_field.field.clone(),
         };
         self.settle(&mut state, ON_THE_WAY)?;
         let variances = VarianceComponents {
             smoothing: Vec::new(),
-            ..found.variances.clone()
+            ..nearest_field.variances.clone()
         };
         Ok((state, variances))
     }
@@ -146,8 +149,8 @@ impl<'a> Equations<'a> {
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn score(mut self, found: &NearestField) -> Result<Scored, Error> {
-        let (state, mut variances) = self.near(found)?;
+    pub fn score(mut self, nearest_field: &NearestField) -> Result<Scored, Error> {
+        let (state, mut variances) = self.near(nearest_field)?;
         let linear = self.linearise(&state)?;
         let fit = self.regress(&state, false, &linear, &mut variances)?;
         Ok(Scored {
@@ -248,8 +251,8 @@ impl<'a> Equations<'a> {
         let share = values
             .zip(self.law_values(step))
             .map(|(value, step)| (step / value).abs());
-        let whole = 1.0 / share.fold(1.0, |most: f64, share| most.max(share / WITHIN));
-        let mut length = whole.min(most);
+        let longest = 1.0 / share.fold(1.0, |most: f64, share| most.max(share / WITHIN));
+        let mut length = longest.min(most);
         loop {
             let mut next = state.clone();
             let parameters = next.parameters.iter_mut().zip(step);

@@ -21,11 +21,11 @@ fn noise_on_unknown_and_rigid_grips_falls_by_four_fifths() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     let markers = truth.markers(0.3, 1);
     for (condition, most) in [(EdgeCondition::Unknown, 0.06), (EdgeCondition::Rigid, 0.05)] {
-        let found = estimate(&specimen(&mesh), &markers, &with_grips(condition)).unwrap();
-        let error = truth.error(&mesh, &found.displacement);
+        let result = estimate(&specimen(&mesh), &markers, &with_grips(condition)).unwrap();
+        let error = truth.error(&mesh, &result.displacement);
         assert!(error < most, "{condition:?}: {error}");
-        assert!((found.noise / 0.3 - 1.0).abs() < 0.1, "{}", found.noise);
-        let force = &found
+        assert!((result.noise / 0.3 - 1.0).abs() < 0.1, "{}", result.noise);
+        let force = &result
             .forces
             .iter()
             .find(|force| force.edge == "right")
@@ -45,17 +45,19 @@ fn known_grips_leave_the_markers_to_be_judged() {
     let mut knowledge = with_grips(EdgeCondition::Known([Some(0.0), Some(0.0)]));
     knowledge.edges[1].1 = EdgeCondition::Known([Some(STRETCH * SIZE[0]), Some(0.0)]);
     knowledge.noise = Some(0.3);
-    let found = estimate(&specimen(&mesh), &truth.markers(0.3, 1), &knowledge).unwrap();
-    assert!(truth.error(&mesh, &found.displacement) < 2e-3);
+    let result = estimate(&specimen(&mesh), &truth.markers(0.3, 1), &knowledge).unwrap();
+    assert!(truth.error(&mesh, &result.displacement) < 2e-3);
     assert!(
-        found.known_noise && (found.noise - 0.3).abs() < 1e-12 && found.effective_parameters == 0.0
+        result.known_noise
+            && (result.noise - 0.3).abs() < 1e-12
+            && result.effective_parameters == 0.0
     );
-    let far = found
+    let far = result
         .markers
         .iter()
         .flatten()
         .filter(|marker| marker.standardised_residual > 2.4477);
-    let share = far.count() as f64 / found.markers.len() as f64;
+    let share = far.count() as f64 / result.markers.len() as f64;
     assert!((share - 0.05).abs() < 0.03, "{share}");
 }
 
@@ -65,7 +67,7 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
     let markers = truth.markers(0.3, 4);
     let mut knowledge = with_grips(EdgeCondition::Known([Some(0.0), Some(0.0)]));
     knowledge.edges[1].1 = EdgeCondition::Known([Some(STRETCH * SIZE[0]), Some(0.0)]);
-    let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+    let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
     let node = mesh
         .nodes
         .iter()
@@ -106,7 +108,7 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
         markers.iter().map(square).sum::<f64>()
     };
     let slope = (misfit(1e-3) - misfit(-1e-3)) / 2e-3;
-    let multiplier = found.multipliers[2 * node];
+    let multiplier = result.multipliers[2 * node];
     assert!(
         (slope + multiplier).abs() < 1e-4 * slope.abs(),
         "{slope} {multiplier}"
@@ -116,21 +118,21 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
 #[test]
 fn without_noise_the_truth_comes_back() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
-    let found = estimate(
+    let result = estimate(
         &specimen(&mesh),
         &truth.markers(0.0, 1),
         &with_grips(EdgeCondition::Rigid),
     )
     .unwrap();
-    assert!(truth.error(&mesh, &found.displacement) < 2e-3);
-    assert!(found.noise < 2e-3);
+    assert!(truth.error(&mesh, &result.displacement) < 2e-3);
+    assert!(result.noise < 2e-3);
 }
 
 #[test]
 fn wrong_input_is_told() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     let good = truth.markers(0.1, 1);
-    let told = |markers: &[Marker], knowledge: &Knowledge| match estimate(
+    let message = |markers: &[Marker], knowledge: &Knowledge| match estimate(
         &specimen(&mesh),
         markers,
         knowledge,
@@ -145,9 +147,9 @@ fn wrong_input_is_told() {
         markers
     };
     let nan = change(&|marker| marker.displacement[1] = f64::NAN);
-    assert!(told(&nan, &grips).contains("marker 7"));
+    assert!(message(&nan, &grips).contains("marker 7"));
     let one = change(&|marker| marker.standard_deviation = Some(0.1));
-    assert!(told(&one, &grips).contains("1 of 231 markers"));
+    assert!(message(&one, &grips).contains("1 of 231 markers"));
     let far: Vec<Marker> = good
         .iter()
         .map(|marker| Marker {
@@ -155,15 +157,17 @@ fn wrong_input_is_told() {
             ..*marker
         })
         .collect();
-    assert!(told(&far, &grips).contains("0 of 231 markers lie on the mesh"));
-    assert!(told(&good, &with_grips(EdgeCondition::Free)).contains("the specimen is not loaded"));
-    assert!(told(&good[..2], &grips).contains("2 of 2"));
+    assert!(message(&far, &grips).contains("0 of 231 markers lie on the mesh"));
+    assert!(
+        message(&good, &with_grips(EdgeCondition::Free)).contains("the specimen is not loaded")
+    );
+    assert!(message(&good[..2], &grips).contains("2 of 2"));
     let line: Vec<Marker> = good
         .iter()
         .filter(|marker| marker.position[1] == 0.0)
         .copied()
         .collect();
-    assert!(told(&line, &grips).contains("affine"));
+    assert!(message(&line, &grips).contains("affine"));
 }
 
 /// A strip whose sides are not named: the long ones are free, the short ones are pulled.
@@ -172,9 +176,9 @@ fn the_data_tell_which_edges_are_free() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     for noise in [0.02, 0.3] {
         let markers = truth.markers(noise, 3);
-        let found = estimate(&specimen(&mesh), &markers, &Knowledge::default()).unwrap();
+        let result = estimate(&specimen(&mesh), &markers, &Knowledge::default()).unwrap();
         let condition = |name: &str| {
-            let edge = found
+            let edge = result
                 .edges
                 .iter()
                 .find(|edge| edge.edge.starts_with(name))
@@ -186,7 +190,7 @@ fn the_data_tell_which_edges_are_free() {
                 condition(free).0,
                 EdgeCondition::Free,
                 "{noise} {:?}",
-                found.edges
+                result.edges
             );
         }
         for loaded in ["right", "left"] {
@@ -194,7 +198,7 @@ fn the_data_tell_which_edges_are_free() {
             assert_eq!(condition, EdgeCondition::Unknown);
             assert!(probability.unwrap() < 1e-6);
         }
-        assert!(truth.error(&mesh, &found.displacement) < 0.2 * noise);
+        assert!(truth.error(&mesh, &result.displacement) < 0.2 * noise);
         let loaded = Knowledge {
             unnamed: Unnamed::Loaded,
             ..Knowledge::default()
@@ -225,8 +229,8 @@ fn a_modulus_is_found_with_the_field() {
         law: Some(RegressedLaw::of_card(&card, &["c10"]).unwrap()),
         ..with_grips(EdgeCondition::Unknown)
     };
-    let found = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &knowledge).unwrap();
-    let (key, unit, modulus) = &found.parameters[0];
+    let result = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &knowledge).unwrap();
+    let (key, unit, modulus) = &result.parameters[0];
     assert_eq!([&**key, &**unit], ["c10", "MPa"]);
     assert!(modulus.standard_error > 0.008 * C10 && modulus.standard_error < 0.03 * C10);
     assert!(
@@ -237,8 +241,8 @@ fn a_modulus_is_found_with_the_field() {
         forces: Vec::new(),
         ..knowledge
     };
-    let told = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &without).unwrap_err();
-    assert!(told.to_string().contains("without a measured force"));
+    let message = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &without).unwrap_err();
+    assert!(message.to_string().contains("without a measured force"));
 }
 
 #[test]
@@ -255,8 +259,8 @@ fn gross_errors_are_found() {
             robust,
             ..with_grips(EdgeCondition::Unknown)
         };
-        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-        for (index, marker) in found.markers.iter().enumerate() {
+        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        for (index, marker) in result.markers.iter().enumerate() {
             let marker = marker.unwrap();
             let alarm = marker.outlier && !wrong(&index);
             assert!(
@@ -264,8 +268,8 @@ fn gross_errors_are_found() {
                 "{robust:?} {index} {marker:?}"
             );
         }
-        assert!(truth.error(&mesh, &found.displacement) < 0.08);
-        assert!((found.noise / 0.3 - 1.0).abs() < 0.12, "{}", found.noise);
+        assert!(truth.error(&mesh, &result.displacement) < 0.08);
+        assert!((result.noise / 0.3 - 1.0).abs() < 0.12, "{}", result.noise);
     }
     let plain = estimate(
         &specimen(&mesh),
@@ -290,8 +294,8 @@ fn forces_on_the_interior_make_up_for_a_wrong_law_and_vanish_with_the_right_one(
             physics,
             ..with_grips(EdgeCondition::Rigid)
         };
-        let found = estimate(&wrong, &markers, &knowledge).unwrap();
-        (truth.error(&mesh, &found.displacement), found)
+        let result = estimate(&wrong, &markers, &knowledge).unwrap();
+        (truth.error(&mesh, &result.displacement), result)
     };
     let (exact, plain) = run(Arc::clone(&pva.law), Physics::Exact);
     let (weighted, forced) = run(Arc::clone(&pva.law), Physics::Weighted);
@@ -304,8 +308,8 @@ fn forces_on_the_interior_make_up_for_a_wrong_law_and_vanish_with_the_right_one(
     let (exact, _) = run(law(), Physics::Exact);
     let (weighted, right) = run(law(), Physics::Weighted);
     assert!(weighted < 1.5 * exact, "{weighted} {exact}");
-    let size = |found: &FieldEstimate| {
-        found
+    let size = |result: &FieldEstimate| {
+        result
             .interior_forces
             .iter()
             .map(|f| f * f)

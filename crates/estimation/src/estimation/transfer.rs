@@ -172,7 +172,7 @@ fn equilibrium(
         });
         match solved {
             Ok(()) => return Ok((field, residual, parts.len())),
-            Err(found) => fault = found,
+            Err(last) => fault = last,
         }
     }
     Err(solve(fault))

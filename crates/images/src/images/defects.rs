@@ -18,9 +18,9 @@ pub fn dead(first: &GreyImage, other: &GreyImage, noise: &Noise) -> Vec<usize> {
     let is_dead = |&(x, y): &(usize, usize)| {
         let deviation = noise.variance(f64::from(first.value(x, y))).sqrt() as f32;
         let alone = |image: &GreyImage| {
-            let own = image.value(x, y) - median(image, x, y);
+            let contrast = image.value(x, y) - median(image, x, y);
             let (low, high) = range(image.around(x, y));
-            (own.abs() > 3.0 * (high - low) + FAR * deviation).then_some(own)
+            (contrast.abs() > 3.0 * (high - low) + FAR * deviation).then_some(contrast)
         };
         let same = (first.value(x, y) - other.value(x, y)).abs() <= FAR * deviation;
         same && matches!((alone(first), alone(other)), (Some(a), Some(b)) if a * b > 0.0)
@@ -74,7 +74,7 @@ pub fn saturated(image: &GreyImage) -> Vec<usize> {
 }
 
 /// What a user must know of them; `pixels` is the number of pixels in the region.
-pub fn told(dead: usize, saturated: usize, pixels: usize) -> Vec<Diagnostic> {
+pub fn warnings(dead: usize, saturated: usize, pixels: usize) -> Vec<Diagnostic> {
     const MUCH: f64 = 0.001;
     let of_dead = (dead > 0).then(|| {
         let message = format!("dead pixels: {dead}");
@@ -111,8 +111,8 @@ mod tests {
             base: 1.0,
             growth: 0.0,
         };
-        let found = dead(&first, &other, &noise);
-        assert_eq!(found, [20 * 40 + 7]);
-        assert!(repaired(&first, &found).value(7, 20) < 130.0);
+        let indices = dead(&first, &other, &noise);
+        assert_eq!(indices, [20 * 40 + 7]);
+        assert!(repaired(&first, &indices).value(7, 20) < 130.0);
     }
 }

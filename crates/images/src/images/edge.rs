@@ -187,11 +187,11 @@ mod tests {
 
     #[test]
     fn pixels_that_touch_at_a_corner_and_the_rim_of_an_image_have_closed_edges() {
-        let whole = Region::whole([6, 4]);
-        let edge = whole.edge();
+        let full = Region::full([6, 4]);
+        let edge = full.edge();
         assert!((area(&edge[0]) / 24.0 - 1.0).abs() < 0.1, "{edge:?}");
-        let whole = Region::whole([60, 40]).edge();
-        assert_eq!((area(&whole[0]), whole[0].len()), (2400.0, 4));
+        let full = Region::full([60, 40]).edge();
+        assert_eq!((area(&full[0]), full[0].len()), (2400.0, 4));
         let both = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
         let shifted = both.map(|[x, y]| [x + 3.0, y + 3.0]);
         let region = Region::of_lines(&[both.to_vec(), shifted.to_vec()], [8, 8]).unwrap();

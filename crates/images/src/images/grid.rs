@@ -81,8 +81,8 @@ impl Follower<'_> {
             self.order,
             self.noise,
         )?;
-        let found = subset.find(image, guess, self.noise)?;
-        (found.similarity >= LEAST_SIMILARITY).then_some(found)
+        let fit = subset.find(image, guess, self.noise)?;
+        (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }
 
     /// Finds some points at the same time.
@@ -98,9 +98,9 @@ impl Follower<'_> {
     }
 
     /// Follows points from those that are found to all others, round by round.
-    pub fn spread(&self, image: &Spline, found: &mut [Option<Match>], attempts: &mut [usize]) {
-        let mut fresh: Vec<usize> = (0..found.len())
-            .filter(|point| found[*point].is_some())
+    pub fn spread(&self, image: &Spline, matches: &mut [Option<Match>], attempts: &mut [usize]) {
+        let mut fresh: Vec<usize> = (0..matches.len())
+            .filter(|point| matches[*point].is_some())
             .collect();
         while !fresh.is_empty() {
             let next = fresh
@@ -108,18 +108,18 @@ impl Follower<'_> {
                 .flat_map(|point| &self.neighbours[*point])
                 .copied();
             let mut next: Vec<usize> = next
-                .filter(|point| found[*point].is_none() && attempts[*point] < MOST_ATTEMPTS)
+                .filter(|point| matches[*point].is_none() && attempts[*point] < MOST_ATTEMPTS)
                 .collect();
             next.sort_unstable();
             next.dedup();
             next.iter().for_each(|point| attempts[*point] += 1);
             let guesses = next
                 .into_iter()
-                .filter_map(|point| Some((point, self.guess(point, found)?)));
+                .filter_map(|point| Some((point, self.guess(point, matches)?)));
             fresh = Vec::new();
             for (point, one) in self.find_all(image, guesses.collect()) {
                 if one.is_some() {
-                    found[point] = one;
+                    matches[point] = one;
                     fresh.push(point);
                 }
             }
@@ -127,10 +127,10 @@ impl Follower<'_> {
     }
 
     /// The field of the most similar neighbour, at a point.
-    fn guess(&self, point: usize, found: &[Option<Match>]) -> Option<Warp> {
+    fn guess(&self, point: usize, matches: &[Option<Match>]) -> Option<Warp> {
         let known = self.neighbours[point]
             .iter()
-            .filter_map(|other| Some((*other, found[*other].as_ref()?)));
+            .filter_map(|other| Some((*other, matches[*other].as_ref()?)));
         let (other, best) = known.max_by(|a, b| a.1.similarity.total_cmp(&b.1.similarity))?;
         let ([x, y], [a, b]) = (self.centres[point]?, self.centres[other]?);
         Some(best.warp.moved(x as f64 - a as f64, y as f64 - b as f64))
@@ -138,7 +138,7 @@ impl Follower<'_> {
 
     /// Takes away points whose displacement is far from what their neighbours' fields say there: beyond five standard deviations of these and
     /// a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients). Returns how many.
-    pub fn drop_outliers(&self, found: &mut [Option<Match>]) -> usize {
+    pub fn drop_outliers(&self, matches: &mut [Option<Match>]) -> usize {
         const FEWEST: usize = 3;
         const FAR: f64 = 5.0;
         const SURE: f64 = 0.1;
@@ -148,11 +148,11 @@ impl Follower<'_> {
             values[values.len() / 2]
         };
         let is_far = |point: usize| {
-            let (Some(own), Some([x, y])) = (&found[point], self.centres[point]) else {
+            let (Some(fit), Some([x, y])) = (&matches[point], self.centres[point]) else {
                 return false;
             };
             let there = self.neighbours[point].iter().filter_map(|other| {
-                let ([a, b], other) = (self.centres[*other]?, found[*other].as_ref()?);
+                let ([a, b], other) = (self.centres[*other]?, matches[*other].as_ref()?);
                 Some(
                     other
                         .warp
@@ -167,12 +167,12 @@ impl Follower<'_> {
                     let middle = median(&mut values);
                     let mut off: Vec<f64> =
                         values.iter().map(|value| (value - middle).abs()).collect();
-                    let deviation = NORMAL * median(&mut off) + own.covariance[(axis, axis)].sqrt();
-                    (own.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
+                    let deviation = NORMAL * median(&mut off) + fit.covariance[(axis, axis)].sqrt();
+                    (fit.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
                 })
         };
-        let far: Vec<usize> = (0..found.len()).filter(|point| is_far(*point)).collect();
-        far.iter().for_each(|point| found[*point] = None);
+        let far: Vec<usize> = (0..matches.len()).filter(|point| is_far(*point)).collect();
+        far.iter().for_each(|point| matches[*point] = None);
         far.len()
     }
 }

@@ -48,16 +48,16 @@ impl Matrices {
             let phi = functions(f64::from(pixel.x) * scale, f64::from(pixel.y) * scale);
             let smooth = pixel.smooth.map(f64::from);
             let slope = pixel.slope.map(f64::from);
-            let own = f64::from(pixel.value);
-            value += own;
-            square += own * own;
+            let intensity = f64::from(pixel.value);
+            value += intensity;
+            square += intensity * intensity;
             for k in 0..count {
                 for axis in [0, 1] {
                     let (row, j, s) = (2 * k + axis, smooth[axis] * phi[k], slope[axis] * phi[k]);
                     sum[row] += j;
-                    weighted[row] += j * (own - mean);
+                    weighted[row] += j * (intensity - mean);
                     slopes[row] += s;
-                    slopes_weighted[row] += s * (own - mean);
+                    slopes_weighted[row] += s * (intensity - mean);
                 }
                 for l in 0..count {
                     let product = phi[k] * phi[l];

@@ -46,9 +46,10 @@ impl Classes {
     }
 
     pub fn join(mut self, other: &Self) -> Self {
-        let own = self.classes.iter_mut().flatten();
-        own.zip(other.classes.iter().flatten())
-            .for_each(|(own, other)| *own += other);
+        let classes = self.classes.iter_mut().flatten();
+        classes
+            .zip(other.classes.iter().flatten())
+            .for_each(|(class, other)| *class += other);
         self
     }
 
@@ -135,7 +136,7 @@ impl Noise {
     }
 
     /// In words, for an image whose white is `white`.
-    pub fn told(&self, white: f32) -> Diagnostic {
+    pub fn warning(&self, white: f32) -> Diagnostic {
         let [dark, light] = [0.0, f64::from(white)].map(|value| self.variance(value).sqrt());
         let message = format!(
             "noise of the pixels: standard deviation {dark:.2} grey values where it is dark, {light:.2} where it is white ({white})"
@@ -165,11 +166,14 @@ mod tests {
             let value: f64 = StandardNormal.sample(&mut random);
             classes.add(intensity, truth.variance(intensity) * value * value);
         }
-        let found = classes.noise().unwrap();
-        assert!((found.base / truth.base - 1.0).abs() < 0.2, "{found:?}");
+        let estimate = classes.noise().unwrap();
         assert!(
-            (found.growth / truth.growth - 1.0).abs() < 0.05,
-            "{found:?}"
+            (estimate.base / truth.base - 1.0).abs() < 0.2,
+            "{estimate:?}"
+        );
+        assert!(
+            (estimate.growth / truth.growth - 1.0).abs() < 0.05,
+            "{estimate:?}"
         );
     }
 
@@ -183,9 +187,9 @@ mod tests {
             let noise: f64 = StandardNormal.sample(&mut random);
             *value += 3.0 * noise as f32;
         }
-        let found = Noise::of_image(&image, &vec![true; 40_000])
+        let deviation = Noise::of_image(&image, &vec![true; 40_000])
             .variance(100.0)
             .sqrt();
-        assert!((found / 3.0 - 1.0).abs() < 0.25, "{found}");
+        assert!((deviation / 3.0 - 1.0).abs() < 0.25, "{deviation}");
     }
 }

@@ -48,24 +48,24 @@ impl Tracker {
             centres: &centres,
             ..self.follower()
         };
-        let mut found: Vec<Option<Match>> = vec![None; states.len()];
+        let mut matches: Vec<Option<Match>> = vec![None; states.len()];
         // What is known of the step of the others leads to the lost ones.
         for point in 0..states.len() {
             if let (Some(now), Some(then), Some(_)) =
                 (&states[point], &before[point], centres[point])
             {
-                found[point] = now.since(then);
+                matches[point] = now.since(then);
             }
         }
-        let mut attempts = vec![0; found.len()];
-        if found.iter().all(Option::is_none) {
-            self.seed(&follower, (image, spline), &mut found, &mut attempts);
+        let mut attempts = vec![0; matches.len()];
+        if matches.iter().all(Option::is_none) {
+            self.seed(&follower, (image, spline), &mut matches, &mut attempts);
         } else {
-            follower.spread(spline, &mut found, &mut attempts);
+            follower.spread(spline, &mut matches, &mut attempts);
         }
         let direct = self.follower();
         let solved = lost.par_iter().filter_map(|&point| {
-            let step = found[point]?;
+            let step = matches[point]?;
             let state = before[point].as_ref()?.followed_by(
                 &step,
                 self.grid.points[point],

@@ -113,19 +113,19 @@ impl Patches<'_> {
         } = self.tracker;
         let patch = Subset::patch(reference, point, self.width, noise)?;
         let middle = patch.middle();
-        let found = if self.is_precise(&patch) {
+        let fit = if self.is_precise(&patch) {
             patch.find(spline, guess, noise)?
         } else {
             patch.find_linear(spline, guess, noise)?
         };
         let [x, y] = [0, 1].map(|axis| middle[axis] - point[axis] as f64);
-        let field = found.warp.moved(x, y);
+        let field = fit.warp.moved(x, y);
         Some(Tracked {
             position: middle,
             displacement: field.displacement(),
             gradient: field.gradient(),
-            covariance: found.covariance,
-            similarity: found.similarity,
+            covariance: fit.covariance,
+            similarity: fit.similarity,
         })
     }
 }

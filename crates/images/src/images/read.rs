@@ -98,21 +98,21 @@ fn expanded(path: &Path) -> Result<Vec<PathBuf>, Error> {
     let entries = std::fs::read_dir(&folder)
         .map_err(|fault| refuse(&folder, fault, "name a folder that can be read"))?;
     let suits = |path: &PathBuf| {
-        let own = path
+        let file_name = path
             .file_name()
             .map(|name| name.to_string_lossy().into_owned())
             .unwrap_or_default();
-        is_image_path(path) && (!pattern || matches(name.as_bytes(), own.as_bytes()))
+        is_image_path(path) && (!pattern || matches(name.as_bytes(), file_name.as_bytes()))
     };
-    let mut found: Vec<PathBuf> = entries
+    let mut paths: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
         .filter(suits)
         .collect();
-    found.sort_by_cached_key(|path| in_order(&path.to_string_lossy()));
-    if found.is_empty() {
+    paths.sort_by_cached_key(|path| in_order(&path.to_string_lossy()));
+    if paths.is_empty() {
         return Err(refuse(path, "there is no image", KINDS));
     }
-    Ok(found)
+    Ok(paths)
 }
 
 /// Whether a name is as a pattern with `*` and `?` says.

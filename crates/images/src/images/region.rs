@@ -12,7 +12,7 @@ pub struct Region {
 
 impl Region {
     /// The whole image.
-    pub fn whole(size: [usize; 2]) -> Self {
+    pub fn full(size: [usize; 2]) -> Self {
         Self {
             size,
             inside: vec![true; size[0] * size[1]],

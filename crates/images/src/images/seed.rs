@@ -109,10 +109,10 @@ impl<'a> Pyramid<'a> {
                 STRETCHES.map(|[x, y]| turn.matrix() * Matrix2::new(x, 0.0, 0.0, y))
             })
             .collect();
-        let found = all.par_iter().flat_map_iter(|f| self.correlate(centre, *f));
-        let mut found: Vec<(f64, Warp)> = found.collect();
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let best = found.into_iter().take(BEST);
+        let candidates = all.par_iter().flat_map_iter(|f| self.correlate(centre, *f));
+        let mut candidates: Vec<(f64, Warp)> = candidates.collect();
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let best = candidates.into_iter().take(BEST);
         let refined = best.filter_map(|(_, warp)| self.refine(centre, warp, self.coarse.len()));
         refined.max_by(|a, b| a.similarity.total_cmp(&b.similarity))
     }
@@ -131,21 +131,21 @@ impl<'a> Pyramid<'a> {
         {
             let at = centre.map(|c| c >> number);
             let subset = Subset::new(&level.reference, at, HALF, Order::Affine, &level.noise);
-            if let Some(found) =
+            if let Some(fit) =
                 subset.and_then(|subset| subset.find(&level.spline, warp, &level.noise))
             {
-                warp = found.warp;
+                warp = fit.warp;
             }
             warp = warp.scaled(2.0);
         }
         let (reference, noise, spline) = self.finest;
         let subset = |order| Subset::new(reference, centre, self.half, order, noise);
-        let found = subset(Order::Affine)?.find(spline, warp, noise)?;
-        let found = match self.order {
-            Order::Affine => found,
-            order => subset(order)?.find(spline, found.warp, noise)?,
+        let fit = subset(Order::Affine)?.find(spline, warp, noise)?;
+        let fit = match self.order {
+            Order::Affine => fit,
+            order => subset(order)?.find(spline, fit.warp, noise)?,
         };
-        (found.similarity >= LEAST_SIMILARITY).then_some(found)
+        (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }
 
     /// The best three places on the coarsest level of a subset deformed by F, with their correlations.

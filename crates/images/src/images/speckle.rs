@@ -90,16 +90,16 @@ pub fn speckle(reference: &Reference, noise: &Noise) -> f64 {
     let along = |step: usize| -> Vec<f64> {
         let product = |lag: usize| {
             let last = values.len().saturating_sub(lag * step);
-            let (mut sum, mut count, mut own) = (0.0, 0.0, [0.0; 2]);
+            let (mut sum, mut count, mut sums) = (0.0, 0.0, [0.0; 2]);
             for at in 0..last {
                 if reference.usable[at] && reference.usable[at + lag * step] {
                     let pair = [f64::from(values[at]), f64::from(values[at + lag * step])];
                     (sum, count) = (sum + pair[0] * pair[1], count + 1.0);
-                    own = [own[0] + pair[0], own[1] + pair[1]];
+                    sums = [sums[0] + pair[0], sums[1] + pair[1]];
                 }
             }
             let of_noise = if lag == 0 { noise.variance(mean) } else { 0.0 };
-            sum / count - own[0] * own[1] / (count * count) - of_noise
+            sum / count - sums[0] * sums[1] / (count * count) - of_noise
         };
         (0..MOST.min(width.min(height) / 2)).map(product).collect()
     };

@@ -37,11 +37,11 @@ fn along_rows(values: &mut [f32], width: usize) {
     let combine = |values: &mut [f32], from: usize, to: usize, sign: f32| {
         for x in 0..width {
             let other = values[from * width + x];
-            let own = &mut values[to * width + x];
-            *own = if sign > 0.0 {
-                *own + POLE * other
+            let target = &mut values[to * width + x];
+            *target = if sign > 0.0 {
+                *target + POLE * other
             } else {
-                POLE * (other - *own)
+                POLE * (other - *target)
             };
         }
     };

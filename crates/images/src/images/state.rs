@@ -37,11 +37,11 @@ pub struct State {
 }
 
 impl State {
-    pub fn of(found: &Match) -> Self {
+    pub fn of(fit: &Match) -> Self {
         Self {
-            warp: found.warp,
-            covariance: found.covariance,
-            similarity: found.similarity,
+            warp: fit.warp,
+            covariance: fit.covariance,
+            similarity: fit.similarity,
         }
     }
 

@@ -33,7 +33,7 @@ pub struct Subset {
     noise: Noise,
     pixels: Vec<Pixel>,
     /// The number of pixels before any was carried out of an image.
-    whole: usize,
+    full_count: usize,
     matrices: Matrices,
 }
 
@@ -128,7 +128,7 @@ impl Subset {
             half,
             overlap: reference.overlap,
             noise: *noise,
-            whole: pixels.len(),
+            full_count: pixels.len(),
             pixels,
         })
     }
@@ -171,12 +171,12 @@ impl Subset {
             value,
             ..
         } = &self.matrices;
-        let left = step.solve(spread);
-        let both = step.solve(&left.transpose());
+        let solved = step.solve(spread);
+        let both = step.solve(&solved.transpose());
         let block = Matrix2::new(both[(0, 0)], both[(0, 1)], both[(1, 0)], both[(1, 1)]);
-        let own = noise.variance(value / self.pixels.len() as f64);
+        let variance = noise.variance(value / self.pixels.len() as f64);
         let other = gain * gain * noise.variance(other) * (1.0 / f.determinant()).max(1.0);
-        f * (0.5 * (block + block.transpose())) * f.transpose() * (own + other)
+        f * (0.5 * (block + block.transpose())) * f.transpose() * (variance + other)
     }
 
     /// Finds the subset in another image from a first guess; `None` where it does not converge within the image.
@@ -187,7 +187,7 @@ impl Subset {
         let mut warp = guess;
         for _ in 0..MOST {
             if self.improve(image, &mut warp, noise)? < SMALL {
-                return self.found(image, warp, noise);
+                return self.match_at(image, warp, noise);
             }
         }
         None
@@ -200,7 +200,7 @@ impl Subset {
         // Covariance and similarity are those about the guess.
         Some(Match {
             warp,
-            ..self.found(image, guess, noise)?
+            ..self.match_at(image, guess, noise)?
         })
     }
 
@@ -227,7 +227,7 @@ impl Subset {
             match self.sums(image, warp) {
                 Ok(sums) => return Some(sums),
                 Err(inside) => {
-                    if (inside.len() as f64) < LEAST_SHARE * self.whole as f64 {
+                    if (inside.len() as f64) < LEAST_SHARE * self.full_count as f64 {
                         return None;
                     }
                     self.matrices =
@@ -285,11 +285,11 @@ impl Subset {
     /// Variances of both images without noise, and their covariance.
     fn moments(&self, sums: &Sums, noise: &Noise) -> [f64; 3] {
         let Matrices { value, square, .. } = &self.matrices;
-        let (own, other) = (value / sums.count, sums.value / sums.count);
-        let first = square / sums.count - own * own - noise.variance(own);
+        let (mean, other) = (value / sums.count, sums.value / sums.count);
+        let first = square / sums.count - mean * mean - noise.variance(mean);
         let gain = Spline::noise_gain(0.5, 0.0);
         let second = sums.square / sums.count - other * other - gain * noise.variance(other);
-        [first, second, sums.product / sums.count - own * other]
+        [first, second, sums.product / sums.count - mean * other]
     }
 
     /// b, with the variance of the other image's noise taken out.
@@ -314,16 +314,16 @@ impl Subset {
             ..
         } = &self.matrices;
         let mean = value / sums.count;
-        let own = square - value * mean;
+        let variation = square - value * mean;
         let other = sums.product - mean * sums.value;
         let products =
             DVector::from_iterator(sum.len(), sums.products[..sum.len()].iter().copied());
         // Σ J⊥ I₁
-        let left = products - sum * (sums.value / sums.count) - weighted * (other / own);
-        step.solve(&(left * -self.gain(sums, noise)))
+        let residual = products - sum * (sums.value / sums.count) - weighted * (other / variation);
+        step.solve(&(residual * -self.gain(sums, noise)))
     }
 
-    fn found(&self, image: &Spline, warp: Warp, noise: &Noise) -> Option<Match> {
+    fn match_at(&self, image: &Spline, warp: Warp, noise: &Noise) -> Option<Match> {
         let sums = self.sums(image, &warp).ok()?;
         self.concluded(&sums, warp, noise)
     }
@@ -332,14 +332,14 @@ impl Subset {
         let Matrices { value, square, .. } = &self.matrices;
         let [first, second, product] = self.moments(sums, noise);
         let gain = self.gain(sums, noise);
-        let (own, other) = (value / sums.count, sums.value / sums.count);
+        let (mean, other) = (value / sums.count, sums.value / sums.count);
         let similarity = if first > 0.0 && second > 0.0 && product > 0.0 {
             product * product / (first * second)
         } else {
             0.0
         };
-        let [own_square, other_square] = [
-            square / sums.count - own * own,
+        let [mean_square, other_square] = [
+            square / sums.count - mean * mean,
             sums.square / sums.count - other * other,
         ];
         Some(Match {
@@ -347,23 +347,23 @@ impl Subset {
             covariance: self.covariance(warp.deformation_gradient(), gain, other, noise),
             similarity,
             gain,
-            offset: own - gain * other,
-            misfit: own_square - 2.0 * gain * product + gain * gain * other_square,
+            offset: mean - gain * other,
+            misfit: mean_square - 2.0 * gain * product + gain * gain * other_square,
         })
     }
 
     /// Adds the squares of the residuals, each divided by the variance that a pixel of unit variance gives it.
-    pub(super) fn classify(&self, image: &Spline, found: &Match, classes: &mut Classes) {
-        let count = found.warp.functions();
+    pub(super) fn classify(&self, image: &Spline, fit: &Match, classes: &mut Classes) {
+        let count = fit.warp.functions();
         for pixel in &self.pixels {
             let (x, y) = (f64::from(pixel.x), f64::from(pixel.y));
-            let [u, v] = found.warp.at(x, y, count);
+            let [u, v] = fit.warp.at(x, y, count);
             let [x, y] = [self.centre[0] + x + u, self.centre[1] + y + v];
             if let Some(value) = image.value(x, y) {
-                let own = f64::from(pixel.value);
-                let residual = own - found.offset - found.gain * f64::from(value);
-                let gain = 1.0 + found.gain.powi(2) * Spline::noise_gain(x, y);
-                classes.add(own, residual * residual / gain);
+                let intensity = f64::from(pixel.value);
+                let residual = intensity - fit.offset - fit.gain * f64::from(value);
+                let gain = 1.0 + fit.gain.powi(2) * Spline::noise_gain(x, y);
+                classes.add(intensity, residual * residual / gain);
             }
         }
     }

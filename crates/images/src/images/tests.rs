@@ -38,7 +38,7 @@ impl Homogeneous {
 struct Figures {
     error: f64,
     covered: f64,
-    found: f64,
+    followed: f64,
     worst: f64,
 }
 
@@ -72,7 +72,7 @@ fn figures(
     Figures {
         error: (squares / (2.0 * count)).sqrt(),
         covered: within / (2.0 * count),
-        found: count / seen,
+        followed: count / seen,
         worst,
     }
 }
@@ -86,12 +86,12 @@ fn follow(
     let size = cameras[0].size;
     let first = cameras[0].frame(pattern, |x| x);
     let other = cameras[1].frame(pattern, |x| motion.material(x));
-    let mut tracker = Tracker::new(&first, &other, &Region::whole(size), settings).unwrap();
+    let mut tracker = Tracker::new(&first, &other, &Region::full(size), settings).unwrap();
     let tracked = tracker.follow(&other).unwrap();
-    let found = figures(&tracked, &centres(&tracker), size, &|x| {
+    let accuracy = figures(&tracked, &centres(&tracker), size, &|x| {
         motion.displacement(x)
     });
-    (found, tracker)
+    (accuracy, tracker)
 }
 
 fn centres(tracker: &Tracker) -> Vec<[f64; 2]> {
@@ -106,13 +106,13 @@ fn cameras(size: [usize; 2], noise: f64) -> [Camera; 2] {
     [Camera::new(size, noise, 1), Camera::new(size, noise, 2)]
 }
 
-fn says(what: &str, figures: &Figures, tracker: &Tracker) {
+fn show(what: &str, figures: &Figures, tracker: &Tracker) {
     println!(
         "{what}: error {:.4} px, worst {:.3}, covered {:.3}, found {:.3}, subset {}, noise {:?}",
         figures.error,
         figures.worst,
         figures.covered,
-        figures.found,
+        figures.followed,
         tracker.subset(),
         tracker.noise()
     );
@@ -130,11 +130,11 @@ fn small_motions_are_followed_with_intervals_that_hold() {
         for (kind, pattern) in [("speckle", speckle(1)), ("natural", natural(2))] {
             for noise in [0.01, 0.1] {
                 let motion = Homogeneous::new(size, f, [0.37, -1.61]);
-                let (found, tracker) =
+                let (accuracy, tracker) =
                     follow(&pattern, cameras(size, noise), &motion, Settings::default());
-                says(&format!("{name} {kind} {noise}"), &found, &tracker);
-                assert!(found.found > 0.97 && found.error < 0.1);
-                assert!((0.90..=0.985).contains(&found.covered));
+                show(&format!("{name} {kind} {noise}"), &accuracy, &tracker);
+                assert!(accuracy.followed > 0.97 && accuracy.error < 0.1);
+                assert!((0.90..=0.985).contains(&accuracy.covered));
             }
         }
     }
@@ -156,7 +156,7 @@ fn patches_share_no_pixel_and_their_intervals_hold() {
             let cameras = cameras(size, noise);
             let first = cameras[0].frame(&pattern, |x| x);
             let other = cameras[1].frame(&pattern, |x| motion.material(x));
-            let region = Region::whole(size);
+            let region = Region::full(size);
             let mut tracker = Tracker::new(&first, &other, &region, Settings::default()).unwrap();
             let tracked = tracker.follow(&other).unwrap();
             let patches = tracker.patches();
@@ -167,15 +167,15 @@ fn patches_share_no_pixel_and_their_intervals_hold() {
                 .iter()
                 .map(|one| one.map_or([0.0; 2], |one| one.position))
                 .collect();
-            let found = figures(&measured, &positions, size, &truth);
-            says(
+            let accuracy = figures(&measured, &positions, size, &truth);
+            show(
                 &format!("patches of {} {kind} {noise}", patches.width()),
-                &found,
+                &accuracy,
                 &tracker,
             );
             // Tags have edges sharper than a pixel, between which no interpolation is exact.
-            let holds = kind == "tags" || (0.88..=0.985).contains(&found.covered);
-            assert!(holds && found.error < 0.3, "{kind} {noise}");
+            let holds = kind == "tags" || (0.88..=0.985).contains(&accuracy.covered);
+            assert!(holds && accuracy.error < 0.3, "{kind} {noise}");
         }
     }
 }
@@ -200,14 +200,14 @@ fn large_motions_are_found_without_a_guess() {
     ];
     for (name, f, shift) in motions {
         let motion = Homogeneous::new(size, f, shift);
-        let (found, tracker) = follow(
+        let (accuracy, tracker) = follow(
             &speckle(5),
             cameras(size, 0.01),
             &motion,
             Settings::default(),
         );
-        says(name, &found, &tracker);
-        assert!(found.found > 0.95 && found.error < 0.05, "{name}");
+        show(name, &accuracy, &tracker);
+        assert!(accuracy.followed > 0.95 && accuracy.error < 0.05, "{name}");
     }
 }
 
@@ -225,13 +225,13 @@ fn noise_that_grows_light_that_changes_and_a_megapixel() {
     let other = cameras[1].frame(&pattern, |x| motion.material(x));
     let start = std::time::Instant::now();
     let mut tracker =
-        Tracker::new(&first, &other, &Region::whole(size), Settings::default()).unwrap();
+        Tracker::new(&first, &other, &Region::full(size), Settings::default()).unwrap();
     println!("new: {:?}", start.elapsed());
     let tracked = tracker.follow(&other).unwrap();
     println!("all: {:?}", start.elapsed());
-    let found = figures(&tracked, &centres(&tracker), size, &|x| {
+    let accuracy = figures(&tracked, &centres(&tracker), size, &|x| {
         motion.displacement(x)
     });
-    says("megapixel", &found, &tracker);
-    assert!(found.found > 0.97 && (0.90..=0.985).contains(&found.covered));
+    show("megapixel", &accuracy, &tracker);
+    assert!(accuracy.followed > 0.97 && (0.90..=0.985).contains(&accuracy.covered));
 }

@@ -1,6 +1,6 @@
 //! The pattern of a first image followed through later ones.
 
-use super::defects::{dead, repaired, saturated, told};
+use super::defects::{dead, repaired, saturated, warnings};
 use super::gradient::Reference;
 use super::grey::GreyImage;
 use super::grid::{Follower, Grid};
@@ -79,7 +79,7 @@ impl Tracker {
         let mut usable = usable_at_all;
         let pixels = usable.iter().filter(|flag| **flag).count();
         let within = |list: &[usize]| list.iter().filter(|index| region.flags()[**index]).count();
-        let warnings = told(within(&dead), within(&saturated), pixels);
+        let warnings = warnings(within(&dead), within(&saturated), pixels);
         dead.iter()
             .chain(&saturated)
             .for_each(|index| usable[*index] = false);
@@ -175,12 +175,12 @@ impl Tracker {
         let image = self.repaired(image);
         let spline = Spline::new(&image);
         let is_first = self.before.is_none();
-        let mut found = self.direct(&image, &spline);
+        let mut matches = self.direct(&image, &spline);
         if is_first {
-            self.learn_noise(&spline, &mut found);
+            self.learn_noise(&spline, &mut matches);
         }
-        self.follower().drop_outliers(&mut found);
-        let mut states: Vec<Option<State>> = found
+        self.follower().drop_outliers(&mut matches);
+        let mut states: Vec<Option<State>> = matches
             .iter()
             .map(|one| one.as_ref().map(State::of))
             .collect();
@@ -207,22 +207,22 @@ impl Tracker {
     /// Matches with the first image itself.
     fn direct(&self, image: &GreyImage, spline: &Spline) -> Vec<Option<Match>> {
         let follower = self.follower();
-        let mut found: Vec<Option<Match>> = vec![None; self.centres.len()];
-        let mut attempts = vec![0; found.len()];
+        let mut matches: Vec<Option<Match>> = vec![None; self.centres.len()];
+        let mut attempts = vec![0; matches.len()];
         if let Some((_, states)) = &self.before {
             let guesses = states
                 .iter()
                 .enumerate()
                 .filter_map(|(point, state)| Some((point, state.as_ref()?.warp)));
             for (point, one) in follower.find_all(spline, guesses.collect()) {
-                found[point] = one;
+                matches[point] = one;
             }
-            follower.spread(spline, &mut found, &mut attempts);
+            follower.spread(spline, &mut matches, &mut attempts);
         }
-        if self.before.is_none() || found.iter().all(Option::is_none) {
-            self.seed(&follower, (image, spline), &mut found, &mut attempts);
+        if self.before.is_none() || matches.iter().all(Option::is_none) {
+            self.seed(&follower, (image, spline), &mut matches, &mut attempts);
         }
-        found
+        matches
     }
 
     /// Looks for seeds until each part of the specimen has one, or none is found.
@@ -230,7 +230,7 @@ impl Tracker {
         &self,
         follower: &Follower,
         (image, spline): (&GreyImage, &Spline),
-        found: &mut [Option<Match>],
+        matches: &mut [Option<Match>],
         attempts: &mut [usize],
     ) {
         let pyramid = Pyramid::new(
@@ -240,12 +240,12 @@ impl Tracker {
             follower.order,
         );
         // A part of the specimen that nothing leads to.
-        let is_open = |point: usize, found: &[Option<Match>], attempts: &[usize]| {
-            follower.centres[point].is_some() && found[point].is_none() && attempts[point] == 0
+        let is_open = |point: usize, matches: &[Option<Match>], attempts: &[usize]| {
+            follower.centres[point].is_some() && matches[point].is_none() && attempts[point] == 0
         };
         for round in 0..MOST_SEEDS {
-            let open: Vec<usize> = (0..found.len())
-                .filter(|point| is_open(*point, found, attempts))
+            let open: Vec<usize> = (0..matches.len())
+                .filter(|point| is_open(*point, matches, attempts))
                 .collect();
             let candidates = spread_out(&open);
             let centre = |point: &usize| Some((*point, follower.centres[*point]?));
@@ -263,23 +263,23 @@ impl Tracker {
             let Some((point, one)) = seed else {
                 return;
             };
-            found[point] = Some(one);
+            matches[point] = Some(one);
             attempts[point] += 1;
-            follower.spread(spline, found, attempts);
+            follower.spread(spline, matches, attempts);
         }
     }
 
     /// The noise from what remains, and the matches with it.
-    fn learn_noise(&mut self, spline: &Spline, found: &mut [Option<Match>]) {
-        let mut misfits: Vec<f64> = found.iter().flatten().map(|one| one.misfit).collect();
+    fn learn_noise(&mut self, spline: &Spline, matches: &mut [Option<Match>]) {
+        let mut misfits: Vec<f64> = matches.iter().flatten().map(|one| one.misfit).collect();
         if misfits.is_empty() {
             return;
         }
         misfits.sort_by(f64::total_cmp);
         let usual = 2.0 * misfits[misfits.len() / 2];
         let empty = Classes::new(self.white);
-        let points: Vec<usize> = (0..found.len())
-            .filter(|point| found[*point].is_some_and(|one| one.misfit <= usual))
+        let points: Vec<usize> = (0..matches.len())
+            .filter(|point| matches[*point].is_some_and(|one| one.misfit <= usual))
             .collect();
         let parts = points.par_chunks(256).map(|points| {
             let mut classes = empty.clone();
@@ -288,7 +288,7 @@ impl Tracker {
                 let subset = centre.and_then(|centre| {
                     Subset::new(&self.reference, centre, self.half, self.order, &self.noise)
                 });
-                if let (Some(subset), Some(one)) = (subset, &found[*point]) {
+                if let (Some(subset), Some(one)) = (subset, &matches[*point]) {
                     subset.classify(spline, one, &mut classes);
                 }
             }
@@ -302,16 +302,16 @@ impl Tracker {
             self.reference =
                 Reference::new(reference.image.clone(), reference.usable.clone(), &noise);
             let follower = self.follower();
-            let guesses = found
+            let guesses = matches
                 .iter()
                 .enumerate()
                 .filter_map(|(point, one)| Some((point, one.as_ref()?.warp)));
             let again = follower.find_all(spline, guesses.collect());
             again
                 .into_iter()
-                .for_each(|(point, one)| found[point] = one);
-            let mut attempts = vec![0; found.len()];
-            follower.spread(spline, found, &mut attempts);
+                .for_each(|(point, one)| matches[point] = one);
+            let mut attempts = vec![0; matches.len()];
+            follower.spread(spline, matches, &mut attempts);
         }
     }
 }

@@ -153,13 +153,13 @@ mod tests {
         };
         let half = 8.0;
         let sampled = Warp::sampled(half, |x, y| truth.at(half * x, half * y, 6));
-        for (found, term) in sampled
+        for (computed, term) in sampled
             .terms
             .iter()
             .flatten()
             .zip(truth.terms.iter().flatten())
         {
-            assert!((found - term).abs() < 1e-14);
+            assert!((computed - term).abs() < 1e-14);
         }
         assert_eq!((sampled.functions(), Warp::default().functions()), (6, 3));
     }

@@ -140,22 +140,22 @@ pub enum Mismatch {
     /// Meshes of different sizes in mm.
     #[error(
         "the field's mesh measures {}, the specimen {}",
-        extents(*.found), extents(*.expected)
+        extents(*.actual), extents(*.expected)
     )]
     Size {
         /// Length and width of the field's mesh.
-        found: [f64; 2],
+        actual: [f64; 2],
         /// Length and width of the specimen.
         expected: [f64; 2],
     },
     /// Points and specimen appear to be in two units of length.
     #[error(
         "the points span {} mm and the specimen {} mm: about a factor of {ratio}, as between two units of length",
-        decimals(*.found, 4), decimals(*.expected, 4)
+        decimals(*.actual, 4), decimals(*.expected, 4)
     )]
     Unit {
         /// The size of the points in mm.
-        found: f64,
+        actual: f64,
         /// The size of the specimen in mm.
         expected: f64,
         /// The nearest factor between two units.
@@ -265,13 +265,13 @@ impl Sites {
             let [low, high] = bounding_box(positions.iter().copied());
             [0, 1].map(|axis| high[axis] - low[axis])
         };
-        let [own, whole] = [&self.positions, &specimen.nodes].map(|positions| sides(positions));
-        let is_window = (0..2).any(|axis| own[axis] < WHOLE * whole[axis]);
+        let [extent, full] = [&self.positions, &specimen.nodes].map(|positions| sides(positions));
+        let is_window = (0..2).any(|axis| extent[axis] < WHOLE * full[axis]);
         is_window.then(|| {
             format!(
                 "the points span {} of the specimen's {}, and the models are compared there alone",
-                extents(own),
-                extents(whole)
+                extents(extent),
+                extents(full)
             )
         })
     }
@@ -281,12 +281,12 @@ impl Sites {
     /// # Errors
     /// `Mismatch::Zero` where the imported field is zero, so that no difference can be related to it.
     pub fn difference(&self, field: &ModelField) -> Result<Difference, Mismatch> {
-        let found = self.at(field);
+        let computed = self.at(field);
         let size = self.expected.weighted_norm(&self.weights);
         if size == 0.0 {
             return Err(Mismatch::Zero);
         }
-        let (largest, position) = found.largest_distance(&self.expected);
+        let (largest, position) = computed.largest_distance(&self.expected);
         let scaled = |factor: f64| -> Vec<f64> {
             let scaled = self.expected.iter();
             scaled.map(|expected| factor * expected).collect()
@@ -297,15 +297,15 @@ impl Sites {
                 .map(|((a, b), index)| self.weights[index / 2] * a * b)
                 .sum()
         };
-        let factor = product(&found, &self.expected) / product(&self.expected, &self.expected);
-        let (shift, shifted) = self.shifted_to(&found);
+        let factor = product(&computed, &self.expected) / product(&self.expected, &self.expected);
+        let (shift, shifted) = self.shifted_to(&computed);
         Ok(Difference {
             factor,
             shift,
-            shifted_percent: 100.0 * found.weighted_distance(&shifted, &self.weights) / size,
-            scaled_percent: 100.0 * found.weighted_distance(&scaled(factor), &self.weights)
+            shifted_percent: 100.0 * computed.weighted_distance(&shifted, &self.weights) / size,
+            scaled_percent: 100.0 * computed.weighted_distance(&scaled(factor), &self.weights)
                 / (factor.abs() * size),
-            percent: 100.0 * found.weighted_distance(&self.expected, &self.weights) / size,
+            percent: 100.0 * computed.weighted_distance(&self.expected, &self.weights) / size,
             largest,
             position: self.positions[position],
         })
@@ -313,13 +313,13 @@ impl Sites {
 
     /// The motion of the whole body by which the imported field comes nearest to another one by least squares, and the field so
     /// moved.
-    fn shifted_to(&self, found: &[f64]) -> (RigidMotion, Vec<f64>) {
+    fn shifted_to(&self, computed: &[f64]) -> (RigidMotion, Vec<f64>) {
         let now = |u: &[f64], site: usize| {
             [0, 1].map(|axis| self.positions[site][axis] + u[2 * site + axis])
         };
         let pairs = self.weights.iter().enumerate();
         let pairs =
-            pairs.map(|(site, weight)| (*weight, now(&self.expected, site), now(found, site)));
+            pairs.map(|(site, weight)| (*weight, now(&self.expected, site), now(computed, site)));
         let (middle, motion) = RigidMotion::nearest(&pairs.collect::<Vec<_>>());
         let moved = (0..self.positions.len()).flat_map(|site| {
             let position = now(&self.expected, site);
@@ -336,11 +336,11 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
         let [low, high] = mesh.bounding_box();
         [0, 1].map(|axis| high[axis] - low[axis])
     };
-    let (found, expected) = (size(field), size(specimen));
-    if (0..2).all(|axis| (found[axis] / expected[axis] - 1.0).abs() <= NEAR_SIZE) {
+    let (actual, expected) = (size(field), size(specimen));
+    if (0..2).all(|axis| (actual[axis] / expected[axis] - 1.0).abs() <= NEAR_SIZE) {
         return Ok(());
     }
-    Err(Mismatch::Size { found, expected })
+    Err(Mismatch::Size { actual, expected })
 }
 
 /// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A
@@ -350,10 +350,10 @@ fn near_in_size(positions: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch>
         let [low, high] = bounding_box(positions.iter().copied());
         (high[0] - low[0]).hypot(high[1] - low[1])
     };
-    let (found, expected) = (size(positions), size(&specimen.nodes));
-    match unit_ratio(expected / found).filter(|ratio| *ratio >= 100.0) {
+    let (actual, expected) = (size(positions), size(&specimen.nodes));
+    match unit_ratio(expected / actual).filter(|ratio| *ratio >= 100.0) {
         Some(ratio) => Err(Mismatch::Unit {
-            found,
+            actual,
             expected,
             ratio,
         }),

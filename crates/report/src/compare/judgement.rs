@@ -95,19 +95,19 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
     if deviation + own_error / OWN_SHARE <= limit {
         return Judgement::PassByMargin;
     }
-    let told = format!(
+    let reason = format!(
         "the reference is too coarse: its own error, {} %, is more than a tenth of the deviation, {} %, and of its distance to the limit",
         percent(own_error),
         percent(deviation)
     );
-    too_coarse(own_error, told, remedy)
+    too_coarse(own_error, reason, remedy)
 }
 
 /// The judgement where the reference's own error is too large, and why.
-fn too_coarse(own_error: f64, told: String, remedy: &str) -> Judgement {
+fn too_coarse(own_error: f64, reason: String, remedy: &str) -> Judgement {
     Judgement::CannotBeJudged {
         reason: if own_error.is_finite() {
-            told
+            reason
         } else {
             "the reference's own error is not known".to_owned()
         },
@@ -143,12 +143,12 @@ pub fn judge_by_margin(deviation: f64, own_error: f64, limit: f64, remedy: &str)
     if deviation + own_error <= limit {
         return Judgement::Pass;
     }
-    let told = format!(
+    let reason = format!(
         "the reference's own error, {} %, decides whether the deviation, {} %, is within the limit",
         percent(own_error),
         percent(deviation)
     );
-    too_coarse(own_error, told, remedy)
+    too_coarse(own_error, reason, remedy)
 }
 
 /// A deviation in % as a sentence shows it.

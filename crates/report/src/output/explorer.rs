@@ -107,7 +107,7 @@ fn is_sheet(series: &GridSeries) -> bool {
     !grids.is_empty()
         && grids
             .iter()
-            .all(|own| own.time.is_some() && is_sheet(&own.grid))
+            .all(|step| step.time.is_some() && is_sheet(&step.grid))
 }
 
 fn bytes_of_step(series: &GridSeries) -> usize {
@@ -145,7 +145,7 @@ const DISPLACEMENT: &str = "displacement_mm";
 
 /// What can be chosen: the displacement's components first.
 fn fields(grid: &Grid) -> Value {
-    let own = [
+    let displacements = [
         json!({ "name": "ux", "label": "displacement along x [mm]" }),
         json!({ "name": "uy", "label": "displacement along y [mm]" }),
     ];
@@ -156,7 +156,7 @@ fn fields(grid: &Grid) -> Value {
         };
         json!({ "name": array.name, "label": format!("{size}{}", label(array.name)) })
     });
-    own.into_iter().chain(arrays).collect()
+    displacements.into_iter().chain(arrays).collect()
 }
 
 fn model(series: &GridSeries, shown: &[f64]) -> Value {
@@ -164,10 +164,10 @@ fn model(series: &GridSeries, shown: &[f64]) -> Value {
     let points = grid.points.iter().flatten();
     let points: Vec<u8> = points.flat_map(|at| (*at as f32).to_le_bytes()).collect();
     let triangles: Vec<u8> = triangles(grid).flat_map(u32::to_le_bytes).collect();
-    let at = |time: &f64| series.grids.iter().find(|own| own.time == Some(*time));
+    let at = |time: &f64| series.grids.iter().find(|step| step.time == Some(*time));
     let steps = shown
         .iter()
-        .map(|time| at(time).map(|own| values(&own.grid)));
+        .map(|time| at(time).map(|step| values(&step.grid)));
     json!({
         "name": series.name,
         "label": model_label(&series.name),
@@ -191,9 +191,9 @@ fn values(grid: &Grid) -> Value {
     }
     for array in shown_arrays(grid) {
         let each = array.values.chunks_exact(array.components.count());
-        let sizes = each.map(|own| match own {
+        let sizes = each.map(|components| match components {
             [x, y] => x.hypot(*y),
-            own => own[0],
+            components => components[0],
         });
         all.insert(array.name.into(), packed(sizes.collect()));
     }
@@ -227,11 +227,11 @@ fn triangles(grid: &Grid) -> impl Iterator<Item = u32> {
     grid.cells.iter().flat_map(move |cell| {
         let nodes = &grid.connectivity[first..first + cell.points()];
         first += cell.points();
-        let own = match cell {
+        let pieces = match cell {
             GridCell::Mesh(CellShape::Quad4) if turned(grid, nodes, middle) => &TURNED,
             _ => parts(*cell),
         };
-        own.iter().flatten().map(|local| nodes[*local] as u32)
+        pieces.iter().flatten().map(|local| nodes[*local] as u32)
     })
 }
 
@@ -249,8 +249,8 @@ fn middle(points: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
 /// Whether a quadrilateral is cut by its other diagonal: what lies left of the middle as what lies right of it, mirrored, and likewise above
 /// and below.
 fn turned(grid: &Grid, nodes: &[usize], of_all: [f64; 2]) -> bool {
-    let own = middle(nodes.iter().map(|node| grid.points[*node]));
-    (own[0] - of_all[0]) * (own[1] - of_all[1]) < 0.0
+    let centre = middle(nodes.iter().map(|node| grid.points[*node]));
+    (centre[0] - of_all[0]) * (centre[1] - of_all[1]) < 0.0
 }
 
 /// Triangles of a cell's own nodes: corners, then middles of the sides, then the centre.
@@ -314,9 +314,9 @@ mod tests {
                 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
             };
             let areas: Vec<f64> = parts(GridCell::Mesh(shape)).iter().map(area).collect();
-            let whole = if shape.is_triangle() { 0.5 } else { 4.0 };
-            assert!(areas.iter().all(|own| *own > 0.0), "{name}");
-            assert!((areas.iter().sum::<f64>() - whole).abs() < 1e-12, "{name}");
+            let total = if shape.is_triangle() { 0.5 } else { 4.0 };
+            assert!(areas.iter().all(|size| *size > 0.0), "{name}");
+            assert!((areas.iter().sum::<f64>() - total).abs() < 1e-12, "{name}");
         }
     }
 }

@@ -147,7 +147,7 @@ impl ReportPicture {
                     format!("{stem}.{}", name_of(&PictureFormat::NAMES, *format)),
                     bytes,
                 )),
-                Err(found) => fault = Some(found),
+                Err(error) => fault = Some(error),
             }
         }
         Self {
@@ -273,16 +273,16 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<Option<Diagnostic>, Error> {
     let _ = file.as_file().try_lock();
     file.write_all(bytes).map_err(fault)?;
     file.as_file().sync_all().map_err(fault)?;
-    let foreign = is_foreign(path, bytes).then(|| (kept(path), free_name(path)));
-    if let Some((_, other)) = &foreign {
+    let moved = is_unrelated(path, bytes).then(|| (kept(path), free_name(path)));
+    if let Some((_, other)) = &moved {
         std::fs::rename(path, other).map_err(fault)?;
     }
     file.persist(path).map_err(|cause| fault(cause.error))?;
-    Ok(foreign.map(|(told, _)| told))
+    Ok(moved.map(|(warning, _)| warning))
 }
 
 /// Whether a file is there that gelbench has not written: a text that does not name it, or no picture where one is to be.
-fn is_foreign(path: &Path, new: &[u8]) -> bool {
+fn is_unrelated(path: &Path, new: &[u8]) -> bool {
     const BEGIN: usize = 2048;
     const PNG: &[u8] = b"\x89PNG";
     let Ok(there) = std::fs::read(path) else {
@@ -334,14 +334,14 @@ mod tests {
             file.set_modified(hour).unwrap();
             (path, file)
         };
-        let (left, file) = old(".gelbench-new-a");
+        let (abandoned, file) = old(".gelbench-new-a");
         drop(file);
         let (used, held) = old(".gelbench-new-b");
         held.try_lock().unwrap();
         let young = folder.path().join(".gelbench-new-c");
         std::fs::write(&young, "").unwrap();
         assert!(save(&folder.path().join("a.md"), b"1").unwrap().is_none());
-        assert!(!left.exists() && used.exists() && young.exists());
+        assert!(!abandoned.exists() && used.exists() && young.exists());
     }
 
     #[test]
@@ -349,8 +349,8 @@ mod tests {
         let folder = tempfile::TempDir::new().unwrap();
         let path = folder.path().join("notes.inp");
         std::fs::write(&path, "mine").unwrap();
-        let told = save(&path, b"** written by gelbench").unwrap().unwrap();
-        assert!(told.message.ends_with("notes.inp.kept"), "{told:?}");
+        let warning = save(&path, b"** written by gelbench").unwrap().unwrap();
+        assert!(warning.message.ends_with("notes.inp.kept"), "{warning:?}");
         assert_eq!(
             std::fs::read(path.with_extension("inp.kept")).unwrap(),
             b"mine"

@@ -101,15 +101,15 @@ impl ResultFolder {
         }
         let source = inputs
             .first()
-            .map(|input| relative(input, &whole_path(path)));
+            .map(|input| relative(input, &absolute_path(path)));
         let kept = identity.map(|identity| format!("{PARTIAL}{identity}"));
         sweep(path, kept.as_deref());
         for folder in folders(path, &before) {
             let writable = tempfile::tempfile_in(&folder);
             writable.map_err(|cause| Error::write(&folder, cause))?;
         }
-        let own = before.files.iter().filter(|(_, by)| *by == writer);
-        for (name, _) in own.filter(|(name, _)| is_inside(name)) {
+        let previous = before.files.iter().filter(|(_, by)| *by == writer);
+        for (name, _) in previous.filter(|(name, _)| is_inside(name)) {
             refuse_input(&path.join(name), &inputs)?;
         }
         let partial = match kept {
@@ -120,8 +120,8 @@ impl ResultFolder {
             }
             None => {
                 let mut builder = tempfile::Builder::new();
-                let made = builder.prefix(PARTIAL).tempdir_in(path).map_err(fault)?;
-                made.keep()
+                let temporary = builder.prefix(PARTIAL).tempdir_in(path).map_err(fault)?;
+                temporary.keep()
             }
         };
         Ok(Self {
@@ -179,11 +179,12 @@ impl ResultFolder {
     /// A warning for each file that is somebody else's and in the way of one that was added since the last time.
     pub fn in_the_way(&mut self) -> Vec<Diagnostic> {
         let new = &self.names[self.looked_at..];
-        let told = foreign(&self.path, new, &self.before).map(|position| kept(&position));
+        let warnings =
+            unlisted_files(&self.path, new, &self.before).map(|position| kept(&position));
         let others = self.of_another_command(new);
-        let told = told.chain(others).collect();
+        let warnings = warnings.chain(others).collect();
         self.looked_at = self.names.len();
-        told
+        warnings
     }
 
     /// A warning where some files are those that another command has written.
@@ -214,9 +215,9 @@ impl ResultFolder {
         let fault = |cause: postcard::Error| Error::write(&self.path, cause);
         let note = postcard::to_allocvec(&(files, record)).map_err(fault)?;
         let name = format!("{PARTS}/{part}");
-        let whole = self.write_aside(&format!("{name}.new"), &note)?;
+        let written = self.write_aside(&format!("{name}.new"), &note)?;
         let position = self.unfinished.partial.join(&name);
-        fs::rename(whole, &position).map_err(|cause| Error::write(position, cause))?;
+        fs::rename(written, &position).map_err(|cause| Error::write(position, cause))?;
         self.kept = self.names.len();
         Ok(())
     }
@@ -255,10 +256,10 @@ impl ResultFolder {
     /// # Errors
     /// [`Error::Write`] with the file that could not be moved, removed or written.
     pub fn finish(mut self) -> Result<Vec<PathBuf>, Error> {
-        let own = self.names.iter().cloned();
-        let new: BTreeMap<String, String> = own.map(|name| (name, self.writer.clone())).collect();
+        let names = self.names.iter().cloned();
+        let new: BTreeMap<String, String> = names.map(|name| (name, self.writer.clone())).collect();
         let in_the_way: BTreeSet<PathBuf> =
-            foreign(&self.path, &self.names, &self.before).collect();
+            unlisted_files(&self.path, &self.names, &self.before).collect();
         let mut manifest = std::mem::take(&mut self.before);
         let files = &mut manifest.files;
         let ours = |(name, writer): (&String, &String)| {
@@ -324,7 +325,7 @@ pub fn refuse_file(folder: &Path) -> Result<(), Error> {
 }
 
 /// The files in the places of some names that gelbench has not written.
-fn foreign<'a>(
+fn unlisted_files<'a>(
     path: &'a Path,
     names: &'a [String],
     before: &'a Manifest,
@@ -361,7 +362,7 @@ pub fn free_name(path: &Path) -> PathBuf {
 }
 
 /// The path of a folder without links.
-fn whole_path(folder: &Path) -> PathBuf {
+fn absolute_path(folder: &Path) -> PathBuf {
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
@@ -378,8 +379,8 @@ fn folders(path: &Path, before: &Manifest) -> BTreeSet<PathBuf> {
 /// Removes what runs that were killed have left, but for the folder `kept`.
 fn sweep(path: &Path, kept: Option<&str>) {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();
-    let is_left = |name: &str| name.starts_with(PARTIAL) && Some(name) != kept;
-    for entry in entries.filter(|entry| is_left(&entry.file_name().to_string_lossy())) {
+    let is_leftover = |name: &str| name.starts_with(PARTIAL) && Some(name) != kept;
+    for entry in entries.filter(|entry| is_leftover(&entry.file_name().to_string_lossy())) {
         // What cannot be removed does no harm.
         let _ = fs::remove_dir_all(entry.path());
     }

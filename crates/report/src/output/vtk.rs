@@ -70,29 +70,29 @@ fn finished(file: &[u8], grid: &Grid) -> Vec<u8> {
         let name = head.split("Name=\"").nth(1)?.split('"').next()?;
         arrays().find(|array| array.name == name)
     };
-    let mut whole = String::with_capacity(file.len() + 4096);
+    let mut output = String::with_capacity(file.len() + 4096);
     let mut parts = file.split("<DataArray ");
     let first = parts.next().unwrap_or_default();
-    whole += &first.replacen("header_type=", &format!("{COMPRESSOR} header_type="), 1);
+    output += &first.replacen("header_type=", &format!("{COMPRESSOR} header_type="), 1);
     for part in parts {
         let (head, rest) = part.split_once('>').unwrap_or((part, ""));
-        whole += "<DataArray ";
-        whole += &head
+        output += "<DataArray ";
+        output += &head
             .trim_end_matches('/')
             .replace("\"UInt64\"", "\"Int64\"");
         let names = named(head).map_or(&[][..], |array| names(array.components));
         for (index, name) in names.iter().enumerate() {
-            whole += &format!(" ComponentName{index}=\"{name}\"");
+            output += &format!(" ComponentName{index}=\"{name}\"");
         }
-        whole += if head.ends_with('/') { "/>" } else { ">" };
+        output += if head.ends_with('/') { "/>" } else { ">" };
         let (array, after) = rest.split_at(rest.find('<').unwrap_or(rest.len()));
         match compressed(array).filter(|_| !head.ends_with('/')) {
-            Some(array) => whole += &array,
-            None => whole += array,
+            Some(array) => output += &array,
+            None => output += array,
         }
-        whole += after;
+        output += after;
     }
-    whole.into_bytes()
+    output.into_bytes()
 }
 
 fn names(components: Components) -> &'static [&'static str] {
@@ -149,19 +149,19 @@ fn attribute(array: &Array) -> Attribute {
         }
         Components::Vector => {
             let planar = values.chunks_exact(2);
-            let whole = planar.flat_map(|v| [v[0], v[1], 0.0]);
-            (ElementType::Vectors, whole.collect())
+            let padded = planar.flat_map(|v| [v[0], v[1], 0.0]);
+            (ElementType::Vectors, padded.collect())
         }
         Components::Stretches => (ElementType::Generic(3), values.clone()),
         Components::Tensor => {
             let fives = values.chunks_exact(5);
-            let whole = fives.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, t[4]]);
-            (ElementType::Tensors, whole.collect())
+            let padded = fives.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, t[4]]);
+            (ElementType::Tensors, padded.collect())
         }
         Components::Symmetric => {
             let fours = values.chunks_exact(4);
-            let whole = fours.flat_map(|t| [t[0], t[1], t[2], t[3], 0.0, 0.0]);
-            (ElementType::Generic(6), whole.collect())
+            let padded = fours.flat_map(|t| [t[0], t[1], t[2], t[3], 0.0, 0.0]);
+            (ElementType::Generic(6), padded.collect())
         }
     };
     // Displacements are read again with all digits; what follows from them is looked at.

@@ -36,9 +36,9 @@ pub fn card_curves(card: &Card) -> Drawing {
 /// From a tenth of the shortest time to ten times the longest one of the series and the data, in s.
 fn span(card: &Card) -> [f64; 2] {
     let material = &card.viscosity;
-    let own = material.relaxation.iter().map(|term| term.time);
+    let times = material.relaxation.iter().map(|term| term.time);
     let covered = material.covered.times.into_iter().flatten();
-    match extremes(own.chain(covered)) {
+    match extremes(times.chain(covered)) {
         [low, high] if low <= high => [0.1 * low, 10.0 * high],
         _ => [1e-3, 1e3],
     }

@@ -78,8 +78,8 @@ pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
     // Single tines are drawn as those of their side.
     let groups = mesh.groups().iter();
     for (name, group) in groups.filter(|(name, _)| !name.contains("-tine-")) {
-        let is_same = |(own, _): &&mut (&Group, Vec<&str>)| {
-            own.nodes == group.nodes && own.edges.is_empty() == group.edges.is_empty()
+        let is_same = |(other, _): &&mut (&Group, Vec<&str>)| {
+            other.nodes == group.nodes && other.edges.is_empty() == group.edges.is_empty()
         };
         match parts.iter_mut().find(is_same) {
             Some((_, names)) => names.push(name),
@@ -123,16 +123,16 @@ fn named(mesh: &Mesh, group: &Group, names: &[&str]) -> NamedLines {
 
 /// The edges around cells: those of one of them only.
 fn rim(mesh: &Mesh, cells: &[usize]) -> Vec<Vec<usize>> {
-    let mut found: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
+    let mut edges: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
     for cell in cells {
         for edge in mesh.shape(*cell).edges() {
             let edge: Vec<usize> = edge.iter().map(|node| mesh.cell(*cell)[*node]).collect();
             let ends = [edge[0].min(edge[1]), edge[0].max(edge[1])];
-            let seen = found.contains_key(&ends);
-            found.insert(ends, (!seen).then_some(edge));
+            let seen = edges.contains_key(&ends);
+            edges.insert(ends, (!seen).then_some(edge));
         }
     }
-    found.into_values().flatten().collect()
+    edges.into_values().flatten().collect()
 }
 
 fn cell_outline(mesh: &Mesh, cell: usize) -> Vec<[f64; 2]> {

@@ -45,10 +45,10 @@ impl Finding {
     }
 
     /// A finding that makes figures doubtful.
-    pub fn doubt(rule: &'static str, found: Found) -> Self {
+    pub fn doubt(rule: &'static str, finding: Found) -> Self {
         Self {
             weight: Weight::Doubt,
-            ..Self::warning(rule, found)
+            ..Self::warning(rule, finding)
         }
     }
 

@@ -21,11 +21,11 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "specimen": test.specimen,
             "stress_measure": test.stress_measure.name(),
             "points": test.observations.len(),
-            "columns": test.table.columns.iter().map(|own| json!({
-                "quantity": own.quantity,
-                "column": own.column,
-                "unit": own.unit,
-                "divided_by": own.divided_by,
+            "columns": test.table.columns.iter().map(|column| json!({
+                "quantity": column.quantity,
+                "column": column.column,
+                "unit": column.unit,
+                "divided_by": column.divided_by,
             })).collect::<Vec<_>>(),
             "columns_not_read": test.table.unread,
             "lines": test.table.lines,
@@ -106,13 +106,13 @@ fn protocols_json(protocols: &Protocols) -> Value {
 fn values_json(parameters: &[Parameter]) -> Value {
     let pairs = parameters
         .iter()
-        .map(|own| (own.key.to_owned(), json!(own.value)));
+        .map(|parameter| (parameter.key.to_owned(), json!(parameter.value)));
     pairs.collect::<Map<_, _>>().into()
 }
 
 /// A zero or a stretch that was found with the law.
-fn zero_json(found: &MovedZero) -> Value {
-    let (what, unit) = match found.zero {
+fn zero_json(moved: &MovedZero) -> Value {
+    let (what, unit) = match moved.zero {
         Zero::Record { test, .. } => (format!("zero of test {}", test + 1), ""),
         Zero::Force { axis, .. } => (
             format!("stress without load along axis {}", axis + 1),
@@ -126,9 +126,9 @@ fn zero_json(found: &MovedZero) -> Value {
     json!({
         "what": what,
         "unit": unit,
-        "value": found.by.value,
-        "standard_error": found.by.standard_error,
-        "interval_95_percent": found.by.interval,
+        "value": moved.by.value,
+        "standard_error": moved.by.standard_error,
+        "interval_95_percent": moved.by.interval,
     })
 }
 
@@ -140,8 +140,8 @@ fn parameter_json(fit: &Fit, index: usize) -> Value {
         "key": parameter.key,
         "value": parameter.value,
         "unit": parameter.unit(),
-        "standard_error": estimate.map(|own| own.standard_error),
-        "interval_95_percent": estimate.map(|own| own.interval),
+        "standard_error": estimate.map(|estimate| estimate.standard_error),
+        "interval_95_percent": estimate.map(|estimate| estimate.interval),
         "at_bound": quality.at_bound[index],
         "held": quality.held[index],
     })
@@ -169,18 +169,18 @@ pub(super) fn notes(fit: &Fit) -> Vec<String> {
     /// So many have room in a picture.
     const MOST: usize = 6;
     let quality = &fit.quality;
-    let parameter = |(index, own): (usize, &Parameter)| {
+    let parameter = |(index, parameter): (usize, &Parameter)| {
         let estimate = quality.estimates.get(index);
         let error = estimate.filter(|_| quality.has_intervals() && !quality.held[index]);
-        let number = match error.map(|own| own.standard_error) {
-            Some(error) if error > 0.0 && error < own.value.abs() => {
+        let number = match error.map(|estimate| estimate.standard_error) {
+            Some(error) if error > 0.0 && error < parameter.value.abs() => {
                 // As many decimals as the error has with two digits.
                 let decimals = (1.0 - error.log10().floor()).max(0.0) as usize;
-                format!("{:.decimals$} ± {error:.decimals$}", own.value)
+                format!("{:.decimals$} ± {error:.decimals$}", parameter.value)
             }
-            _ => digits(own.value, 4),
+            _ => digits(parameter.value, 4),
         };
-        let value = format!("{} = {number} {}", own.key, own.unit());
+        let value = format!("{} = {number} {}", parameter.key, parameter.unit());
         value.trim_end_matches([' ', '–']).to_owned()
     };
     let shown = fit.parameters.iter().take(MOST).enumerate();

@@ -110,8 +110,8 @@ impl<'a> Course<'a> {
             Test::Equibiaxial => Mode::Equibiaxial,
             Test::Biaxial | Test::SimpleShear => return [0.0, f64::INFINITY],
         };
-        let found = fit.quality.stable.iter().find(|range| range.mode == mode);
-        found.map_or([0.0, f64::INFINITY], |range| range.stretches)
+        let range = fit.quality.stable.iter().find(|range| range.mode == mode);
+        range.map_or([0.0, f64::INFINITY], |range| range.stretches)
     }
 
     /// Whether the stretch comes back by a fifth of its range.
@@ -248,9 +248,9 @@ fn drawn<'a>(fit: &'a Fit, tests: &[TestData]) -> Vec<(TestData, &'a [f64], Stri
         };
         let mut rest = &predicted[..];
         for (part, number) in parts.into_iter().zip(1..) {
-            let (own, others) = rest.split_at(part.observations.len().min(rest.len()));
+            let (first, others) = rest.split_at(part.observations.len().min(rest.len()));
             rest = others;
-            drawn.push((part, own, format!("protocol {number}")));
+            drawn.push((part, first, format!("protocol {number}")));
         }
     }
     drawn
@@ -371,8 +371,8 @@ mod tests {
         let test = TestData::parse("a.csv", &format!("{head}\n{rows}"), &Statements::new());
         let tests = [test.unwrap()];
         let law = Law::named("neo-hooke").unwrap();
-        let found = fit(law, &tests, &FitSettings::default()).unwrap();
-        let Drawing::Charts(charts) = fit_picture(&found, &found.fitted_tests(&tests)) else {
+        let fit = fit(law, &tests, &FitSettings::default()).unwrap();
+        let Drawing::Charts(charts) = fit_picture(&fit, &fit.fitted_tests(&tests)) else {
             panic!("a fit is drawn by charts");
         };
         let axes = charts.iter().map(|(chart, _)| {

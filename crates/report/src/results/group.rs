@@ -26,11 +26,11 @@ pub fn group_table(groups: &[NamedGroup]) -> String {
         .into();
     for NamedGroup { name, .. } in groups {
         let columns = ["mean", "mean_low", "mean_high", "between"];
-        head.extend(columns.map(|own| format!("{name}_{own} [MPa]")));
+        head.extend(columns.map(|column| format!("{name}_{column} [MPa]")));
     }
     if groups.len() == 2 {
         let columns = ["difference", "difference_low", "difference_high"];
-        head.extend(columns.map(|own| format!("{own} [MPa]")));
+        head.extend(columns.map(|column| format!("{column} [MPa]")));
     }
     let rows = groups[0].states.iter().enumerate().map(|(row, state)| {
         let mut record: Vec<String> = state
@@ -41,14 +41,15 @@ pub fn group_table(groups: &[NamedGroup]) -> String {
         for group in groups {
             let stress = group.states[row].stress;
             let [low, high] = stress.estimate().interval;
-            record.extend([stress.mean, low, high, stress.between].map(|own| own.to_string()));
+            record
+                .extend([stress.mean, low, high, stress.between].map(|figure| figure.to_string()));
         }
         if let [first, second] = groups {
-            let own = first.states[row]
+            let difference = first.states[row]
                 .stress
                 .difference(&second.states[row].stress);
-            let [low, high] = own.interval;
-            record.extend([own.value, low, high].map(|own| own.to_string()));
+            let [low, high] = difference.interval;
+            record.extend([difference.value, low, high].map(|value| value.to_string()));
         }
         record
     });
@@ -57,20 +58,20 @@ pub fn group_table(groups: &[NamedGroup]) -> String {
 
 /// All figures of groups.
 pub fn group_json(groups: &[NamedGroup]) -> Value {
-    let of_group = |own: &NamedGroup| {
+    let of_group = |group: &NamedGroup| {
         json!({
-            "name": own.name,
-            "law": own.mean.law.name,
-            "mean_law": own.mean.parameters.iter().map(|one| json!({
+            "name": group.name,
+            "law": group.mean.law.name,
+            "mean_law": group.mean.parameters.iter().map(|one| json!({
                 "key": one.key, "value": one.value, "unit": one.unit(),
             })).collect::<Vec<_>>(),
-            "specimens": own.group.fits.iter().zip(&own.group.tests).map(|(fit, test)| json!({
+            "specimens": group.group.fits.iter().zip(&group.group.tests).map(|(fit, test)| json!({
                 "file": test.name,
                 "verdict": fit.quality.verdict.map(|verdict| verdict.answer.words()),
                 "r_squared": fit.quality.r_squared,
                 "parameters": fit.parameters.iter().map(|one| (one.key.to_owned(), json!(one.value))).collect::<serde_json::Map<_, _>>(),
             })).collect::<Vec<_>>(),
-            "states": own.states.iter().map(|state| json!({
+            "states": group.states.iter().map(|state| json!({
                 "stretches": state.strains.map(|strain| 1.0 + strain),
                 "axis": state.axis + 1,
                 "mean_MPa": state.stress.mean,
@@ -89,7 +90,7 @@ pub fn group_json(groups: &[NamedGroup]) -> Value {
 pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
     let axes = groups[0].states.iter().map(|state| state.axis).max();
     let axes = 0..=axes.unwrap_or(0);
-    let states = || groups.iter().flat_map(|own| &own.states);
+    let states = || groups.iter().flat_map(|group| &group.states);
     let highest = states().map(|state| state.stress.estimate().interval[1]);
     let unit = readable(highest.fold(0.0, f64::max));
     let count = axes.clone().count();
@@ -108,9 +109,9 @@ pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
 
 fn curves(groups: &[NamedGroup], axis: usize) -> Vec<Line> {
     let (mut bands, mut lines) = (Vec::new(), Vec::new());
-    for (own, colour) in groups.iter().zip(PALETTE) {
+    for (group, colour) in groups.iter().zip(PALETTE) {
         // The first protocol, from rest on.
-        let along = own.states.iter().filter(|state| state.axis == axis);
+        let along = group.states.iter().filter(|state| state.axis == axis);
         let protocol: Vec<&GroupState> = along.take(Group::STEPS.into()).collect();
         let curve = |value: &dyn Fn(&GroupState) -> f64| {
             let point = |state: &&GroupState| [1.0 + state.strains[axis], value(state)];
@@ -120,21 +121,21 @@ fn curves(groups: &[NamedGroup], axis: usize) -> Vec<Line> {
         let [low, high] = [0, 1].map(|end| curve(&|state| state.stress.estimate().interval[end]));
         let outline = low.into_iter().chain(high.into_iter().rev());
         bands.push(Line::new(
-            format!("{}: 95 % of the mean", own.name),
+            format!("{}: 95 % of the mean", group.name),
             outline,
             colour,
             Stroke::Filled,
         ));
         for side in [-1.0, 1.0] {
             let name = if side > 0.0 {
-                format!("{}: standard deviation", own.name)
+                format!("{}: standard deviation", group.name)
             } else {
                 String::new()
             };
             let spread = curve(&|state| state.stress.mean + side * state.stress.between);
             lines.push(Line::new(name, spread, colour, Stroke::Dashed));
         }
-        let name = format!("{}, {} specimens", own.name, own.group.fits.len());
+        let name = format!("{}, {} specimens", group.name, group.group.fits.len());
         lines.push(Line::new(
             name,
             curve(&|state| state.stress.mean),

@@ -210,7 +210,7 @@ impl Headline<'_> {
             let (at, groups) = &self.steps[step];
             let is_held = self.is_held(group);
             let figure = |((head, value), size): &(Column, f64)| match value(&groups[group]) {
-                _ if !is_held && !DISPLACEMENTS.iter().any(|(own, _)| own == head) => {
+                _ if !is_held && !DISPLACEMENTS.iter().any(|(name, _)| name == head) => {
                     "–".to_owned()
                 }
                 small if small.abs() <= NOTHING * size => number(0.0),

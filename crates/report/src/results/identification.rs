@@ -12,14 +12,15 @@ const GREY: [u8; 3] = [190, 190, 190];
 const POINTS: usize = 201;
 
 /// K(·) and D(·) with their bands and the secants at all instants, and the residuals of force and motion.
-pub fn identification_picture(found: &Identification, recording: &Recording) -> Drawing {
-    let motion = &found.motion;
-    let (over, label) = match found.settings.argument {
+pub fn identification_picture(identification: &Identification, recording: &Recording) -> Drawing {
+    let motion = &identification.motion;
+    let (over, label) = match identification.settings.argument {
         Argument::Extension => (&motion.extension, "extension x [mm]"),
         Argument::Rate => (&motion.rate, "rate of extension [mm/s]"),
     };
-    let elastic = |i: usize| found.stiffness.at(motion.extension[i]).value * motion.extension[i];
-    let viscous = |i: usize| found.damping.at(over[i]).value * motion.rate[i];
+    let elastic =
+        |i: usize| identification.stiffness.at(motion.extension[i]).value * motion.extension[i];
+    let viscous = |i: usize| identification.damping.at(over[i]).value * motion.rate[i];
     let force = |i: usize| recording.force[i] - recording.mass * motion.acceleration[i];
     let stiffness = secants(&motion.extension, &motion.extension, &|i| {
         force(i) - viscous(i)
@@ -28,26 +29,28 @@ pub fn identification_picture(found: &Identification, recording: &Recording) -> 
     let chart = |title: &str, x: &str, y: &str, lines| {
         LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
     };
-    let stiffness = curves(&found.stiffness, stiffness, PALETTE[0]);
-    let damping = curves(&found.damping, damping, PALETTE[1]);
+    let stiffness = curves(&identification.stiffness, stiffness, PALETTE[0]);
+    let damping = curves(&identification.damping, damping, PALETTE[1]);
     Drawing::Charts(vec![
         (
             chart("Spring K(·)", "extension x [mm]", "K [N/mm]", stiffness),
             340,
         ),
         (chart("Dashpot D(·)", label, "D [N·s/mm]", damping), 340),
-        (residuals(found, recording), 260),
+        (residuals(identification, recording), 260),
     ])
 }
 
 /// The share of the force in N divided by its argument, at every instant where the argument is large; near zero a secant is only noise.
-fn secants(own: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> Vec<[f64; 2]> {
+fn secants(divisor: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> Vec<[f64; 2]> {
     const LEAST: f64 = 0.25;
-    let most = own
+    let most = divisor
         .iter()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
-    let instants = (0..own.len()).filter(|i| own[*i].abs() > LEAST * most);
-    instants.map(|i| [argument[i], force(i) / own[i]]).collect()
+    let instants = (0..divisor.len()).filter(|i| divisor[*i].abs() > LEAST * most);
+    instants
+        .map(|i| [argument[i], force(i) / divisor[i]])
+        .collect()
 }
 
 fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Line> {
@@ -77,27 +80,32 @@ fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Li
     lines
 }
 
-fn residuals(found: &Identification, recording: &Recording) -> LineChart {
+fn residuals(identification: &Identification, recording: &Recording) -> LineChart {
     let Recording {
         times,
         force,
         extension,
         ..
     } = recording;
-    let left = |label: &str, [measured, fitted]: [&[f64]; 2], noise: f64, colour| {
+    let residual = |label: &str, [measured, fitted]: [&[f64]; 2], noise: f64, colour| {
         let pairs = measured.iter().zip(fitted).zip(times);
         let points = pairs.map(|((measured, fitted), t)| [*t, (measured - fitted) / noise]);
         Line::new(label, points, colour, Stroke::Points)
     };
-    let [noise, force_noise] = found.noise;
+    let [noise, force_noise] = identification.noise;
     let lines = vec![
-        left(
+        residual(
             "extension",
-            [extension, &found.motion.extension],
+            [extension, &identification.motion.extension],
             noise,
             PALETTE[5],
         ),
-        left("force", [force, &found.motion.force], force_noise, INK),
+        residual(
+            "force",
+            [force, &identification.motion.force],
+            force_noise,
+            INK,
+        ),
     ];
     let title = "Residuals: measured less fitted, over the noise";
     LineChart::new(
@@ -109,7 +117,11 @@ fn residuals(found: &Identification, recording: &Recording) -> LineChart {
 }
 
 /// All numbers of an identification. Numbers that do not exist are `null`.
-pub fn identification_json(found: &Identification, recording: &Recording, file: &str) -> Value {
+pub fn identification_json(
+    identification: &Identification,
+    recording: &Recording,
+    file: &str,
+) -> Value {
     let function = |(symbol, unit, function): (&str, &str, &Function)| {
         let curve = function.positions(41).into_iter().map(|x| {
             let estimate = function.at(x);
@@ -139,21 +151,21 @@ pub fn identification_json(found: &Identification, recording: &Recording, file: 
         "instants": recording.times.len(),
         "mass_tonne": recording.mass,
         "length_mm": recording.length,
-        "noise_of_extension_mm": found.noise[0],
-        "noise_of_force_N": found.noise[1],
-        "misfit": found.misfit,
-        "degrees_of_freedom": found.freedom,
-        "functions": found.functions().into_iter().map(function).collect::<Vec<_>>(),
+        "noise_of_extension_mm": identification.noise[0],
+        "noise_of_force_N": identification.noise[1],
+        "misfit": identification.misfit,
+        "degrees_of_freedom": identification.freedom,
+        "functions": identification.functions().into_iter().map(function).collect::<Vec<_>>(),
         "residuals": recording.times.iter().enumerate().map(|(i, t)| json!({
             "time_s": t,
-            "extension_mm": recording.extension[i] - found.motion.extension[i],
-            "force_N": recording.force[i] - found.motion.force[i],
+            "extension_mm": recording.extension[i] - identification.motion.extension[i],
+            "force_N": recording.force[i] - identification.motion.force[i],
         })).collect::<Vec<_>>(),
         "verdict": {
-            "answer": found.verdict.words(),
-            "reasons": found.verdict.reasons,
-            "doubts": found.verdict.doubts,
+            "answer": identification.verdict.words(),
+            "reasons": identification.verdict.reasons,
+            "doubts": identification.verdict.doubts,
         },
-        "warnings": found.warnings,
+        "warnings": identification.warnings,
     })
 }

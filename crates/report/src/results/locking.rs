@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn only_sheets_that_hardly_change_their_area_are_told() {
-        let told = |plane, poisson| {
+        let locks = |plane, poisson| {
             let law = Arc::new(NeoHooke { c10: 0.05 });
             let volume = Volume {
                 bulk_modulus: bulk_modulus(0.1, poisson),
@@ -90,8 +90,8 @@ mod tests {
             let law = law.with_volume(volume).unwrap();
             reason(&*law).is_some()
         };
-        assert!(told(PlaneState::Strain, 0.49));
-        assert!(!told(PlaneState::Strain, 0.4));
-        assert!(!told(PlaneState::Stress, 0.4999));
+        assert!(locks(PlaneState::Strain, 0.49));
+        assert!(!locks(PlaneState::Strain, 0.4));
+        assert!(!locks(PlaneState::Stress, 0.4999));
     }
 }

@@ -141,12 +141,12 @@ fn of_volume(card: &Card) -> Vec<Vec<String>> {
     }
     if let Some([stretch, change]) = card.tension_by_volume() {
         let percent = 100.0 * change;
-        let told = format!(
+        let effect = format!(
             "{percent:+.2} % at λ = {stretch:.3}, relative to the same parameters at constant volume"
         );
         rows.push(row(
             "largest effect of the volume change on the tension",
-            told,
+            effect,
         ));
     }
     rows

@@ -108,12 +108,12 @@ fn ends(outcome: &Outcome) -> Vec<Block> {
     if outcome.checks.iter().any(super::Check::is_end) {
         return Vec::new();
     }
-    let told = |end: &End| match end.advice {
+    let sentence = |end: &End| match end.advice {
         Some(advice) => format!("{}. Try: {advice}.", end.message),
         None => format!("{}.", end.message),
     };
-    let told: Vec<String> = outcome.ends.iter().map(told).collect();
-    paragraphs("Models that ended early", &told)
+    let sentences: Vec<String> = outcome.ends.iter().map(sentence).collect();
+    paragraphs("Models that ended early", &sentences)
 }
 
 /// The publication's claims; empty without one.

@@ -11,9 +11,9 @@ use crate::problem::SheetLaws;
 pub type Position = Vec<(usize, [f64; 2])>;
 
 /// Where points at rest are in a mesh; a point may lie so far outside of its nearest cell, in sizes of the cell.
-pub fn positions(mesh: &Mesh, points: &[[f64; 2]], beyond: f64) -> Vec<Position> {
+pub fn positions(mesh: &Mesh, points: &[[f64; 2]], margin: f64) -> Vec<Position> {
     let points = points.iter();
-    points.map(|point| mesh.cells_at(*point, beyond)).collect()
+    points.map(|point| mesh.cells_at(*point, margin)).collect()
 }
 
 impl Deformed<'_> {
@@ -91,7 +91,9 @@ mod tests {
             let stress = along * along - 1.0 / along;
             for (point, values) in points.iter().zip(&sampled[..2]) {
                 let of = |field: SheetField| {
-                    let index = SheetField::NAMES.iter().position(|(_, own)| *own == field);
+                    let index = SheetField::NAMES
+                        .iter()
+                        .position(|(_, other)| *other == field);
                     values.unwrap()[index.unwrap()]
                 };
                 let expected = [

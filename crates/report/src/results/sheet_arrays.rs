@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 
 /// Arrays at the nodes, from the mean of the displacement gradients that the cells around each node have there.
 pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
-    let viscous = sheet.viscous.map_or(&[][..], |own| &own.at_nodes);
+    let viscous = sheet.viscous.map_or(&[][..], |stress| &stress.at_nodes);
     let laws = sheet.laws.in_cells(mesh);
     let states = nodal_states(&laws, mesh, &sheet.fields(displacement), viscous);
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states.iter().map(value));
@@ -35,7 +35,7 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 /// reference direction. For a softening material there are two more: the dissipated energy and the remaining share of the stress; for a sheet of
 /// several regions, the number of each cell's.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
-    let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
+    let viscous = sheet.viscous.map_or(&[][..], |stress| &stress.in_cells);
     let laws = sheet.laws.in_cells(mesh);
     let states = cell_states(&laws, mesh, &sheet.fields(displacement), viscous);
     let wrinkling = Wrinkling::of_cells(sheet, mesh, displacement, &states);

@@ -184,14 +184,14 @@ pub fn sheet_figures(
 ) -> Vec<Figure> {
     let sheets: Vec<NodalSheet> = models
         .iter()
-        .map(|own| NodalSheet::new(laws, own.mesh, &own.fields, own.viscous))
+        .map(|model| NodalSheet::new(laws, model.mesh, &model.fields, model.viscous))
         .collect();
     let figure = |field: &SheetField| {
-        let panel = |(own, sheet): (&Deformed, &NodalSheet)| {
+        let panel = |(model, sheet): (&Deformed, &NodalSheet)| {
             let u = sheet.displacement.vectors();
             let u: Vec<[f64; 2]> = u.collect();
             let value = |node: usize| field.value(&sheet.states[node], u[node]);
-            Panel::at_nodes(&own.label, &sheet.mesh, &sheet.displacement, &value)
+            Panel::at_nodes(&model.label, &sheet.mesh, &sheet.displacement, &value)
         };
         let title = field.title();
         let panels = models.iter().zip(&sheets).map(panel);

@@ -26,10 +26,10 @@ fn extremes((mesh, cells): (&Mesh, &[usize]), displacement: &[f64]) -> [f64; 2] 
 /// The largest value that more than a small share of the area reaches.
 fn exceeded_by_some(mut values: Vec<(f64, f64)>) -> f64 {
     values.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut left: f64 = BESIDE_CORNERS * values.iter().map(|(area, _)| area).sum::<f64>();
+    let mut remaining: f64 = BESIDE_CORNERS * values.iter().map(|(area, _)| area).sum::<f64>();
     let reached = values.iter().find(|(area, _)| {
-        left -= area;
-        left < 0.0
+        remaining -= area;
+        remaining < 0.0
     });
     reached.map_or(0.0, |(_, value)| *value)
 }
@@ -85,10 +85,10 @@ mod tests {
         let pulled = |strain: f64| field(&move |x, _| [strain * x, 0.0]);
         assert_eq!(reason(&linear, &mesh, &pulled(0.04)), None);
         assert_eq!(reason(&linear, &mesh, &turned(-0.09)), None);
-        let told = reason(&linear, &mesh, &pulled(0.4)).unwrap();
-        assert!(told.ends_with("40 % and 0°"), "{told}");
-        let told = reason(&linear, &mesh, &turned(-0.35)).unwrap();
-        assert!(told.ends_with("0 % and 20°"), "{told}");
+        let message = reason(&linear, &mesh, &pulled(0.4)).unwrap();
+        assert!(message.ends_with("40 % and 0°"), "{message}");
+        let message = reason(&linear, &mesh, &turned(-0.35)).unwrap();
+        assert!(message.ends_with("0 % and 20°"), "{message}");
         // One cell of two hundred is not the sheet.
         let fine = Mesh::plate([4.0, 1.0], [20, 10], CellShape::Quad4);
         let mut spot = vec![0.0; 2 * fine.nodes.len()];

@@ -81,20 +81,21 @@ impl LocalState {
     fn mean(states: &[Self]) -> Self {
         let share = 1.0 / states.len() as f64;
         let mean = |value: &dyn Fn(&Self) -> f64| share * states.iter().map(value).sum::<f64>();
-        let four = |value: fn(&Self) -> [f64; 4]| [0, 1, 2, 3].map(|i| mean(&|own| value(own)[i]));
+        let four =
+            |value: fn(&Self) -> [f64; 4]| [0, 1, 2, 3].map(|i| mean(&|state| value(state)[i]));
         if let [one] = states {
             return *one;
         }
         Self {
-            first_piola_kirchhoff: four(|own| own.first_piola_kirchhoff),
-            nominal_across: mean(&|own| own.nominal_across),
-            cauchy: four(|own| own.cauchy),
-            green_lagrange: four(|own| own.green_lagrange),
-            stretches: [0, 1, 2].map(|i| mean(&|own| own.stretches[i])),
-            first_invariant: mean(&|own| own.first_invariant),
-            energy: mean(&|own| own.energy),
-            dissipated: mean(&|own| own.dissipated),
-            softening_factor: mean(&|own| own.softening_factor),
+            first_piola_kirchhoff: four(|state| state.first_piola_kirchhoff),
+            nominal_across: mean(&|state| state.nominal_across),
+            cauchy: four(|state| state.cauchy),
+            green_lagrange: four(|state| state.green_lagrange),
+            stretches: [0, 1, 2].map(|i| mean(&|state| state.stretches[i])),
+            first_invariant: mean(&|state| state.first_invariant),
+            energy: mean(&|state| state.energy),
+            dissipated: mean(&|state| state.dissipated),
+            softening_factor: mean(&|state| state.softening_factor),
         }
     }
 
@@ -164,7 +165,10 @@ pub fn nodal_states(
     for (node, state) in cut.originals.iter().zip(on_sides) {
         at_nodes[*node].push(state);
     }
-    at_nodes.iter().map(|own| LocalState::mean(own)).collect()
+    at_nodes
+        .iter()
+        .map(|states| LocalState::mean(states))
+        .collect()
 }
 
 /// The states at the nodes of a mesh each of whose nodes belongs to cells of one law.
@@ -191,9 +195,9 @@ fn states<'a>(
 ) -> Vec<LocalState> {
     let gradients: Vec<_> = fields.iter().map(|field| gradients(field)).collect();
     let state = |position: usize| {
-        let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[position]).collect();
+        let local: Vec<[f64; 4]> = gradients.iter().map(|field| field[position]).collect();
         let viscous = viscous.get(position).copied().unwrap_or_default();
-        LocalState::of(law(position), &own, viscous)
+        LocalState::of(law(position), &local, viscous)
     };
     let positions = gradients.last().map_or(0, Vec::len);
     (0..positions).map(state).collect()
@@ -279,14 +283,14 @@ mod tests {
                 (mesh.nodes.len(), mesh.cell_count())
             );
             for state in nodal.iter().chain(&cells) {
-                let found = [
+                let stresses = [
                     state.von_mises(),
                     state.principal_cauchy()[0],
                     state.cauchy[0],
                 ];
                 assert!(
-                    found.iter().all(|s| (s - stress).abs() < 1e-12),
-                    "{name} {found:?}"
+                    stresses.iter().all(|s| (s - stress).abs() < 1e-12),
+                    "{name} {stresses:?}"
                 );
                 let strain = 0.5 * (along * along - 1.0);
                 assert!((state.largest_principal_strain() - strain).abs() < 1e-12);

@@ -42,21 +42,21 @@ impl Stretches {
             largest: 0.0,
             share: 0.0,
         };
-        let (mut outside, mut whole) = (0.0, 0.0);
+        let (mut outside, mut total) = (0.0, 0.0);
         for cell in cells.iter().copied() {
             let centre = mesh.shape(cell).centre();
             let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, centre);
             let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
             let excess = (stretches.max() / most).max(least / stretches.min());
             let area = mesh.cell_area(cell);
-            whole += area;
+            total += area;
             if excess > OUTSIDE {
                 outside += area;
             }
             all.smallest = all.smallest.min(stretches.min());
             all.largest = all.largest.max(stretches.max());
         }
-        all.share = outside / whole;
+        all.share = outside / total;
         all
     }
 
@@ -118,12 +118,12 @@ mod tests {
         // Pressed to 0.64, a sample becomes wider by 1.25.
         let pressed = [0.64, 1.0];
         assert_eq!(of(pressed, [1.24, 0.7]).share, 0.0);
-        let beyond = of(pressed, [1.3, 0.7]);
-        assert!(beyond.share == 1.0);
-        let told = beyond.reason(&card(pressed), " at load factor 1").unwrap();
+        let outside = of(pressed, [1.3, 0.7]);
+        assert!(outside.share == 1.0);
+        let message = outside.reason(&card(pressed), " at load factor 1").unwrap();
         assert!(
-            told.contains("0.700 … 1.300 at load factor 1; on 100.0 % of the area"),
-            "{told}"
+            message.contains("0.700 … 1.300 at load factor 1; on 100.0 % of the area"),
+            "{message}"
         );
         // A foam without Poisson's ratio keeps its width, so that a pressed sample is not wider.
         let foam = FoamTerm {
@@ -146,7 +146,7 @@ mod tests {
             .iter()
             .flat_map(|[x, y]| [-y - x, x - y])
             .collect();
-        let found = Stretches::new(&card(tension), (&mesh, &cells), &turned);
-        assert!(found.share == 0.0 && (found.largest - 1.0).abs() < 1e-12);
+        let rotated = Stretches::new(&card(tension), (&mesh, &cells), &turned);
+        assert!(rotated.share == 0.0 && (rotated.largest - 1.0).abs() < 1e-12);
     }
 }

@@ -120,12 +120,18 @@ mod tests {
         let motion: Vec<_> = [&rest, &held, &held, &held, &held]
             .map(|field| [&field[..], &still[..]])
             .into();
-        let found = ViscousStress::over_time(&LAW, &material, &mesh, &times, &motion);
+        let stresses = ViscousStress::over_time(&LAW, &material, &mesh, &times, &motion);
         let long = 2.0 * LAW.c10 * (1.4 - 1.4_f64.powi(-2));
-        assert!(found[0].in_cells.iter().flatten().all(|part| *part == 0.0));
-        for (time, own) in times.iter().zip(&found).skip(1) {
+        assert!(
+            stresses[0]
+                .in_cells
+                .iter()
+                .flatten()
+                .all(|part| *part == 0.0)
+        );
+        for (time, stress) in times.iter().zip(&stresses).skip(1) {
             let expected = long * (material.relaxation_function(*time) - 1.0);
-            for p in own.in_cells.iter().chain(&own.at_nodes) {
+            for p in stress.in_cells.iter().chain(&stress.at_nodes) {
                 assert!(
                     (p[0] - expected).abs() < 1e-8 * long,
                     "{time}: {p:?} {expected}"
@@ -147,8 +153,8 @@ mod tests {
         let across = -0.5 * 1.2_f64.powf(-1.5) * rate;
         let nodes = mesh.nodes.iter();
         let v: Vec<f64> = nodes.flat_map(|[x, y]| [rate * x, across * y]).collect();
-        let found = ViscousStress::over_time(&LAW, &material, &mesh, &[0.0], &[[&u, &v]]);
+        let stresses = ViscousStress::over_time(&LAW, &material, &mesh, &[0.0], &[[&u, &v]]);
         let expected = material.newtonian_tension(1.2, rate)[0];
-        assert!((found[0].in_cells[0][0] - expected).abs() < 1e-12);
+        assert!((stresses[0].in_cells[0][0] - expected).abs() < 1e-12);
     }
 }

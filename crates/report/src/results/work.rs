@@ -14,8 +14,8 @@ pub fn work_blocks(
         let models = models.iter();
         models.map(move |model| format!("{what}, {model} [mJ]"))
     };
-    let own = [along.to_owned()].into_iter();
-    let head = own.chain(columns("stored")).chain(columns("dissipated"));
+    let first = [along.to_owned()].into_iter();
+    let head = first.chain(columns("stored")).chain(columns("dissipated"));
     let figure = |value: Option<f64>| or_dash(value, |value| decimals(value, 4));
     let row = |(at, works): (String, Vec<Option<Work>>)| {
         let stored = works.iter().map(|work| work.map(|work| work.stored));

@@ -38,7 +38,7 @@ pub struct Wrinkling {
 impl Wrinkling {
     /// The compression of a displacement field.
     pub fn new(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Self {
-        let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
+        let viscous = sheet.viscous.map_or(&[][..], |stress| &stress.in_cells);
         let states = cell_states(&sheet.laws.in_cells(mesh), mesh, &[displacement], viscous);
         Self::of_cells(sheet, mesh, displacement, &states)
     }
@@ -99,7 +99,7 @@ fn area_percent(mesh: &Mesh, cells: &[bool]) -> f64 {
 /// The warning about the states of a model, each at a load that is named: about the one that exceeds the critical compression most. A
 /// hundredth of the area may, as beside a force on a point, where no compression is the largest.
 pub fn warning(states: impl Iterator<Item = (String, Wrinkling)>) -> Option<String> {
-    let wrinkled = states.filter(|(_, own)| own.area_percent > 100.0 * BESIDE_CORNERS);
+    let wrinkled = states.filter(|(_, wrinkling)| wrinkling.area_percent > 100.0 * BESIDE_CORNERS);
     let (load, worst) = wrinkled.max_by(|(_, one), (_, other)| {
         let [one, other] = [one.worst, other.worst];
         (one[0] * other[1]).total_cmp(&(other[0] * one[1]))

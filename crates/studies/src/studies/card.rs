@@ -59,8 +59,8 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
             }
             in_plane(section, plane?, card)
         }
-        Err(Error::Input(found)) => {
-            for fault in found {
+        Err(Error::Input(faults)) => {
+            for fault in faults {
                 match fault.position {
                     Some(_) => section.add(fault),
                     None => section.fault(KEY, &fault.message, fault.hint.as_deref().unwrap_or("")),

@@ -56,8 +56,8 @@ const RULES: [Rule; 14] = [
 
 /// All findings.
 pub fn findings(examined: Examined) -> Vec<Finding> {
-    let found = RULES.iter();
-    found
+    let rules = RULES.iter();
+    rules
         .filter_map(|(name, rule)| Some(Finding::warning(name, rule(examined)?)))
         .collect()
 }
@@ -139,13 +139,13 @@ impl<'a> Examined<'a> {
 /// A lattice of another ν than the sheet's.
 fn lattice(examined: Examined) -> Option<Found> {
     examined.of_cards(|card, _| {
-        let told = match examined.specimen.grids() {
+        let warning = match examined.specimen.grids() {
             _ if !examined.has_springs => None,
             Some(grids) if grids.lattice.area_term => None,
             Some(_) => mass_spring::warning_of_plate(&*card.law),
             None => mass_spring::warning(&*card.law),
         };
-        told.map(alone)
+        warning.map(alone)
     })
 }
 
@@ -183,8 +183,8 @@ fn locking_cells(examined: Examined) -> Option<Found> {
 fn relaxation(examined: Examined) -> Option<Found> {
     examined.models?;
     examined.of_cards(|card, _| {
-        let told = card.viscosity.left_out()?;
-        Some(alone(format!("{told}.")))
+        let message = card.viscosity.left_out()?;
+        Some(alone(format!("{message}.")))
     })
 }
 
@@ -242,7 +242,7 @@ fn several(examined: Examined) -> Option<Found> {
     let coarser = models.reference.coarser().iter();
     let solutions = solutions
         .into_iter()
-        .chain(coarser.map(|own| ("coarser finite elements", own)));
+        .chain(coarser.map(|solution| ("coarser finite elements", solution)));
     let is_one_of_several =
         |state: &&State| state.convergence.shifted_steps + state.convergence.snaps > 0;
     let states = solutions.flat_map(|(name, solution)| {

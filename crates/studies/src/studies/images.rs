@@ -85,7 +85,7 @@ impl ImageRequest<'_> {
     ///
     /// # Errors
     /// [`Error::Input`] with the file, what is wrong and what to do.
-    pub fn follow(&self, told: &dyn Fn(&str)) -> Result<TrackedImages, Error> {
+    pub fn follow(&self, report: &dyn Fn(&str)) -> Result<TrackedImages, Error> {
         let pixel = self.known_pixel()?;
         let files = match &*self.settings.in_memory {
             [] => list(self.files)?,
@@ -97,7 +97,7 @@ impl ImageRequest<'_> {
         self.afford(&image)?;
         let region = self.region(image.size(), pixel)?;
         let settings = self.settings.subsets;
-        told("the first image");
+        report("the first image");
         let mut tracker = Tracker::new(&image, &of_file(last, last.read())?, &region, settings)?;
         let numbered: Vec<(usize, ImageFile)> = numbers(others)
             .into_iter()
@@ -106,7 +106,7 @@ impl ImageRequest<'_> {
         let (mut frames, mut patches) = (Vec::new(), Vec::new());
         let mut warnings = tracker.warnings().to_vec();
         for (number, file) in &numbered {
-            told(&file.name());
+            report(&file.name());
             match followed(&mut tracker, file) {
                 Ok([points, measured]) => {
                     frames.push((*number, points));
@@ -166,7 +166,7 @@ impl ImageRequest<'_> {
             return of_file(mask, region);
         }
         let Some(outline) = self.outline else {
-            return Ok(Region::whole(size));
+            return Ok(Region::full(size));
         };
         let up = (size[1] - 1) as f64;
         let mut lines = read_lines(outline, Some(pixel))?;
@@ -238,9 +238,9 @@ fn numbers(files: &[ImageFile]) -> Vec<usize> {
         let digits = stem.trim_end_matches(|letter: char| letter.is_ascii_digit());
         stem[digits.len()..].parse().ok()
     };
-    let found: Option<Vec<usize>> = files.iter().map(number).collect();
+    let parsed: Option<Vec<usize>> = files.iter().map(number).collect();
     let grow = |numbers: &Vec<usize>| numbers.windows(2).all(|pair| pair[0] < pair[1]);
-    found
+    parsed
         .filter(grow)
         .unwrap_or_else(|| (1..=files.len()).collect())
 }

@@ -136,10 +136,10 @@ impl MarkerStudy {
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
         let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
         let (mut field, images) = images::read_field(&request)?;
-        let told = request
+        let force_warnings = request
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
-        field.warnings.extend(told);
+        field.warnings.extend(force_warnings);
         let SpecimenMesh {
             mut mesh,
             cell_size,
@@ -159,7 +159,7 @@ impl MarkerStudy {
         };
         let mut placed = place_on(&mesh, &field.series)?;
         if let Some(coarse) = &coarse {
-            whole(coarse, &field.series)?;
+            check_complete(coarse, &field.series)?;
             // Interpolation needs all nodes.
             placed.series = field.series;
             placed.outside = 0;
@@ -343,7 +343,7 @@ fn of_one_frame(error: Error, number: usize, frames: usize) -> Error {
 }
 
 /// Whether a field has a displacement at every node of its mesh.
-fn whole(mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
+fn check_complete(mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
     let mut frames = series.frames.iter();
     match frames.find(|frame| frame.markers.len() != mesh.nodes.len()) {
         None => Ok(()),

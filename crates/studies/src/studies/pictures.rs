@@ -162,10 +162,10 @@ impl Shown {
         };
         match self {
             Self::At(wanted) => {
-                let mut found: Vec<usize> = wanted.iter().filter_map(next_to).collect();
-                found.sort_unstable();
-                found.dedup();
-                found
+                let mut indices: Vec<usize> = wanted.iter().filter_map(next_to).collect();
+                indices.sort_unstable();
+                indices.dedup();
+                indices
             }
             other => other.steps(times, times.len().checked_sub(1)),
         }

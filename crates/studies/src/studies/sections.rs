@@ -169,7 +169,7 @@ fn check_stretch(
     } else {
         (1.0 + stretch < low && low > SEARCHED[0]).then_some(("compression", "down", low))
     };
-    if let Some((test, way, end)) = end {
+    if let Some((test, direction, end)) = end {
         section.warning(
             key,
             &format!(
@@ -178,7 +178,7 @@ fn check_stretch(
                 card.name
             ),
             &format!(
-                "in uniaxial {test} it is stable {way} to {:.0} % stretch",
+                "in uniaxial {test} it is stable {direction} to {:.0} % stretch",
                 100.0 * (end - 1.0)
             ),
         );
@@ -243,12 +243,12 @@ mod tests {
 
     fn advise(size: [f64; 2], along: usize, of: usize) {
         let cells = nearly_square_cells(size, along, of);
-        let told = format!("{size:?}, {along}, {of}: {cells:?}");
-        assert!(aspect(size, cells) < LARGEST_ASPECT, "{told}");
+        let case = format!("{size:?}, {along}, {of}: {cells:?}");
+        assert!(aspect(size, cells) < LARGEST_ASPECT, "{case}");
         let fits = |n: &usize| n.is_multiple_of(of) && *n <= MOST_CELLS;
-        assert!(cells.iter().all(fits), "{told}");
+        assert!(cells.iter().all(fits), "{case}");
         let all = cells[0] * cells[1];
-        assert!(all <= Budget::USUAL.cells as usize, "{told}");
+        assert!(all <= Budget::USUAL.cells as usize, "{case}");
     }
 
     #[test]

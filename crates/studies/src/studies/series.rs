@@ -75,7 +75,7 @@ impl<'a> ModelSeries<'a> {
         let before = state.past.iter().copied();
         let fields = before.chain([state.displacement]).collect();
         Some(Deformed {
-            viscous: state.viscous.map_or(&[], |own| &own.at_nodes),
+            viscous: state.viscous.map_or(&[], |stress| &stress.at_nodes),
             ..Deformed::elastic(self.style.name, self.mesh, fields)
         })
     }

@@ -13,11 +13,11 @@ pub struct Link<W: Worker> {
 impl<W: Worker> Link<W> {
     pub fn new(wake: Wake) -> Self {
         let (questions, asked) = channel::<W::Question>();
-        let (told, answers) = channel();
+        let (sender, answers) = channel();
         std::thread::spawn(move || {
             let mut worker = W::default();
             for question in asked {
-                if told.send(worker.answer(&question)).is_err() {
+                if sender.send(worker.answer(&question)).is_err() {
                     return;
                 }
                 wake();

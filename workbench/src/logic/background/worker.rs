@@ -19,7 +19,7 @@ pub struct Link<W: Worker> {
     worker: web_sys::Worker,
     answers: Rc<RefCell<VecDeque<W::Answer>>>,
     /// What the browser calls when a message comes.
-    _told: Closure<dyn FnMut(MessageEvent)>,
+    _listener: Closure<dyn FnMut(MessageEvent)>,
 }
 
 impl<W: Worker> Link<W> {
@@ -31,18 +31,18 @@ impl<W: Worker> Link<W> {
         let worker = worker.expect("a browser with module workers");
         let answers = Rc::new(RefCell::new(VecDeque::new()));
         let received = Rc::clone(&answers);
-        let told = Closure::new(move |event: MessageEvent| {
+        let listener = Closure::new(move |event: MessageEvent| {
             let bytes = Uint8Array::new(&event.data()).to_vec();
             if let Ok(answer) = postcard::from_bytes(&bytes) {
                 received.borrow_mut().push_back(answer);
             }
             wake();
         });
-        worker.set_onmessage(Some(told.as_ref().unchecked_ref()));
+        worker.set_onmessage(Some(listener.as_ref().unchecked_ref()));
         Self {
             worker,
             answers,
-            _told: told,
+            _listener: listener,
         }
     }
 
@@ -72,9 +72,9 @@ thread_local! {
 pub fn answer<W: Worker>(question: &[u8]) -> Option<Vec<u8>> {
     let question = postcard::from_bytes(question).ok()?;
     let answer = SELVES.with_borrow_mut(|selves| {
-        let own = selves.entry(W::NAME).or_insert_with(|| Box::<W>::default());
-        let own = own.downcast_mut::<W>().expect("one worker of a name");
-        own.answer(&question)
+        let worker = selves.entry(W::NAME).or_insert_with(|| Box::<W>::default());
+        let worker = worker.downcast_mut::<W>().expect("one worker of a name");
+        worker.answer(&question)
     });
     postcard::to_stdvec(&answer).ok()
 }

@@ -47,7 +47,7 @@ pub struct Bodies {
     plate: Option<(ClampedPlate, [usize; 2])>,
     specimen: Specimen,
     elements: Mesh,
-    made: [Option<Body>; 3],
+    built: [Option<Body>; 3],
 }
 
 /// The energy of a model.
@@ -148,7 +148,7 @@ impl Bodies {
             plate,
             specimen: specimen.with_card(card),
             elements,
-            made: [None, None, None],
+            built: [None, None, None],
         })
     }
 
@@ -158,10 +158,10 @@ impl Bodies {
     /// [`Error::Solve`] where the corrector does not begin.
     pub fn body(&mut self, model: Model) -> Result<&mut Body, Error> {
         let index = model as usize;
-        if self.made[index].is_none() {
-            self.made[index] = Some(self.make(model)?);
+        if self.built[index].is_none() {
+            self.built[index] = Some(self.make(model)?);
         }
-        Ok(self.made[index].as_mut().expect("a body was made"))
+        Ok(self.built[index].as_mut().expect("a body was made"))
     }
 
     /// The plate, where the sheet is one.
@@ -170,13 +170,15 @@ impl Bodies {
     }
 
     /// A model that was made.
-    pub fn made(&self, model: Model) -> &Body {
-        self.made[model as usize].as_ref().expect("a body was made")
+    pub fn built(&self, model: Model) -> &Body {
+        self.built[model as usize]
+            .as_ref()
+            .expect("a body was made")
     }
 
     /// What the command would warn of in the last state of the finite elements: the range of the card, compression.
     pub fn warnings(&self) -> Vec<Finding> {
-        let body = self.made(Model::Elements);
+        let body = self.built(Model::Elements);
         let at = match self.specimen.along {
             Along::Stretch => body.grip.displacement[0] / self.sheet.length,
             Along::LoadFactor => 1.0,
@@ -284,8 +286,8 @@ impl Body {
                 Err(error) => return Err(error),
             }
         }
-        let found = path::reach(self, sheet, grip)?;
-        (self.displacement, self.grip) = (found, grip);
+        let displacement = path::reach(self, sheet, grip)?;
+        (self.displacement, self.grip) = (displacement, grip);
         Ok(None)
     }
 

@@ -57,9 +57,9 @@ mod tests {
     fn departure(scene: &Scene, model: Model) -> f64 {
         let mut engine = Engine::default();
         let mut solved = |model| engine.answer(&Task::settled(scene, model)).result.unwrap();
-        let (found, elements) = (solved(model), solved(Model::Elements));
+        let (solution, elements) = (solved(model), solved(Model::Elements));
         let lattice = crate::logic::engine::meshes(scene).unwrap()[0].clone();
-        let deviation = Deviation::of(scene, &lattice, &found, &elements);
+        let deviation = Deviation::of(scene, &lattice, &solution, &elements);
         deviation.unwrap().departure
     }
 

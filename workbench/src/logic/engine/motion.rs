@@ -157,10 +157,10 @@ pub fn colour(scene: &Scene) -> Colour {
 /// # Errors
 /// [`Error::Input`] where the card's law changes its volume, and the viscous stress would not.
 fn viscosity(card: &Card, damping: f64) -> Result<ViscousMaterial, Error> {
-    let own = &card.viscosity;
+    let card_viscosity = &card.viscosity;
     let viscosity = ViscousMaterial {
-        shear_viscosity: own.shear_viscosity + damping,
-        ..own.clone()
+        shear_viscosity: card_viscosity.shear_viscosity + damping,
+        ..card_viscosity.clone()
     };
     match !viscosity.is_none() && card.bulk_modulus().is_some() {
         false => Ok(viscosity),
@@ -194,13 +194,13 @@ impl Body {
             (Energy::Sheet(sheet), _) => Some(Box::new(SheetViscosity::new(sheet, viscosity))),
         };
         let energy: &dyn Potential = self.potential();
-        let left = self.mesh.groups()[Side::Left.name()].nodes.iter();
+        let clamped = self.mesh.groups()[Side::Left.name()].nodes.iter();
         let motion = Motion {
             energy,
             viscosity: viscous.as_deref(),
             mass: lumped_mass(&self.mesh, card.density.unwrap_or(WATER), thickness),
             supports: vec![MovingSupport::fixed(
-                left.flat_map(|node| [2 * node, 2 * node + 1]).collect(),
+                clamped.flat_map(|node| [2 * node, 2 * node + 1]).collect(),
             )],
             forces: Vec::new(),
             start: Start {
@@ -320,11 +320,11 @@ mod tests {
                     let damped = MotionQuestion { damping, ..plain };
                     Mover::default().answer(&damped)
                 };
-                let whole = ask(from.clone(), 0.01).last.unwrap();
+                let full = ask(from.clone(), 0.01).last.unwrap();
                 let half = ask(from, 0.005).last.unwrap();
                 let two = ask(half, 0.005).last.unwrap();
                 assert!((two.time - 0.01).abs() < 1e-12);
-                let pairs = whole.displacement.iter().zip(&two.displacement);
+                let pairs = full.displacement.iter().zip(&two.displacement);
                 let far = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 assert!(far < 0.05, "{model:?} {damping}: {far} mm");
             }
@@ -345,13 +345,13 @@ mod tests {
             last.velocity.iter().map(|v| v * v).sum::<f64>()
         };
         assert!(fast(2e-4) < 0.5 * fast(0.0));
-        let own = "mu = \"0.1 MPa\"\npoisson_ratio = 0.4";
+        let parameters = "mu = \"0.1 MPa\"\npoisson_ratio = 0.4";
         scene.card = CardFile::shipped("neo-hooke").unwrap();
         scene.card.text = scene
             .card
             .text
             .replace("law = \"neo-hooke\"", "law = \"neo-hooke-simo-pister\"")
-            .replace("c10 = \"0.05 MPa\"", own);
+            .replace("c10 = \"0.05 MPa\"", parameters);
         let card = scene.card.read().unwrap();
         assert!(card.bulk_modulus().is_some());
         assert!(viscosity(&card, 1e-5).is_err() && viscosity(&card, 0.0).is_ok());

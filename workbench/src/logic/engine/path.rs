@@ -17,7 +17,7 @@ const NEWTON: NewtonSettings = NewtonSettings {
 const FROM_REST: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
 
 /// A sheet whose grip goes from where it was at load factor 0 to where it shall be at 1.
-struct OnTheWay<'a> {
+struct GripPath<'a> {
     model: &'a Model<'a>,
     held: Vec<bool>,
     /// The field before.
@@ -26,7 +26,7 @@ struct OnTheWay<'a> {
     change: Vec<f64>,
 }
 
-impl Loading for OnTheWay<'_> {
+impl Loading for GripPath<'_> {
     fn held(&self) -> Vec<bool> {
         self.held.clone()
     }
@@ -68,11 +68,11 @@ impl Loading for OnTheWay<'_> {
 /// [`Error::Solve`] where neither leads there.
 pub fn reach(body: &Body, sheet: &Sheet, grip: Grip) -> Result<Vec<f64>, Error> {
     let rest = vec![0.0; body.displacement.len()];
-    let near = on_the_way(body, sheet, body.grip(), &body.displacement, grip, &[1.0]);
-    near.or_else(|_| on_the_way(body, sheet, Grip::default(), &rest, grip, &FROM_REST))
+    let near = solve_path(body, sheet, body.grip(), &body.displacement, grip, &[1.0]);
+    near.or_else(|_| solve_path(body, sheet, Grip::default(), &rest, grip, &FROM_REST))
 }
 
-fn on_the_way(
+fn solve_path(
     body: &Body,
     sheet: &Sheet,
     before: Grip,
@@ -81,13 +81,13 @@ fn on_the_way(
     factors: &[f64],
 ) -> Result<Vec<f64>, Error> {
     let model = body.model(sheet, grip)?;
-    let way = OnTheWay {
+    let path = GripPath {
         held: model.held(),
         change: between_grips(body, sheet, before, grip),
         model: &model,
         from,
     };
-    let states = follow(&way, factors, NEWTON, Attendance::told(&|_| ()));
+    let states = follow(&path, factors, NEWTON, Attendance::told(&|_| ()));
     let states = states.map_err(|end| Error::Solve {
         model: "sheet".into(),
         step: format!("the grip at {}", grip.describe()),

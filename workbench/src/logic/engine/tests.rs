@@ -35,8 +35,8 @@ fn the_force_at_rest_of_the_grip_does_not_depend_on_the_way_there() {
     let goal = at(&scene, [40.0, 6.0], 0.1);
     let (mut one, mut other) = (Engine::default(), Engine::default());
     for model in Model::ALL {
-        for way in [[10.0, 0.0], [70.0, -5.0]] {
-            solved(&mut one, &at(&scene, way, 0.2), model, false);
+        for displacement in [[10.0, 0.0], [70.0, -5.0]] {
+            solved(&mut one, &at(&scene, displacement, 0.2), model, false);
         }
         let [a, b] = [&mut one, &mut other].map(|engine| solved(engine, &goal, model, true));
         for (a, b) in a.force.iter().zip(b.force) {
@@ -62,9 +62,9 @@ fn the_plate_has_the_force_that_the_command_finds() {
     // The README's table at 50 %: 0.009 % above the finite elements' 12.87459 N.
     let mut engine = Engine::default();
     let scene = at(&Scene::default(), [75.0, 0.0], 0.0);
-    let found = solved(&mut engine, &scene, Model::Corrected, true);
-    let percent = 100.0 * (found.force[0] / 12.87459 - 1.0);
-    assert_eq!(format!("{percent:.3}"), "0.009", "{:?}", found.force);
+    let solution = solved(&mut engine, &scene, Model::Corrected, true);
+    let percent = 100.0 * (solution.force[0] / 12.87459 - 1.0);
+    assert_eq!(format!("{percent:.3}"), "0.009", "{:?}", solution.force);
 }
 
 #[test]

@@ -71,9 +71,10 @@ impl Edge {
         let displacements = match self {
             Self::Unnamed => return None,
             Self::Known(axes) => {
-                let said = ["ux", "uy"].into_iter().zip(axes);
-                let said = said.filter(|(_, text)| !text.trim().is_empty());
-                said.map(|(key, text)| format!("{key} = {}\n", quoted(text.trim())))
+                let stated = ["ux", "uy"].into_iter().zip(axes);
+                let stated = stated.filter(|(_, text)| !text.trim().is_empty());
+                stated
+                    .map(|(key, text)| format!("{key} = {}\n", quoted(text.trim())))
                     .collect()
             }
             _ => String::new(),
@@ -97,8 +98,8 @@ pub fn written(edges: &BTreeMap<String, Edge>, edge_gap: &str) -> String {
     if !edge_gap.trim().is_empty() {
         text += &format!("edge_gap = {}\n", quoted(edge_gap.trim()));
     }
-    let said = edges.iter().filter_map(|(name, edge)| edge.written(name));
-    text.extend(said);
+    let tables = edges.iter().filter_map(|(name, edge)| edge.written(name));
+    text.extend(tables);
     text
 }
 
@@ -165,22 +166,22 @@ mod tests {
             assert_eq!(nearest(&figure, position, 1.2), name, "{position:?}");
         }
         assert_eq!(nearest(&figure, [f64::NAN; 2], 1.2), None);
-        let left = figure.groups.iter().find(|group| group.name == "left");
-        let [x, y] = middle(&left.unwrap().lines).unwrap();
+        let edge = figure.groups.iter().find(|group| group.name == "left");
+        let [x, y] = middle(&edge.unwrap().lines).unwrap();
         assert!(x.abs() < 1e-9 && y.abs() < 2.6, "{x} {y}");
     }
 
     #[test]
     fn what_is_written_is_what_the_command_reads() {
         let known = Edge::Known(["12 mm".into(), " ".into()]);
-        let said = [
+        let stated = [
             ("left", Edge::Rigid),
             ("right", known),
             ("top", Edge::Free),
             ("a \"quoted\" edge", Edge::Unknown),
             ("bottom", Edge::Unnamed),
         ];
-        let edges = said.map(|(name, edge)| (name.to_owned(), edge)).into();
+        let edges = stated.map(|(name, edge)| (name.to_owned(), edge)).into();
         let text = written(&edges, "1.5 mm");
         let read = Conditions::parse("known.toml", &text).unwrap();
         assert_eq!(read.edge_gap, Some(1.5));

@@ -84,11 +84,11 @@ fn label(option: &str) -> Option<&'static str> {
 }
 
 /// A finding in the view's words.
-pub fn told(found: &Diagnostic) -> String {
+pub fn warning_text(finding: &Diagnostic) -> String {
     Diagnostic {
-        message: worded(&found.message),
-        hint: found.hint.as_deref().map(worded),
-        ..found.clone()
+        message: worded(&finding.message),
+        hint: finding.hint.as_deref().map(worded),
+        ..finding.clone()
     }
     .to_string()
 }

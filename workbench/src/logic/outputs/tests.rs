@@ -5,8 +5,8 @@ use crate::logic::scene::{CardFile, Grip, Outline};
 fn fields(scene: &Scene) -> Vec<ShownField> {
     let mut engine = Engine::default();
     let solved = |model: Model| {
-        let found = engine.answer(&Task::settled(scene, model)).result.unwrap();
-        (model, found.displacement, found.values)
+        let solution = engine.answer(&Task::settled(scene, model)).result.unwrap();
+        (model, solution.displacement, solution.values)
     };
     Model::ALL.map(solved).into()
 }
@@ -172,10 +172,10 @@ fn a_study_goes_out_as_the_command_writes_it() {
     let mut read = zip::ZipArchive::new(Cursor::new(archived)).unwrap();
     assert_eq!(read.len(), written.files.len());
     for (name, content) in &written.files {
-        let mut found = Vec::new();
+        let mut stored = Vec::new();
         let mut file = read.by_name(name).unwrap();
-        std::io::Read::read_to_end(&mut file, &mut found).unwrap();
-        assert_eq!(&found, content, "{name}");
+        std::io::Read::read_to_end(&mut file, &mut stored).unwrap();
+        assert_eq!(&stored, content, "{name}");
     }
 }
 

@@ -142,7 +142,7 @@ fn impossible_measures_say_so_and_can_be_taken_back() {
 fn a_corrector_that_is_told_less_is_solved_anew_and_begins_another_curve() {
     let (mut table, mut engine) = (Table::new(small()), Engine::default());
     settle(&mut table, &mut engine);
-    let whole = table.deviation(Model::Corrected).unwrap().departure;
+    let full = table.deviation(Model::Corrected).unwrap().departure;
     pull(&mut table, 50.0, false);
     settle(&mut table, &mut engine);
     assert_eq!(table.curve(Model::Corrected).len(), 2);
@@ -155,5 +155,5 @@ fn a_corrector_that_is_told_less_is_solved_anew_and_begins_another_curve() {
     settle(&mut table, &mut engine);
     assert!(table.is_settled());
     assert_eq!(table.curve(Model::Corrected).len(), 1);
-    assert!(table.deviation(Model::Corrected).unwrap().departure > 5.0 * whole);
+    assert!(table.deviation(Model::Corrected).unwrap().departure > 5.0 * full);
 }

@@ -9,7 +9,7 @@ use crate::logic::kind::Kind;
 use crate::logic::material::TestFile;
 use crate::logic::outputs::Written;
 use crate::logic::table::Action;
-use crate::views::files::{Event, Outgoing, plain, whole_path};
+use crate::views::files::{Event, Outgoing, absolute_path, plain};
 use crate::views::question;
 
 /// Where a document is, and its text as it was saved or opened last.
@@ -55,16 +55,16 @@ impl Workbench {
             (Kind::Study, Some(text)) => self.leave(Then::PutStudy(name.to_owned(), text)),
             (Kind::Named, _) => {
                 self.studies.put_file(name, content.to_vec());
-                self.told = format!("{} can be named by the study now", plain(name));
+                self.message = format!("{} can be named by the study now", plain(name));
                 self.tab = Tab::Study;
             }
             _ => {
-                self.told = Kind::nothing_reads(&plain(name));
+                self.message = Kind::nothing_reads(&plain(name));
                 return;
             }
         }
         #[cfg(not(target_arch = "wasm32"))]
-        if let Some(path) = whole_path(name) {
+        if let Some(path) = absolute_path(name) {
             self.recent.put(&path);
         }
     }
@@ -80,7 +80,7 @@ impl Workbench {
         });
         self.tab = Tab::Sheet;
         match self.table.message() {
-            None => self.told = format!("{name} is open"),
+            None => self.message = format!("{name} is open"),
             Some(_) if is_card => return,
             Some(_) => {
                 self.leave(Then::PutStudy(name.to_owned(), text));
@@ -90,7 +90,7 @@ impl Workbench {
         }
         if !is_card {
             self.documents[Tab::Sheet as usize] = Document {
-                path: whole_path(name),
+                path: absolute_path(name),
                 saved: self.table.scene().study(),
             };
         }
@@ -127,8 +127,8 @@ impl Workbench {
         let files = match tab {
             Tab::Sheet => {
                 let study = ("sheet.toml".to_owned(), scene.study().into_bytes());
-                let own = (!scene.card.is_shipped()).then(card);
-                [Some(study), own].into_iter().flatten().collect()
+                let card_file = (!scene.card.is_shipped()).then(card);
+                [Some(study), card_file].into_iter().flatten().collect()
             }
             Tab::Material => {
                 let (name, text) = card();
@@ -144,7 +144,7 @@ impl Workbench {
     /// Saves what is shown where it was saved before, or where the user says.
     pub(super) fn save(&mut self, tab: Tab, elsewhere: bool) {
         let Some(written) = self.written(tab) else {
-            self.told = "`export` saves the corrected field".to_owned();
+            self.message = "`export` saves the corrected field".to_owned();
             return;
         };
         let outgoing = Outgoing {
@@ -174,12 +174,12 @@ impl Workbench {
                 Event::Chosen(_) => (),
                 #[cfg(not(target_arch = "wasm32"))]
                 Event::Chosen(path) => self.open_path(&path),
-                Event::Failed(said) => {
-                    self.told = said;
+                Event::Failed(message) => {
+                    self.message = message;
                     self.leaving = self.leaving.take().filter(|leaving| !leaving.saving);
                 }
-                Event::Saved { document, said } => {
-                    self.told = said;
+                Event::Saved { document, message } => {
+                    self.message = message;
                     if let Some((tab, path)) = document {
                         self.saved(tab, path);
                     }
@@ -234,7 +234,7 @@ impl Workbench {
             Then::Close => self.closes = true,
             Then::PutStudy(name, text) => {
                 self.documents[Tab::Study as usize] = Document {
-                    path: whole_path(&name),
+                    path: absolute_path(&name),
                     saved: text.clone(),
                 };
                 self.studies.put(&name, text);
@@ -278,12 +278,12 @@ impl Workbench {
 impl Workbench {
     /// Opens a file of the disk, or says why it cannot be read.
     pub fn open_path(&mut self, path: &std::path::Path) {
-        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        match std::fs::read(&whole) {
-            Ok(content) => self.open(&whole.display().to_string(), &content),
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        match std::fs::read(&absolute) {
+            Ok(content) => self.open(&absolute.display().to_string(), &content),
             Err(cause) => {
-                self.recent.forget(&whole);
-                self.told = format!("cannot read {}: {cause}", whole.display());
+                self.recent.forget(&absolute);
+                self.message = format!("cannot read {}: {cause}", absolute.display());
             }
         }
     }

@@ -14,7 +14,7 @@ impl Workbench {
         #[cfg(target_arch = "wasm32")]
         if self.tab() == Tab::Sheet && ui.button("copy a link to this sheet").clicked() {
             let link = crate::page::link(&self.table.scene().study());
-            self.told = match link {
+            self.message = match link {
                 Some(link) => {
                     ui.ctx().copy_text(link);
                     "the link is in the clipboard and is now the address of this page".to_owned()
@@ -37,7 +37,7 @@ impl Workbench {
             let response = ui.button(format!("{name}{asks}"));
             self.positions.insert(name, response.rect.center());
             if response.clicked() {
-                self.told = "writing …".to_owned();
+                self.message = "writing …".to_owned();
                 self.exports.ask(wanted);
                 ui.close();
             }

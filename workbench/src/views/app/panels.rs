@@ -193,7 +193,7 @@ impl Workbench {
             return;
         };
         self.guided = Some(number);
-        self.told.clear();
+        self.message.clear();
         match SCENES[number].shows {
             Shows::Sheet(scene) => {
                 self.tab = Tab::Sheet;
@@ -221,11 +221,11 @@ impl Workbench {
     }
 
     /// What the program has to say, until it is read.
-    pub(super) fn told(&mut self, ui: &mut Ui) {
+    pub(super) fn show_message(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.label(&self.told);
+            ui.label(&self.message);
             if ui.small_button("close").clicked() {
-                self.told.clear();
+                self.message.clear();
             }
         });
     }
@@ -279,9 +279,9 @@ impl Workbench {
             ui.colored_label(ui.visuals().warn_fg_color, warning.to_string());
         }
         for model in Model::ALL {
-            if let Some(found) = self.table.fault(model) {
+            if let Some(fault) = self.table.fault(model) {
                 ui.label(RichText::new(model.name()).strong());
-                figures::fault(ui, found);
+                figures::fault(ui, fault);
             }
         }
         let height = ui.available_height().clamp(130.0, 230.0);

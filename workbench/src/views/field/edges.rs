@@ -59,14 +59,14 @@ impl Fields {
             WidgetInfo::labeled(Role::Image, true, label)
         });
         markers(ui, view, area, preview);
-        let reach = view.way(vec2(REACH, 0.0))[0];
+        let reach = view.vector(vec2(REACH, 0.0))[0];
         let at = |pointer: Pos2| nearest(figure, view.position(pointer), reach);
         let under = response.hover_pos().and_then(at);
         for name in &preview.edges {
             let asked = self.asked.as_ref().is_some_and(|(asked, _)| asked == name);
             let edge = self.question.edges.get(name);
-            let said = edge.filter(|edge| **edge != Edge::Unnamed);
-            draw(ui, view, figure, name, said, asked || under == Some(name));
+            let stated = edge.filter(|edge| **edge != Edge::Unnamed);
+            draw(ui, view, figure, name, stated, asked || under == Some(name));
         }
         if under.is_some() {
             let icon = eframe::egui::CursorIcon::PointingHand;
@@ -145,9 +145,9 @@ fn displacements(ui: &mut Ui, name: &str, edge: &mut Edge) {
 
 /// The markers at rest, and how they moved: half of the arrows are no longer than markers are apart.
 fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
-    let way = |[rest, found]: &[[f64; 2]; 2]| [found[0] - rest[0], found[1] - rest[1]];
-    let ways = preview.markers.iter().map(way);
-    let mut lengths: Vec<f64> = ways.map(|[x, y]| x.hypot(y)).collect();
+    let displacement = |[rest, moved]: &[[f64; 2]; 2]| [moved[0] - rest[0], moved[1] - rest[1]];
+    let displacements = preview.markers.iter().map(displacement);
+    let mut lengths: Vec<f64> = displacements.map(|[x, y]| x.hypot(y)).collect();
     lengths.sort_by(f64::total_cmp);
     let usual = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
     let along = |axis: usize| range(preview.markers.iter().map(|marker| marker[0][axis]));
@@ -159,8 +159,8 @@ fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
     let painter = ui.painter().with_clip_rect(area);
     let ink = ui.visuals().strong_text_color();
     for marker in &preview.markers {
-        let (rest, way) = (marker[0], way(marker));
-        let to = [0, 1].map(|axis| rest[axis] + shown * way[axis]);
+        let (rest, displacement) = (marker[0], displacement(marker));
+        let to = [0, 1].map(|axis| rest[axis] + shown * displacement[axis]);
         let (from, to) = (view.at(rest), view.at(to));
         painter.circle_filled(from, 1.5, ink);
         painter.line_segment([from, to], Stroke::new(1.0, ink.gamma_multiply(0.6)));
@@ -174,7 +174,14 @@ fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
 }
 
 /// An edge with what is said of it; thicker where it is pointed at.
-fn draw(ui: &Ui, view: View, figure: &MeshFigure, name: &str, said: Option<&Edge>, pointed: bool) {
+fn draw(
+    ui: &Ui,
+    view: View,
+    figure: &MeshFigure,
+    name: &str,
+    stated: Option<&Edge>,
+    pointed: bool,
+) {
     let painter = ui.painter();
     let ink = report::edge_colour(figure, name);
     let Some(group) = figure.groups.iter().find(|group| group.name == name) else {
@@ -189,7 +196,7 @@ fn draw(ui: &Ui, view: View, figure: &MeshFigure, name: &str, said: Option<&Edge
     let Some(middle) = middle(&group.lines) else {
         return;
     };
-    let text = match said {
+    let text = match stated {
         Some(edge) => format!("{name}: {}", edge.name()),
         None => name.to_owned(),
     };

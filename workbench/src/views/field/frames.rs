@@ -79,7 +79,7 @@ fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
         .collect();
     let sizes = frame.residuals.iter().filter(|(.., trust)| *trust > 0.5);
     let largest = sizes
-        .map(|(_, left, _)| left[0].hypot(left[1]))
+        .map(|(_, residual, _)| residual[0].hypot(residual[1]))
         .fold(0.0, f64::max);
     let Some([low, high]) = range(positions.iter().map(|position| position[0])) else {
         return;
@@ -88,12 +88,12 @@ fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
     ui.label(format!("residuals of the markers at their rest positions, magnified {enlarged:.1} times; outliers in the colour of faults"));
     let (view, area) = report::room(ui, positions.iter());
     let painter = ui.painter().with_clip_rect(area);
-    for (position, left, trust) in &frame.residuals {
+    for (position, residual, trust) in &frame.residuals {
         let ink = match *trust > 0.5 {
             true => ui.visuals().text_color(),
             false => ui.visuals().error_fg_color,
         };
-        let to = [0, 1].map(|axis| position[axis] + enlarged * left[axis]);
+        let to = [0, 1].map(|axis| position[axis] + enlarged * residual[axis]);
         painter.circle_filled(view.at(*position), 1.5, ink);
         painter.line_segment([view.at(*position), view.at(to)], Stroke::new(1.0, ink));
     }

@@ -31,9 +31,9 @@ impl Files {
                 .and_then(|content| download(&format!("{}.zip", written.name), &content)),
         };
         self.events.push(match given {
-            Ok(said) => Event::Saved {
+            Ok(message) => Event::Saved {
                 document: outgoing.document.map(|tab| (tab, None)),
-                said,
+                message,
             },
             Err(fault) => Event::Failed(fault),
         });

@@ -166,7 +166,7 @@ impl Files {
 
     fn write(&mut self, placed: Placed) {
         let Placed { files, outgoing } = placed;
-        let said = placed_in_words(&files, &outgoing);
+        let message = placed_in_words(&files, &outgoing);
         let first = files.first().map(|(path, _)| path.clone());
         for (path, content) in files {
             let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
@@ -182,7 +182,7 @@ impl Files {
         }
         self.events.push(Event::Saved {
             document: outgoing.document.map(|tab| (tab, first)),
-            said,
+            message,
         });
     }
 
@@ -230,14 +230,14 @@ impl Outgoing {
 
 impl Dialogue {
     fn without_choice(&self) -> Event {
-        let said = match self.begun.elapsed() < SEEN {
+        let message = match self.begun.elapsed() < SEEN {
             true => {
                 "the system shows no dialogue for files: xdg-desktop-portal or zenity is missing. Files can be dropped on the window"
             }
             false if self.outgoing.is_some() => "nothing was saved",
             false => "nothing was opened",
         };
-        Event::Failed(said.to_owned())
+        Event::Failed(message.to_owned())
     }
 }
 

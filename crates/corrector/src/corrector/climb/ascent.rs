@@ -1,7 +1,10 @@
 //! The climb of a field from grid to grid.
 
 use super::ratios::{Ratios, geometric_tail};
-use super::{Climb, ClimbSolution, Fall, Field, Inverted, Level, Way, at_stretch, inverted};
+use super::{
+    Climb, ClimbSolution, CorrectionHistory, Field, Inverted, Level, Provenance, at_stretch,
+    inverted,
+};
 use crate::error::{Error, SolveFault};
 
 /// The iteration's error on all grids but the finest, relative to that allowed there.
@@ -24,28 +27,34 @@ pub(super) struct Ascent {
     ratio: f64,
     ratios: Ratios,
     corrections: Vec<f64>,
-    way: Way,
+    provenance: Provenance,
 }
 
 impl Ascent {
     /// A corrected field on the first grid, and the remaining error of its correction in mm.
-    pub fn new(index: usize, ratios: Ratios, way: Way, field: Field, left: f64) -> Self {
+    pub fn new(
+        index: usize,
+        ratios: Ratios,
+        provenance: Provenance,
+        field: Field,
+        remaining_error: f64,
+    ) -> Self {
         Self {
             index,
-            corrections: vec![field.size(), left],
+            corrections: vec![field.size(), remaining_error],
             field,
             change: None,
             size: f64::NAN,
             ratio: ratios.first,
             ratios,
-            way,
+            provenance,
         }
     }
 
     /// Records that the field on a finer grid was found along a path of load steps, and the remaining error.
-    fn note_load_path(&mut self, left: f64, cells: [usize; 2]) {
-        self.corrections = vec![self.size, left];
-        self.way.by_load_path.push(cells);
+    fn note_load_path(&mut self, remaining_error: f64, cells: [usize; 2]) {
+        self.corrections = vec![self.size, remaining_error];
+        self.provenance.by_load_path.push(cells);
     }
 
     /// The field, and its change from the grid before, interpolated on the next grid.
@@ -119,7 +128,7 @@ impl Climb<'_> {
             discretisation_error: ascent.discretisation_error(),
             field: ascent.field,
             corrections: ascent.corrections,
-            way: ascent.way,
+            provenance: ascent.provenance,
         })
     }
 
@@ -131,12 +140,12 @@ impl Climb<'_> {
         if let Some(change) = &change {
             field.add(ascent.ratio, change);
         }
-        let mut found = self.settle(index, ascent, &interpolated, &mut field);
-        if found.is_err() && change.is_some() {
+        let mut settled = self.settle(index, ascent, &interpolated, &mut field);
+        if settled.is_err() && change.is_some() {
             field.clone_from(&interpolated);
-            found = self.settle(index, ascent, &interpolated, &mut field);
+            settled = self.settle(index, ascent, &interpolated, &mut field);
         }
-        let reached = found?;
+        let reached = settled?;
         self.weakest = reached.weakest;
         ascent.take(&self.levels, index, field, interpolated);
         ascent.corrections = reached.corrections;
@@ -151,7 +160,7 @@ impl Climb<'_> {
         ascent: &Ascent,
         interpolated: &Field,
         field: &mut Field,
-    ) -> Result<Fall, SolveFault> {
+    ) -> Result<CorrectionHistory, SolveFault> {
         let finest = index + 1 == self.levels.len();
         let tolerance = if finest {
             self.settings.tolerance
@@ -159,20 +168,20 @@ impl Climb<'_> {
             ON_THE_WAY * self.settings.tolerance
         };
         let (expected, ratio) = (ascent.ratio * ascent.size, ascent.ratio);
-        let enough = |first: f64, left: f64| {
+        let enough = |first: f64, remaining_error: f64| {
             let change = if expected.is_nan() { first } else { expected };
-            left <= tolerance * geometric_tail(change, ratio)
+            remaining_error <= tolerance * geometric_tail(change, ratio)
         };
         let mut reached = self.solve(index, field, &enough)?;
         for _ in 0..if finest { AGAIN } else { 0 } {
             let pair = [ascent.index, index].map(|index| &self.levels[index]);
             let [change, ratio] = ascent.change_to(pair, field, interpolated);
             let limit = SURE * tolerance * geometric_tail(change, ratio);
-            if reached.left() <= limit {
+            if reached.remaining_error() <= limit {
                 break;
             }
             self.weakest = reached.slowest();
-            let more = self.solve(index, field, &|_, left| left <= limit)?;
+            let more = self.solve(index, field, &|_, remaining_error| remaining_error <= limit)?;
             reached = reached.followed_by(more);
         }
         Ok(reached)
@@ -180,20 +189,26 @@ impl Climb<'_> {
 
     /// Climbs to the next grid, or a finer one, by Newton's method along a path of load steps from rest.
     fn step_up_by_load_path(&mut self, ascent: &mut Ascent, stretch: f64) -> Result<(), Error> {
-        let found = self.along_load_path(ascent.index + 1, stretch)?;
-        self.write_operators(&found);
-        let [coarse, fine] = [ascent.index, found.index].map(|index| &self.levels[index].grid);
+        let equilibrium = self.along_load_path(ascent.index + 1, stretch)?;
+        self.write_operators(&equilibrium);
+        let [coarse, fine] =
+            [ascent.index, equilibrium.index].map(|index| &self.levels[index].grid);
         let interpolated = ascent.field.onto(coarse, fine);
-        ascent.take(&self.levels, found.index, found.field, interpolated);
-        ascent.note_load_path(found.left, fine.cells());
+        ascent.take(
+            &self.levels,
+            equilibrium.index,
+            equilibrium.field,
+            interpolated,
+        );
+        ascent.note_load_path(equilibrium.remaining_error, fine.cells());
         Ok(())
     }
 
     /// The same on the finest grid, where the last correction of the iteration turned a cell inside out.
     fn replace_by_load_path(&self, ascent: &mut Ascent, stretch: f64) -> Result<(), Error> {
-        let found = self.along_load_path(ascent.index, stretch)?;
-        ascent.field = found.field;
-        ascent.note_load_path(found.left, self.grid().cells());
+        let equilibrium = self.along_load_path(ascent.index, stretch)?;
+        ascent.field = equilibrium.field;
+        ascent.note_load_path(equilibrium.remaining_error, self.grid().cells());
         Ok(())
     }
 }

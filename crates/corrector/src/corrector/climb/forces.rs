@@ -263,9 +263,11 @@ impl<const NODES: usize> Workspace<NODES> {
                 let target = &mut forces[column + line * width..][..run.count * order + 1];
                 for node in (0..NODES).rev() {
                     let kind = (axis * NODES + line) * NODES + node;
-                    let own = &self.forces[kind * Self::BLOCK + run.lane..][..run.count];
+                    let forces_of_run = &self.forces[kind * Self::BLOCK + run.lane..][..run.count];
                     let target = target[node..].iter_mut().step_by(order);
-                    target.zip(own).for_each(|(sum, force)| *sum += force);
+                    target
+                        .zip(forces_of_run)
+                        .for_each(|(sum, force)| *sum += force);
                 }
             }
         }

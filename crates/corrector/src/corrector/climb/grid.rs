@@ -90,15 +90,15 @@ impl Grid {
             return None;
         }
         let shared = [0, 1].map(|axis| -> Vec<usize> {
-            let (own, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);
-            let near = SAME * own[own.len() - 1];
+            let (coordinates, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);
+            let near = SAME * coordinates[coordinates.len() - 1];
             let has = |node: &usize| {
-                let after = others.partition_point(|other| *other < own[*node] - near);
+                let after = others.partition_point(|other| *other < coordinates[*node] - near);
                 others
                     .get(after)
-                    .is_some_and(|other| *other <= own[*node] + near)
+                    .is_some_and(|other| *other <= coordinates[*node] + near)
             };
-            (0..own.len()).filter(has).collect()
+            (0..coordinates.len()).filter(has).collect()
         });
         let enough = |axis: usize| 3 * shared[axis].len() >= coarser.coordinates[axis].len();
         (enough(0) && enough(1)).then_some(shared)
@@ -166,9 +166,9 @@ impl Field {
     /// Adds another field, multiplied.
     pub fn add(&mut self, factor: f64, other: &Self) {
         let part = self.part();
-        for (own, other) in self.components.iter_mut().zip(&other.components) {
-            part.sweep([own], [other], &|_, [own], [other]| {
-                for (u, other) in own.iter_mut().zip(other) {
+        for (component, other) in self.components.iter_mut().zip(&other.components) {
+            part.sweep([component], [other], &|_, [component], [other]| {
+                for (u, other) in component.iter_mut().zip(other) {
                     *u += factor * other;
                 }
                 []
@@ -187,10 +187,12 @@ impl Field {
     /// The sum of products of all values.
     pub fn product(&self, other: &Self) -> f64 {
         let pairs = self.components.iter().zip(&other.components);
-        let of_component = |(own, other): (&Vec<f64>, &Vec<f64>)| {
-            let [of_pairs] = self.part().sweep([], [own, other], &|_, [], [own, other]| {
-                sum(own.len(), |k| [own[k] * other[k]])
-            });
+        let of_component = |(component, other): (&Vec<f64>, &Vec<f64>)| {
+            let [of_pairs] =
+                self.part()
+                    .sweep([], [component, other], &|_, [], [component, other]| {
+                        sum(component.len(), |k| [component[k] * other[k]])
+                    });
             of_pairs
         };
         pairs.map(of_component).sum()
@@ -234,15 +236,18 @@ impl Field {
             }
         });
         let mut field = Self::zeros(finer);
-        let (own, width) = (self.width, field.width);
+        let (width_here, width) = (self.width, field.width);
         for (from, to) in self.components.iter().zip(&mut field.components) {
             let part = Part::all(finer.lines());
             part.sweep([to], [], &|part, [to], []| {
-                let mut between = vec![0.0; own];
+                let mut between = vec![0.0; width_here];
                 for (position, to) in to.chunks_exact_mut(width).enumerate() {
                     let (first, shares) = along_x.at(part.first / width + position);
                     between.fill(0.0);
-                    for (share, from) in shares.iter().zip(from[first * own..].chunks_exact(own)) {
+                    for (share, from) in shares
+                        .iter()
+                        .zip(from[first * width_here..].chunks_exact(width_here))
+                    {
                         for (sum, value) in between.iter_mut().zip(from) {
                             *sum += share * value;
                         }

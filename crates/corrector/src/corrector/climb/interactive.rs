@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use super::{Climb, ClimbSolution, Ending, Fall, Field, Inverted, Start, Way, inverted};
+use super::{
+    Climb, ClimbSolution, CorrectionHistory, Ending, Field, Inverted, Provenance, Start, inverted,
+};
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
 
@@ -25,7 +27,7 @@ impl fmt::Display for Grips {
 
 impl Climb<'_> {
     /// Corrects a field that is near the result, with the operators assembled before, to a share of its discretisation error.
-    fn near(&mut self, field: &mut Field, error: f64) -> Result<Fall, SolveFault> {
+    fn near(&mut self, field: &mut Field, error: f64) -> Result<CorrectionHistory, SolveFault> {
         self.check_operators()?;
         let finest = self.levels.len() - 1;
         let limit = self.settings.tolerance * error;
@@ -34,14 +36,14 @@ impl Climb<'_> {
         let ending = Ending {
             most,
             weakest: self.weakest,
-            enough: &|_, left| left <= limit,
+            enough: &|_, remaining_error| remaining_error <= limit,
         };
         let iterated = level.iterate(sheet, field, &mut self.multigrid, &ending);
         let reached = iterated.map_err(|Inverted| inverted())?;
-        if reached.left() > limit {
+        if reached.remaining_error() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
-                residual: reached.left(),
+                residual: reached.remaining_error(),
                 tolerance: limit,
             });
         }
@@ -51,7 +53,12 @@ impl Climb<'_> {
 
 impl ClimbSolution {
     /// A state found near another one.
-    fn near(field: Field, force: f64, discretisation_error: f64, reached: Fall) -> Self {
+    fn near(
+        field: Field,
+        force: f64,
+        discretisation_error: f64,
+        reached: CorrectionHistory,
+    ) -> Self {
         let nodes = field.components[0].len();
         let cells = [nodes / field.width - 1, field.width - 1];
         Self {
@@ -59,7 +66,7 @@ impl ClimbSolution {
             force,
             discretisation_error,
             corrections: reached.corrections,
-            way: Way::from_start(Start::StatesBefore, cells),
+            provenance: Provenance::from_start(Start::StatesBefore, cells),
         }
     }
 }
@@ -117,14 +124,14 @@ impl<'a> Interactive<'a> {
     /// [`Error::Solve`] when the field cannot follow; the state before is kept.
     pub fn move_grips(&mut self, grips: Grips) -> Result<&ClimbSolution, Error> {
         const PARTS: [usize; 4] = [1, 2, 4, 8];
-        let mut found = Err(SolveFault::Singular);
+        let mut outcome = Err(SolveFault::Singular);
         for parts in PARTS {
-            found = self.move_in(parts, grips);
-            if found.is_ok() {
+            outcome = self.move_in(parts, grips);
+            if outcome.is_ok() {
                 break;
             }
         }
-        self.climbed = found.map_err(|fault| Error::Solve {
+        self.climbed = outcome.map_err(|fault| Error::Solve {
             model: "corrector (climb)".into(),
             step: format!(
                 "a motion of the grips from {} to {grips} (also in {} parts; the previous field is kept: move them \

@@ -1,6 +1,6 @@
 //! One grid of the climb: its equation, and the iteration that solves it.
 
-use super::fall::Fall;
+use super::correction_history::CorrectionHistory;
 use super::grid::{Field, Grid};
 use super::sheet::{Inverted, Sheet};
 use super::sweep::{Part, sum};
@@ -91,26 +91,29 @@ impl Level {
         u: &mut Field,
         multigrid: &mut Multigrid,
         ending: &Ending,
-    ) -> Result<Fall, Inverted> {
+    ) -> Result<CorrectionHistory, Inverted> {
         self.evaluate_residual(sheet, u)?;
         let [mut steepness, size] = self.precondition(multigrid);
-        let mut fall = Fall::new(size, ending.weakest);
+        let mut correction_history = CorrectionHistory::new(size, ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
         }
         let mut share = 0.0;
         for _ in 0..ending.most {
-            if (ending.enough)(fall.first(), fall.left()) {
+            if (ending.enough)(
+                correction_history.first(),
+                correction_history.remaining_error(),
+            ) {
                 break;
             }
             let length = self.step(sheet, u, share)?;
             let [next, size] = self.precondition(multigrid);
             share = next / steepness;
             steepness = next;
-            fall.push(size, length, share);
+            correction_history.push(size, length, share);
         }
         u.add(-1.0, &self.correction);
-        Ok(fall)
+        Ok(correction_history)
     }
 
     /// The correction z = M⁻¹ r of the residual, which is zero at the grips: r · z, and the root mean square of z over the nodes in mm.
@@ -130,7 +133,7 @@ impl Level {
         for axis in [0, 1] {
             let target = &mut self.correction.components[axis][..];
             let residual = &self.residual.components[axis][..];
-            let [own, square] =
+            let [product_of_lane, square] =
                 Part::all(z.lines()).sweep([target], [residual], &|part, [target], [residual]| {
                     let lines = target.chunks_exact_mut(width);
                     let mut sums = [0.0; 2];
@@ -150,7 +153,7 @@ impl Level {
                     }
                     sums
                 });
-            product += own;
+            product += product_of_lane;
             squares += square;
         }
         [product, (squares / self.grid.nodes() as f64).sqrt()]
@@ -246,10 +249,10 @@ impl Level {
         for axis in [0, 1] {
             let read = [&self.direction, &self.residual, &self.trial_residual];
             let read = read.map(|field| &field.components[axis][..]);
-            let [own, change] = part.sweep([], read, &|_, [], [p, r, there]| {
+            let [product_of_part, change] = part.sweep([], read, &|_, [], [p, r, there]| {
                 sum(p.len(), |k| [p[k] * r[k], p[k] * (there[k] - r[k])])
             });
-            against += own;
+            against += product_of_part;
             curvature += change;
         }
         let share = if curvature > 0.0 {

@@ -29,7 +29,7 @@ pub(super) struct Equilibrium {
     /// The displacements in mm.
     pub field: Field,
     /// The remaining error of Newton's method in mm: its relative residual as a share of the displacements.
-    pub left: f64,
+    pub remaining_error: f64,
 }
 
 /// The scheme's plate on a grid.
@@ -64,8 +64,9 @@ impl Climb<'_> {
 
     /// Assembles the operators of its grid and of all coarser ones at an equilibrium. Where that fails, finer grids
     /// are iterated with the earlier operators, or solved along a path of load steps too.
-    pub(super) fn write_operators(&mut self, found: &Equilibrium) {
-        self.linearise_below(found.index, &found.field).ok();
+    pub(super) fn write_operators(&mut self, equilibrium: &Equilibrium) {
+        self.linearise_below(equilibrium.index, &equilibrium.field)
+            .ok();
     }
 
     fn plate_on<'a>(&self, grid: &'a Grid) -> GridPlate<'a> {
@@ -94,7 +95,7 @@ impl Climb<'_> {
         let residual = state.convergence.residuals.last();
         Ok(Equilibrium {
             index,
-            left: residual.map_or(0.0, |left| left * field.size()),
+            remaining_error: residual.map_or(0.0, |remaining_error| remaining_error * field.size()),
             field,
         })
     }

@@ -101,11 +101,11 @@ mod tests {
     #[test]
     fn the_mesh_of_an_even_grid_is_that_of_the_plate() {
         for (side, shape) in [(1, CellShape::Quad4), (2, CellShape::Quad9)] {
-            let own = Grid::even([30.0, 10.0], [6, 4]).mesh(side);
+            let mesh = Grid::even([30.0, 10.0], [6, 4]).mesh(side);
             let plate = Mesh::plate([30.0, 10.0], [6 / side, 4 / side], shape);
-            assert_eq!(own.nodes, plate.nodes);
-            assert_eq!(own.groups(), plate.groups());
-            assert!((0..own.cell_count()).all(|cell| own.cell(cell) == plate.cell(cell)));
+            assert_eq!(mesh.nodes, plate.nodes);
+            assert_eq!(mesh.groups(), plate.groups());
+            assert!((0..mesh.cell_count()).all(|cell| mesh.cell(cell) == plate.cell(cell)));
         }
     }
 }

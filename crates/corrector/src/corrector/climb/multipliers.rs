@@ -26,13 +26,13 @@ impl Climb<'_> {
         climbed: &ClimbSolution,
         stretch: f64,
     ) -> Result<Vec<f64>, Error> {
-        let found = self.solve_multipliers(data, &climbed.field);
+        let multipliers = self.solve_multipliers(data, &climbed.field);
         let fault = |fault| Error::Solve {
             model: "multipliers".into(),
             step: ClampedPlate::describe_step(stretch),
             fault,
         };
-        found.map(|field| field.to_nodes()).map_err(fault)
+        multipliers.map(|field| field.to_nodes()).map_err(fault)
     }
 
     /// By the iteration, or by a sparse factor where the iteration does not converge.

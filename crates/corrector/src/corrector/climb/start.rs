@@ -3,7 +3,7 @@
 //! The corrector does not depend on the origin of ū, so that several starts are tried in a fixed order until one can be corrected: see [`Start`].
 
 use super::ascent::Ascent;
-use super::way::{Start, Way};
+use super::provenance::{Provenance, Start};
 use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
@@ -16,7 +16,7 @@ pub(super) struct First {
     /// See [`Way::away`].
     away: f64,
     /// The remaining error of the correction, root mean square over the nodes in mm.
-    left: f64,
+    remaining_error: f64,
 }
 
 /// The springs are a first guess, which the correction changes by some hundredths: a more exact equilibrium of them would waste time.
@@ -48,26 +48,35 @@ impl Climb<'_> {
                 return Ok(self.begin(start, first));
             }
         }
-        let found = self.along_load_path(self.start, stretch)?;
-        self.write_operators(&found);
-        let (grid, left) = (&self.levels[found.index].grid, found.left);
-        let way = Way::from_start(Start::LoadPath, grid.cells());
+        let equilibrium = self.along_load_path(self.start, stretch)?;
+        self.write_operators(&equilibrium);
+        let (grid, remaining_error) = (
+            &self.levels[equilibrium.index].grid,
+            equilibrium.remaining_error,
+        );
+        let provenance = Provenance::from_start(Start::LoadPath, grid.cells());
         Ok(Ascent::new(
-            found.index,
+            equilibrium.index,
             self.ratios,
-            way,
-            found.field,
-            left,
+            provenance,
+            equilibrium.field,
+            remaining_error,
         ))
     }
 
     fn begin(&self, start: Start, first: First) -> Ascent {
         let grid = &self.levels[self.start].grid;
-        let way = Way {
+        let provenance = Provenance {
             away: first.away,
-            ..Way::from_start(start, grid.cells())
+            ..Provenance::from_start(start, grid.cells())
         };
-        Ascent::new(self.start, self.ratios, way, first.field, first.left)
+        Ascent::new(
+            self.start,
+            self.ratios,
+            provenance,
+            first.field,
+            first.remaining_error,
+        )
     }
 
     /// The springs' field at the first of so many load steps, corrected and led to the stretch on the first grid; `None` where it cannot be.
@@ -78,11 +87,11 @@ impl Climb<'_> {
 
     /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip.
     fn load_steps(&mut self, mut field: Field, steps: usize) -> Result<First, SolveFault> {
-        let (mut left, mut away) = (f64::NAN, f64::NAN);
+        let (mut remaining_error, mut away) = (f64::NAN, f64::NAN);
         for step in 1..=steps {
             let mut guess = field.clone();
             self.weakest = 1.0;
-            left = self.correct_start(&mut field)?;
+            remaining_error = self.correct_start(&mut field)?;
             if step == 1 {
                 guess.add(-1.0, &field);
                 away = guess.size();
@@ -91,7 +100,11 @@ impl Climb<'_> {
                 field.scale((step + 1) as f64 / step as f64);
             }
         }
-        Ok(First { field, away, left })
+        Ok(First {
+            field,
+            away,
+            remaining_error,
+        })
     }
 
     /// Corrects on the first grid; returns the remaining error in mm.
@@ -102,15 +115,15 @@ impl Climb<'_> {
         } else {
             START_TOLERANCE
         };
-        let (mut left, mut weakest) = (f64::NAN, 1.0);
+        let (mut remaining_error, mut weakest) = (f64::NAN, 1.0);
         for tolerance in [tolerance.max(FIRST_TOLERANCE), tolerance] {
             self.linearise_below(self.start, field)?;
-            let enough = |first: f64, left: f64| left <= tolerance * first;
+            let enough = |first: f64, remaining_error: f64| remaining_error <= tolerance * first;
             let reached = self.solve(self.start, field, &enough)?;
-            (left, weakest) = (reached.left(), reached.weakest);
+            (remaining_error, weakest) = (reached.remaining_error(), reached.weakest);
         }
         self.weakest = weakest;
-        Ok(left)
+        Ok(remaining_error)
     }
 
     /// The springs in equilibrium, at the nodes of the grid at which the climb begins; `None` where they have no equilibrium.
@@ -161,8 +174,8 @@ pub(super) fn contracted_stretch(size: [f64; 2], grid: &Grid, stretch: f64) -> F
     let contraction = (1.0 + stretch).max(f64::MIN_POSITIVE).powf(-0.5) - 1.0;
     let held = |x: f64| 1.0 - cosh_ratio(4.0 * (x - 0.5 * length) / width, 2.0 * length / width);
     let across = |eta: f64| {
-        let (own, edge) = (2.0 * eta / length, width / length);
-        0.5 * length * sinh_over_cosh(own, edge)
+        let (along, edge) = (2.0 * eta / length, width / length);
+        0.5 * length * sinh_over_cosh(along, edge)
     };
     let mut field = Field::zeros(grid);
     let [x, y] = &grid.coordinates;

@@ -89,13 +89,13 @@ pub fn sum<const SUMS: usize>(count: usize, term: impl Fn(usize) -> [f64; SUMS])
             .zip(terms)
             .for_each(|(sum, term)| *sum += term);
     };
-    let whole = count - count % LANES;
-    for first in (0..whole).step_by(LANES) {
+    let in_vectors = count - count % LANES;
+    for first in (0..in_vectors).step_by(LANES) {
         for (lane, sums) in sums.iter_mut().enumerate() {
             add(sums, first + lane);
         }
     }
-    for (lane, position) in (whole..count).enumerate() {
+    for (lane, position) in (in_vectors..count).enumerate() {
         add(&mut sums[lane], position);
     }
     std::array::from_fn(|k| sums.iter().map(|lane| lane[k]).sum())

@@ -40,7 +40,7 @@ pub fn linearise(
                 }
             }
             let points = gradients.each_ref().map(|h| &h[..count]);
-            let of_points = responses.each_mut().map(|own| &mut own[..count]);
+            let of_points = responses.each_mut().map(|values| &mut values[..count]);
             admissible &= law.responses(points, of_points, true);
             // A₁₁ A₂₁ A₃₁ A₄₁ A₂₂ A₃₂ A₄₂ A₃₃ A₄₃ A₄₄ over the components 11, 12, 21, 22.
             let [_, _, _, _, _, a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = &responses;

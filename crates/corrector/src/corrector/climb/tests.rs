@@ -59,8 +59,8 @@ fn no_plate_is_turned_over() {
                 DifferenceScheme::Biquadratic,
                 ClimbSettings::default(),
             );
-            if let Ok(found) = climb.correct(stretch) {
-                assert!(!is_turned(&found.field, climb.grid()), "{card} {stretch}");
+            if let Ok(climbed) = climb.correct(stretch) {
+                assert!(!is_turned(&climbed.field, climb.grid()), "{card} {stretch}");
             }
         }
     }
@@ -106,13 +106,13 @@ fn direct(
         .collect();
     let mut climb = Climb::graded(problem, cells, scheme, grading, TIGHT);
     let climbed = corrector.climb(&mut climb, &data, stretch).unwrap();
-    let own: Vec<f64> = climbed
+    let nodal: Vec<f64> = climbed
         .multipliers
         .into_iter()
         .flat_map(|m| m.values)
         .collect();
-    let most = own.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    assert!(largest_difference(&own, &multipliers) < 1e-4 * most);
+    let most = nodal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    assert!(largest_difference(&nodal, &multipliers) < 1e-4 * most);
     (state.state.displacement, state.measures.force)
 }
 
@@ -184,9 +184,9 @@ fn the_climb_reaches_the_direct_corrector_with_every_scheme_law_and_number_of_ce
             .correct(stretch)
             .unwrap();
         let off = largest_difference(&climbed.field.to_nodes(), &expected);
-        let told = format!("{card} {cells:?} {scheme:?} graded by {grading}");
-        assert!(off < 1e-6 * size[0], "{told}: {off} mm");
-        assert!((climbed.force / force - 1.0).abs() < 1e-7, "{told}");
+        let case = format!("{card} {cells:?} {scheme:?} graded by {grading}");
+        assert!(off < 1e-6 * size[0], "{case}: {off} mm");
+        assert!((climbed.force / force - 1.0).abs() < 1e-7, "{case}");
     }
 }
 

@@ -97,8 +97,8 @@ fn internal_forces(
     } in potential.skew_couplings()
     {
         for (row, column, value) in [(row, column, stiffness), (column, row, -stiffness)] {
-            let own = rows[row].iter_mut().find(|(own, _)| *own == column);
-            own.expect("two unknowns of one node").1 += value;
+            let entry = rows[row].iter_mut().find(|(entry, _)| *entry == column);
+            entry.expect("two unknowns of one node").1 += value;
         }
     }
     Ok((residual, rows))

@@ -69,8 +69,8 @@ pub(super) fn kkt(
     let mut system = SparseRows::new(n + m);
     for (unknown, column) in by_column.into_iter().enumerate() {
         let curved = curvature.map_or(&[][..], |curvature| curvature.row(unknown));
-        let own = std::iter::once((unknown, weights[unknown]));
-        system.push(own.chain(curved.iter().copied()).chain(column));
+        let diagonal = std::iter::once((unknown, weights[unknown]));
+        system.push(diagonal.chain(curved.iter().copied()).chain(column));
     }
     for row in 0..m {
         system.push(jacobian.row(row).iter().copied());
@@ -238,15 +238,19 @@ impl Symmetric {
             step[unknowns[*row]] = value;
         }
 
-        let left = |unknown: usize| weights[unknown] * (pull[unknown] - step[unknown]);
-        let free_left: Vec<f64> = self.free.iter().map(|row| left(unknowns[*row])).collect();
+        let unbalanced = |unknown: usize| weights[unknown] * (pull[unknown] - step[unknown]);
+        let free_unbalanced: Vec<f64> = self
+            .free
+            .iter()
+            .map(|row| unbalanced(unknowns[*row]))
+            .collect();
         let mut multipliers = vec![0.0; unknowns.len()];
-        for (row, value) in self.free.iter().zip(self.cholesky.solve(&free_left)?) {
+        for (row, value) in self.free.iter().zip(self.cholesky.solve(&free_unbalanced)?) {
             multipliers[*row] = value;
         }
         let balanced = jacobian.multiply_transposed(&multipliers);
         for row in &self.prescribed {
-            multipliers[*row] = left(unknowns[*row]) - balanced[unknowns[*row]];
+            multipliers[*row] = unbalanced(unknowns[*row]) - balanced[unknowns[*row]];
         }
         Ok(Projection { step, multipliers })
     }

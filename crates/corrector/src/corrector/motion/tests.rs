@@ -58,10 +58,10 @@ fn a_damped_spring_is_corrected_to_its_closed_form_with_the_second_order() {
         let error = |count: usize| {
             let step = 5.0 / count as f64;
             let equation = EquationOfMotion::new(&body, step, beta).unwrap();
-            let found = equation
+            let corrected = equation
                 .correct(&wrong(count + 1), &body.start, windows(16), &|_| ())
                 .unwrap();
-            let all = found.displacement.iter().enumerate();
+            let all = corrected.displacement.iter().enumerate();
             all.map(|(i, u)| (u[0] - exact(step * i as f64)).abs())
                 .fold(0.0, f64::max)
         };
@@ -112,17 +112,17 @@ fn multipliers_balance_the_correction() {
     let (h, count) = (0.1, 6);
     let equation = EquationOfMotion::new(&body, h, 0.0).unwrap();
     let data = wrong(count);
-    let found = equation
+    let corrected = equation
         .correct(&data, &body.start, windows(count), &|_| ())
         .unwrap();
-    let psi = |instant: usize| found.multipliers.get(instant).map_or(0.0, |psi| psi[0]);
+    let psi = |instant: usize| corrected.multipliers.get(instant).map_or(0.0, |psi| psi[0]);
     for (instant, data) in data.iter().enumerate().skip(1) {
         // Of the row that determines it, and of the next two.
         let square = h * h;
         let pull = psi(instant) / square
             + (4.0 - 2.0 / square) * psi(instant + 1)
             + psi(instant + 2) / square;
-        let change = found.displacement[instant][0] - data[0];
+        let change = corrected.displacement[instant][0] - data[0];
         assert!((change + pull).abs() < 1e-12, "{instant}: {change} {pull}");
     }
 }
@@ -163,8 +163,8 @@ fn noise_is_removed_from_a_recorded_motion_with_an_unknown_start() {
             .map(|(a, b)| (a[0] - b[0]).powi(2));
         squares.sum::<f64>().sqrt()
     };
-    let left = error(&smoothed) / error(&data);
-    assert!(left < 2.0 * (2.0_f64 / 121.0).sqrt(), "{left}");
+    let ratio = error(&smoothed) / error(&data);
+    assert!(ratio < 2.0 * (2.0_f64 / 121.0).sqrt(), "{ratio}");
     // What is left of the noise is orthogonal to all motions of the body: it has no part along the exact one's change.
     let stretches = equation.smooth(&data, &guess, 40, settings).unwrap();
     assert!(error(&stretches) > error(&smoothed) && error(&stretches) < error(&data));
@@ -218,15 +218,19 @@ fn a_plate_moves_as_by_the_average_acceleration() {
         .unwrap();
     let data = vec![body.start.displacement.clone(); 101];
     let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
-    let found = equation
+    let corrected = equation
         .correct(&data, &body.start, windows(10), &|_| ())
         .unwrap();
-    for (instant, u) in history.instants.iter().zip(&found.displacement) {
+    for (instant, u) in history.instants.iter().zip(&corrected.displacement) {
         let pairs = instant.displacement.iter().zip(u);
         let most = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(most < 1e-7, "{}: {most:.1e}", instant.time);
     }
-    assert!(found.factorisations < 10, "{}", found.factorisations);
+    assert!(
+        corrected.factorisations < 10,
+        "{}",
+        corrected.factorisations
+    );
 }
 
 #[test]
@@ -241,12 +245,12 @@ fn motions_that_three_instants_do_not_tell_are_refused() {
         until: Some(0.5),
         ..MovingSupport::fixed(vec![0])
     }];
-    let told = EquationOfMotion::new(&body, 0.1, 0.25)
+    let fault = EquationOfMotion::new(&body, 0.1, 0.25)
         .map(|_| ())
         .unwrap_err();
     assert!(
-        told.to_string().contains("is released during the motion"),
-        "{told}"
+        fault.to_string().contains("is released during the motion"),
+        "{fault}"
     );
     let mut body = motion(&spring, None, 1.0);
     body.mass = vec![0.0];
@@ -287,11 +291,11 @@ fn a_motion_under_a_force_that_changes_in_time_is_that_of_newmarks_method() {
         .unwrap();
     let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
     let given = wrong(expected.instants.len());
-    let found = equation
+    let corrected = equation
         .correct(&given, &body.start, windows(16), &|_| ())
         .unwrap();
-    for (found, expected) in found.displacement.iter().zip(&expected.instants) {
-        let off = (found[0] - expected.displacement[0]).abs();
+    for (corrected, expected) in corrected.displacement.iter().zip(&expected.instants) {
+        let off = (corrected[0] - expected.displacement[0]).abs();
         assert!(off < 1e-8, "{} s: {off:.1e}", expected.time);
     }
 }

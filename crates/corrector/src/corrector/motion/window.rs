@@ -59,7 +59,7 @@ struct Window {
 struct RetainedFactor {
     cholesky: Cholesky,
     fresh: bool,
-    made: usize,
+    factorisations: usize,
 }
 
 impl RetainedFactor {
@@ -68,7 +68,7 @@ impl RetainedFactor {
         let factor = self.cholesky.factorise(values);
         factor.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
         self.fresh = true;
-        self.made += 1;
+        self.factorisations += 1;
         Ok(())
     }
 }
@@ -97,7 +97,7 @@ impl EquationOfMotion<'_> {
     ) -> Result<CorrectedMotion, CorrectionEnd> {
         let size = self.motion.energy.unknowns();
         let mut corrected = CorrectedMotion {
-            displacement: vec![self.whole(0, &self.free(&start.displacement))],
+            displacement: vec![self.all_unknowns(0, &self.free(&start.displacement))],
             multipliers: vec![vec![0.0; size]],
             iterations: 0,
             factorisations: 0,
@@ -124,7 +124,7 @@ impl EquationOfMotion<'_> {
         let mut retained = RetainedFactor {
             cholesky: self.assembly.analyse()?,
             fresh: false,
-            made: 0,
+            factorisations: 0,
         };
         let velocity = self.free(&start.velocity);
         let largest_stiffness = self.largest_stiffness(&start.displacement);
@@ -135,7 +135,7 @@ impl EquationOfMotion<'_> {
             let count = steps.min(data.len() - done);
             let mut window = self.window(&corrected.displacement, data, count);
             let solved = self.solve(&mut window, &velocity, &mut retained, settings, least_force);
-            corrected.factorisations = retained.made;
+            corrected.factorisations = retained.factorisations;
             match solved {
                 Ok((interval, iterations)) => {
                     self.append(&window, data, &interval, &mut retained, corrected)?;
@@ -225,8 +225,9 @@ impl EquationOfMotion<'_> {
             .map(|row| self.value(row, interval, &window.states))
             .collect();
         if window.begin == 0 {
-            let own = values[0].iter_mut().zip(self.assembly.free()).zip(velocity);
-            own.for_each(|((value, unknown), v)| *value -= self.inertia(*unknown) * self.step * v);
+            let unknowns = values[0].iter_mut().zip(self.assembly.free()).zip(velocity);
+            unknowns
+                .for_each(|((value, unknown), v)| *value -= self.inertia(*unknown) * self.step * v);
         }
         values
     }
@@ -296,9 +297,9 @@ impl EquationOfMotion<'_> {
             let instant = window.first + row + 1;
             corrected
                 .displacement
-                .push(self.whole(instant, &window.states[row + 1]));
-            let whole = spread(self.assembly.free(), &psi, self.motion.energy.unknowns());
-            corrected.multipliers.push(whole);
+                .push(self.all_unknowns(instant, &window.states[row + 1]));
+            let all_unknowns = spread(self.assembly.free(), &psi, self.motion.energy.unknowns());
+            corrected.multipliers.push(all_unknowns);
         }
         Ok(())
     }
@@ -336,16 +337,16 @@ impl EquationOfMotion<'_> {
     ) -> Result<Vec<f64>, SolveFault> {
         const REPEATS: usize = 40;
         const TOLERANCE: f64 = 1e-10;
-        let mut found = vec![0.0; right.len()];
+        let mut solution = vec![0.0; right.len()];
         let mut defect = right.to_vec();
         let scale = largest(right);
         for _ in 0..REPEATS {
             if largest(&defect) <= TOLERANCE * scale {
-                return Ok(found);
+                return Ok(solution);
             }
             cholesky.substitute(&mut defect);
-            add_scaled(&mut found, 1.0, &defect);
-            let product = self.assembly.pattern().multiply(values, &found);
+            add_scaled(&mut solution, 1.0, &defect);
+            let product = self.assembly.pattern().multiply(values, &solution);
             defect = difference(right, &product);
         }
         Err(SolveFault::Singular)

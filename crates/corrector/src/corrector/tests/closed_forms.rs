@@ -63,9 +63,9 @@ fn rows_of_any_length_contradict_each_other_by_their_right_hand_sides() {
     rows.push([(0, 1.0)]);
     rows.push([(0, 10.0)]);
     for (second, contradictory) in [(10.0, false), (5.0, true)] {
-        let found = dependence::find(&rows, &[-1.0, -second], 1.0).unwrap();
-        assert_eq!(found.contradictory, contradictory, "{second}");
-        assert_eq!(found.rows.len(), 2);
+        let computed = dependence::find(&rows, &[-1.0, -second], 1.0).unwrap();
+        assert_eq!(computed.contradictory, contradictory, "{second}");
+        assert_eq!(computed.rows.len(), 2);
     }
 }
 
@@ -84,9 +84,9 @@ fn an_estimate_weighs_its_data() {
     let same = Linear::new("the same", rows, vec![0.0; 4]);
     let corrector = Corrector::new(vec![Box::new(same)], weights, SETTINGS);
     let correction = corrector.correct(&data, &data).unwrap();
-    let found = corrector.estimate(&data, &correction, 4).unwrap();
-    assert!((found.value - mean).abs() < 1e-13);
-    assert!((found.standard_error / (variance / all).sqrt() - 1.0).abs() < 1e-12);
+    let computed = corrector.estimate(&data, &correction, 4).unwrap();
+    assert!((computed.value - mean).abs() < 1e-13);
+    assert!((computed.standard_error / (variance / all).sqrt() - 1.0).abs() < 1e-12);
 }
 
 /// The scheme of the Gauss points has the equations of Q1 elements, that of pairs of cells those of Q2: force, width,
@@ -116,14 +116,17 @@ fn a_corrected_state_is_that_of_the_finite_elements_on_the_same_nodes() {
         let direct = corrector.correct(field, STRETCH, KnownConditions::ALL);
         let climbed = corrector.climb(&mut climb, field, STRETCH);
         for corrected in [direct.unwrap(), climbed.unwrap()] {
-            let (state, found) = (corrected.state, corrected.measures);
-            for (found, expected) in [
-                (found.force, expected.force),
-                (found.mid_width, expected.mid_width),
-                (found.energy, expected.energy),
+            let (state, computed) = (corrected.state, corrected.measures);
+            for (computed, expected) in [
+                (computed.force, expected.force),
+                (computed.mid_width, expected.mid_width),
+                (computed.energy, expected.energy),
                 (state.convergence.energy, expected.energy),
             ] {
-                assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+                assert!(
+                    (computed / expected - 1.0).abs() < 1e-6,
+                    "{computed} {expected}"
+                );
             }
         }
     }
@@ -156,31 +159,35 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
         .zip(&state.displacement)
         .map(|(n, u)| u + 0.05 * n)
         .collect();
-    let found = specimen::correct(
+    let computed = specimen::correct(
         &model,
         &data,
         &state.displacement,
         Stage::first(1.0),
         SETTINGS,
     );
-    let found = found.unwrap();
-    assert!(largest_difference(&found.state.displacement, &state.displacement) < 1e-8);
+    let computed = computed.unwrap();
+    assert!(largest_difference(&computed.state.displacement, &state.displacement) < 1e-8);
     // Stationary in every unknown: W (u − ū) + Bᵀ ψ = 0.
-    let psi: Vec<f64> = found
+    let psi: Vec<f64> = computed
         .correction
         .multipliers
         .iter()
-        .flat_map(|own| own.values.clone())
+        .flat_map(|condition| condition.values.clone())
         .collect();
-    let pull = found.correction.factor.jacobian().multiply_transposed(&psi);
-    let moved = difference(found.correction.field(), &data);
+    let pull = computed
+        .correction
+        .factor
+        .jacobian()
+        .multiply_transposed(&psi);
+    let moved = difference(computed.correction.field(), &data);
     assert!(largest(&moved) > 0.01);
-    let left: Vec<f64> = moved.iter().zip(&pull).map(|(a, b)| a + b).collect();
-    assert!(largest(&left) < 1e-9, "{:.1e}", largest(&left));
+    let unbalanced: Vec<f64> = moved.iter().zip(&pull).map(|(a, b)| a + b).collect();
+    assert!(largest(&unbalanced) < 1e-9, "{:.1e}", largest(&unbalanced));
     let mut residual = vec![0.0; data.len()];
     let potential = model.potential(1.0, &[]);
     let stored = Assembly::residual(&*potential, &state.displacement, &mut residual).unwrap();
-    assert!((found.state.convergence.energy / stored - 1.0).abs() < 1e-8);
+    assert!((computed.state.convergence.energy / stored - 1.0).abs() < 1e-8);
     assert_eq!(potential.unknowns(), data.len());
 }
 

@@ -95,7 +95,10 @@ fn curvatures_are_derivatives_of_the_jacobians() {
         (20..90).collect(),
     ))];
     let rest = vec![0.0; u.len()];
-    for (condition, field) in conditions.iter().flat_map(|own| [(own, u), (own, &rest)]) {
+    for (condition, field) in conditions
+        .iter()
+        .flat_map(|condition| [(condition, u), (condition, &rest)])
+    {
         let error = curvature_error(&**condition, field, &noise(condition.rows()));
         assert!(error < 1e-5, "{}: {error:.1e}", condition.name());
     }

@@ -43,10 +43,10 @@ fn all_forms_of_the_projection_agree() {
             forms.push(Solver::Symmetric);
         }
         for form in forms {
-            let (taken, found) = project(form).unwrap();
+            let (taken, computed) = project(form).unwrap();
             assert_eq!(taken, form);
-            let step = largest_difference(&found.step, &expected.step) / largest(&expected.step);
-            let psi = largest_difference(&found.multipliers, &expected.multipliers);
+            let step = largest_difference(&computed.step, &expected.step) / largest(&expected.step);
+            let psi = largest_difference(&computed.multipliers, &expected.multipliers);
             let psi = psi / largest(&expected.multipliers);
             assert!(
                 step < 1e-9 && psi < 1e-9,
@@ -105,12 +105,12 @@ fn the_correction_matrix_is_what_the_publication_says() {
     let values = factor.jacobian().multiply(&data);
     let projected = factor.project(&values, &[0.0; 12]).unwrap();
     let expected = &y * nalgebra::DVector::from_column_slice(&data);
-    let found: Vec<f64> = data
+    let computed: Vec<f64> = data
         .iter()
         .zip(&projected.step)
         .map(|(u, step)| u + step)
         .collect();
-    assert!(largest_difference(&found, expected.as_slice()) < 1e-12);
+    assert!(largest_difference(&computed, expected.as_slice()) < 1e-12);
 }
 
 #[test]
@@ -191,10 +191,10 @@ fn parameters_without_data_are_regressed_with_their_standard_errors() {
     let (x, y) = (mean(&|i| i as f64), mean(&|i| data[i]));
     let spread: f64 = (0..n).map(|i| (i as f64 - x).powi(2)).sum();
     let expected = (0..n).map(|i| (i as f64 - x) * (data[i] - y)).sum::<f64>() / spread;
-    let left: f64 = (0..n)
+    let squares: f64 = (0..n)
         .map(|i| (data[i] - y - expected * (i as f64 - x)).powi(2))
         .sum();
-    let error = (left / (n as f64 - 2.0) / spread).sqrt();
+    let error = (squares / (n as f64 - 2.0) / spread).sqrt();
     assert!((slope.value - expected).abs() < 1e-12);
     assert!(
         (slope.standard_error / error - 1.0).abs() < 1e-9,

@@ -44,33 +44,33 @@ fn corrected_springs_that_soften_are_the_equilibria_of_bilinear_elements() {
     let mut corrector = plate_corrector(&plate, &springs.mesh);
     for (step, stretch) in STRETCHES.into_iter().enumerate() {
         let data = &uncorrected[step].displacement;
-        let found = corrector
+        let corrected = corrector
             .correct(data, stretch, KnownConditions::ALL)
             .unwrap();
         let force = Measures::of(&elements.mesh, &expected[step]).force;
         assert!(
-            (found.measures.force / force - 1.0).abs() < 1e-8,
+            (corrected.measures.force / force - 1.0).abs() < 1e-8,
             "{stretch}"
         );
         let field = &expected[step].displacement;
         assert!(
-            largest_difference(&found.state.displacement, field) < 1e-7,
+            largest_difference(&corrected.state.displacement, field) < 1e-7,
             "{stretch}"
         );
-        let own = plate
+        let work = plate
             .on(&springs.mesh, corrector.energy())
-            .work(&found.state);
-        let own = own.unwrap();
+            .work(&corrected.state);
+        let work = work.unwrap();
         let other = model.work(&expected[step]).unwrap();
         assert!(
-            (own.stored / other.stored - 1.0).abs() < 1e-8,
-            "{own:?} {other:?}"
+            (work.stored / other.stored - 1.0).abs() < 1e-8,
+            "{work:?} {other:?}"
         );
         assert!(
-            (own.dissipated / other.dissipated - 1.0).abs() < 1e-8,
-            "{own:?} {other:?}"
+            (work.dissipated / other.dissipated - 1.0).abs() < 1e-8,
+            "{work:?} {other:?}"
         );
-        corrector = corrector.after(&found.state);
+        corrector = corrector.after(&corrected.state);
     }
     // Forces fall on the way back below those of the first loading, and dissipation never does.
     let force = |stretches: &[f64]| {
@@ -104,12 +104,12 @@ fn residual_and_stiffness_of_softened_springs_are_derivatives_of_their_energy() 
     let errors = derivative_errors(&*potential, u, &direction);
     assert!(errors.iter().all(|error| *error < 1e-7), "{errors:?}");
     // The forces that are told of springs are those that hold each other.
-    let told = springs.spring_states(u, &states[1].history);
+    let reloaded = springs.spring_states(u, &states[1].history);
     let virgin = springs.spring_states(u, &[]);
     let sum = |states: &[crate::mass_spring::SpringState]| -> f64 {
         states.iter().map(|spring| spring.force.abs()).sum()
     };
-    assert!(sum(&told) < 0.9 * sum(&virgin));
+    assert!(sum(&reloaded) < 0.9 * sum(&virgin));
 }
 
 #[test]

@@ -66,13 +66,14 @@ pub fn bodies<'a>(
     let members = groups.into_iter().map(|(_, members)| members);
     let members: Vec<Vec<usize>> = members.collect();
     let holds = members.iter().map(|members| hold(mesh, &edges, members));
-    let own: Vec<Hold> = holds.collect();
-    let holds: Vec<&Hold> = own.iter().collect();
+    let owned: Vec<Hold> = holds.collect();
+    let holds: Vec<&Hold> = owned.iter().collect();
     let rests = [0, 1].map(|axis| shared_rests(mesh, &holds, axis));
     let rests_of = |body: usize| {
         rests.each_ref().map(|rests| {
-            let own = rests.iter().filter(|rest| rest.bodies.contains(&body));
-            own.map(|rest| (1.0 / rest.bodies.len() as f64, rest.factors.clone()))
+            let shared = rests.iter().filter(|rest| rest.bodies.contains(&body));
+            shared
+                .map(|rest| (1.0 / rest.bodies.len() as f64, rest.factors.clone()))
                 .collect()
         })
     };
@@ -92,9 +93,10 @@ pub fn bodies<'a>(
 fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> Hold {
     let condition = edges[members[0]].1;
     let nodes_of = |wanted: &dyn Fn(&Segment) -> bool| {
-        let own = members.iter().map(|edge| edges[*edge].0);
-        let own = own.filter(|segment| wanted(segment));
-        own.flat_map(|segment| segment.nodes.iter().copied())
+        let segments = members.iter().map(|edge| edges[*edge].0);
+        let segments = segments.filter(|segment| wanted(segment));
+        segments
+            .flat_map(|segment| segment.nodes.iter().copied())
             .collect()
     };
     let holds = |axis: usize| match condition {
@@ -141,11 +143,11 @@ mod tests {
             };
             (part, condition)
         });
-        let found = bodies(&mesh, conditions);
-        assert_eq!(found.len(), 2);
-        let pad = found.iter().find(|body| body.name == "pad").unwrap();
+        let all = bodies(&mesh, conditions);
+        assert_eq!(all.len(), 2);
+        let pad = all.iter().find(|body| body.name == "pad").unwrap();
         assert_eq!(pad.edges.len(), 2);
-        let right = found.iter().find(|body| body.name == "right").unwrap();
+        let right = all.iter().find(|body| body.name == "right").unwrap();
         let corner = mesh.nodes.iter().position(|node| *node == [6.0, 0.0]);
         let factor = |body: &Body, wanted: usize| {
             let mut shares = body.shares[1].iter();
@@ -157,9 +159,9 @@ mod tests {
         assert_eq!(factor(pad, corner.unwrap()), Some(1.0));
         assert_eq!(factor(right, corner.unwrap()), None);
         // The tractions beside it belong to their own edge: that of the middle node is four times that of an end.
-        let beside = mesh.nodes.iter().position(|node| *node == [6.0, 0.5]);
-        let [own, other] = [right, pad].map(|body| factor(body, beside.unwrap()).unwrap());
-        assert!((own - 1.25).abs() < 1e-12 && (other + 0.25).abs() < 1e-12);
+        let neighbour = mesh.nodes.iter().position(|node| *node == [6.0, 0.5]);
+        let [first, other] = [right, pad].map(|body| factor(body, neighbour.unwrap()).unwrap());
+        assert!((first - 1.25).abs() < 1e-12 && (other + 0.25).abs() < 1e-12);
     }
 
     #[test]

@@ -146,8 +146,8 @@ impl EdgeMotion {
         let coefficients = [0, 1].map(|axis| {
             let [first, last] = segment.ends().map(|node| 2 * node + axis);
             let mut end = |motion: &mut Self, unknown: usize| {
-                let own = || Coefficient::Parameter(motion.take(1));
-                *moved.entry(unknown).or_insert_with(own)
+                let parameter = || Coefficient::Parameter(motion.take(1));
+                *moved.entry(unknown).or_insert_with(parameter)
             };
             let mut coefficients = vec![end(self, first)];
             for _ in 1..spline.count() - 1 {

@@ -132,8 +132,8 @@ impl Grip {
     pub fn slopes(&self, sensitivities: &[Vec<f64>], first: usize, law: &[Vec<f64>]) -> Vec<f64> {
         let columns = sensitivities.iter();
         let mut slopes: Vec<f64> = columns.map(|column| dot(&self.pull, column)).collect();
-        for (slope, own) in slopes[first..].iter_mut().zip(law) {
-            *slope += dot(&self.marks, own);
+        for (slope, force) in slopes[first..].iter_mut().zip(law) {
+            *slope += dot(&self.marks, force);
         }
         slopes
     }

@@ -70,11 +70,11 @@ impl Observations {
             all.add(mesh, index, marker, deviation(marker))?;
         }
         if all.chosen.len() < 3 {
-            let (found, count) = (all.chosen.len(), markers.len());
+            let (on_mesh, count) = (all.chosen.len(), markers.len());
             let fault = format!(
-                "{found} of {count} markers lie on the mesh, and at least three are needed"
+                "{on_mesh} of {count} markers lie on the mesh, and at least three are needed"
             );
-            let hint = if found == count {
+            let hint = if on_mesh == count {
                 "leave this frame out, or find out why its markers were lost"
             } else {
                 "check the units and the origins of markers and mesh"

@@ -269,10 +269,10 @@ pub fn name_parts<'a>(mesh: &mut Mesh, names: impl Iterator<Item = &'a str>) {
 fn group_of(mesh: &Mesh, nodes: &[usize]) -> Option<String> {
     let groups = mesh.groups().iter();
     let has = |node: &usize, members: &[usize]| members.binary_search(node).is_ok();
-    let whole = groups.filter(|(_, group)| {
+    let outlines = groups.filter(|(_, group)| {
         !group.edges.is_empty() && nodes.iter().all(|node| has(node, &group.nodes))
     });
-    let smallest = whole.min_by_key(|(_, group)| group.nodes.len());
+    let smallest = outlines.min_by_key(|(_, group)| group.nodes.len());
     smallest.map(|(name, _)| name.clone())
 }
 

@@ -43,7 +43,7 @@ impl RegressedLaw {
     /// the law does not follow from the values of its parameters alone.
     pub fn of_card(card: &Card, keys: &[&str]) -> Result<Self, Diagnostic> {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
-        let beyond = || {
+        let unknown = || {
             let message = format!(
                 "the law of the card `{}` is not defined by its parameters alone",
                 card.name
@@ -51,7 +51,7 @@ impl RegressedLaw {
             let hint = "use a card whose law is given by parameters alone";
             Diagnostic::error("", message).hint(hint)
         };
-        let law = Law::named(&card.law_name).ok_or_else(beyond)?;
+        let law = Law::named(&card.law_name).ok_or_else(unknown)?;
         let mut law = Self {
             law,
             measures: (card.stress_measure, card.strain_measure),
@@ -67,11 +67,11 @@ impl RegressedLaw {
             positions: Vec::new(),
         };
         let known: Vec<&str> = law.all.iter().map(|parameter| parameter.key).collect();
-        let own: Vec<&str> = match keys {
+        let names: Vec<&str> = match keys {
             [ALL] => law.acting(),
             _ => keys.to_vec(),
         };
-        for key in &own {
+        for key in &names {
             let Some(position) = known.iter().position(|known| known == key) else {
                 let message = format!("the card `{}` has no parameter `{key}`", card.name);
                 return fault(message, &suggestion(key, &known, "its parameters are"));
@@ -93,7 +93,7 @@ impl RegressedLaw {
         if law.is_law_of(card) {
             Ok(law)
         } else {
-            Err(beyond())
+            Err(unknown())
         }
     }
 
@@ -254,14 +254,14 @@ mod tests {
         let doubled: Vec<f64> = yeoh.start().iter().map(|value| 2.0 * value).collect();
         let slope = yeoh.at(&doubled).youngs_modulus() / yeoh.at(&yeoh.start()).youngs_modulus();
         assert!((slope - 2.0).abs() < 1e-9);
-        let told = |name: &str, keys: &[&str]| {
+        let message = |name: &str, keys: &[&str]| {
             RegressedLaw::of_card(&card(name), keys)
                 .unwrap_err()
                 .to_string()
         };
-        assert!(told("neo-hooke", &["c1"]).contains("did you mean `c10`"));
-        assert!(told("neo-hooke", &[]).contains("name those"));
-        assert!(told("neo-hooke", &["c10", "c10"]).contains("twice"));
+        assert!(message("neo-hooke", &["c1"]).contains("did you mean `c10`"));
+        assert!(message("neo-hooke", &[]).contains("name those"));
+        assert!(message("neo-hooke", &["c10", "c10"]).contains("twice"));
         let all = RegressedLaw::of_card(&card("pva-10-cauchy"), &["all"]).unwrap();
         assert_eq!(
             all.parameters().len(),
@@ -275,18 +275,18 @@ mod tests {
     #[test]
     fn a_stated_poissons_ratio_stays_while_the_stiffness_changes() {
         let text = Card::load("neo-hooke", Path::new(".")).unwrap().text;
-        let found = |stated: &str, keys: &[&str], values: &[f64]| {
+        let fitted = |stated: &str, keys: &[&str], values: &[f64]| {
             let text = text.replace("[data]", &format!("[volume]\n{stated}\n[data]"));
             let card = Card::parse("own", "own.toml", &text).unwrap();
             RegressedLaw::of_card(&card, keys).unwrap().at(values)
         };
         let ratio =
             |law: &dyn HyperelasticLaw| law.youngs_modulus() / (2.0 * law.shear_modulus()) - 1.0;
-        let softer = found("poisson_ratio = 0.3", &["c10"], &[0.01]);
+        let softer = fitted("poisson_ratio = 0.3", &["c10"], &[0.01]);
         assert!((ratio(&*softer) - 0.3).abs() < 1e-9);
-        let both = found("poisson_ratio = 0.3", &["all"], &[0.01, 0.2]);
+        let both = fitted("poisson_ratio = 0.3", &["all"], &[0.01, 0.2]);
         assert!((ratio(&*both) - 0.2).abs() < 1e-9);
-        let modulus = found("bulk_modulus = \"0.04 MPa\"", &["all"], &[0.01, 0.02]);
+        let modulus = fitted("bulk_modulus = \"0.04 MPa\"", &["all"], &[0.01, 0.02]);
         let expected = (3.0 * 0.02 - 2.0 * 0.02) / (2.0 * (3.0 * 0.02 + 0.02));
         assert!((ratio(&*modulus) - expected).abs() < 1e-9);
     }

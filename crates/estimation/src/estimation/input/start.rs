@@ -145,12 +145,12 @@ impl Rows {
         let mut target = DMatrix::zeros(count, 2);
         for index in chosen {
             let row = &self.terms[index * count..(index + 1) * count];
-            for (i, own) in row.iter().enumerate() {
+            for (i, factor) in row.iter().enumerate() {
                 for (j, other) in row[i..].iter().enumerate() {
-                    normal[(i + j, i)] += own * other;
+                    normal[(i + j, i)] += factor * other;
                 }
                 for axis in [0, 1] {
-                    target[(i, axis)] += own * self.displacements[*index][axis];
+                    target[(i, axis)] += factor * self.displacements[*index][axis];
                 }
             }
         }
@@ -243,9 +243,9 @@ mod tests {
             positions: &positions,
             displacements: &displacements,
         };
-        let found = Polynomial::trimmed(&points, DEGREE).unwrap();
+        let polynomial = Polynomial::trimmed(&points, DEGREE).unwrap();
         for position in &positions {
-            let (a, b) = (found.at(*position), field(*position));
+            let (a, b) = (polynomial.at(*position), field(*position));
             assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8);
         }
         let plain = Polynomial::nearest(&points, DEGREE).unwrap();

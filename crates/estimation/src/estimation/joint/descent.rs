@@ -136,7 +136,7 @@ impl<'a> Descent<'a> {
         let predicted = frames.map(|frame| frame.cross_predict(&self.law, None));
         let predicted = predicted.collect::<Result<Vec<_>, Error>>()?;
         let forces = self.frames.iter().zip(&predicted);
-        let forces = forces.flat_map(|(frame, own)| frame.measured().iter().zip(&own.forces));
+        let forces = forces.flat_map(|(frame, state)| frame.measured().iter().zip(&state.forces));
         let [product, square] = forces.fold([0.0; 2], |[product, square], (measured, force)| {
             let weight = measured.standard_deviation.powi(-2);
             [

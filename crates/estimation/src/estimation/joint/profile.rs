@@ -103,15 +103,15 @@ impl Side<'_> {
     fn root(&self, there: f64) -> Option<f64> {
         let mut from = self.ends.course.clone();
         from.values[self.index] = there;
-        let found = self
+        let course = self
             .ends
             .descent
             .descend(from, Some(self.index), &|_| ())
             .ok()?;
-        if found.ended.is_some() {
+        if course.ended.is_some() {
             return None;
         }
-        let rise = found.misfit() - self.ends.course.misfit();
+        let rise = course.misfit() - self.ends.course.misfit();
         (rise > 0.0).then(|| (rise / self.wider).sqrt())
     }
 }

@@ -121,8 +121,8 @@ fn estimated(frames: &[JointFrame], law: &RegressedLaw, profiles: bool) -> Joint
     estimate_jointly(frames, law, &settings, &|_| ()).unwrap()
 }
 
-fn values(found: &JointEstimate) -> Vec<f64> {
-    found.parameters.iter().map(|one| one.value).collect()
+fn values(result: &JointEstimate) -> Vec<f64> {
+    result.parameters.iter().map(|one| one.value).collect()
 }
 
 #[test]
@@ -133,15 +133,15 @@ fn three_parameters_come_out_of_five_frames_from_anywhere_and_in_any_order() {
         .law
         .beginning_at(&[10.0 * truth[0], 0.3 * truth[2], 30.0 * truth[2]]);
     let mut frames = series.frames();
-    let found = estimated(&frames, &start, false);
-    for (value, truth) in values(&found).iter().zip(&truth) {
+    let result = estimated(&frames, &start, false);
+    for (value, truth) in values(&result).iter().zip(&truth) {
         assert!((value / truth - 1.0).abs() < 0.03, "{value} for {truth}");
     }
-    assert!(found.directions.iter().all(Direction::is_determined));
-    assert!(found.prediction_error().unwrap() < 0.01);
+    assert!(result.directions.iter().all(Direction::is_determined));
+    assert!(result.prediction_error().unwrap() < 0.01);
     frames.reverse();
     let turned = estimated(&frames, &start, false);
-    for (a, b) in found.parameters.iter().zip(&turned.parameters) {
+    for (a, b) in result.parameters.iter().zip(&turned.parameters) {
         assert!(
             (a.value - b.value).abs() < 0.1 * a.standard_error,
             "{a:?}, {b:?}"
@@ -153,17 +153,17 @@ fn three_parameters_come_out_of_five_frames_from_anywhere_and_in_any_order() {
 fn noise_leaves_the_truth_within_the_intervals_and_likelihood_agrees_with_errors() {
     let series = Series::new(&STRETCHES, [0.1, 0.01], 2);
     let truth = series.law.start();
-    let found = estimated(&series.frames(), &series.law, true);
-    for (estimate, truth) in found.parameters.iter().zip(&truth) {
+    let result = estimated(&series.frames(), &series.law, true);
+    for (estimate, truth) in result.parameters.iter().zip(&truth) {
         assert!((estimate.value - truth).abs() < 4.0 * estimate.standard_error);
         let [low, high] = estimate.interval;
         let half = (high - low) / 2.0 / estimate.standard_error;
         assert!((1.3..4.0).contains(&half), "{estimate:?}");
     }
-    assert!(found.common < 0.2, "{}", found.common);
-    let shares: f64 = found.frames.iter().map(|frame| frame.share).sum();
+    assert!(result.common < 0.2, "{}", result.common);
+    let shares: f64 = result.frames.iter().map(|frame| frame.share).sum();
     assert!((shares - 1.0).abs() < 1e-6, "{shares}");
-    for frame in &found.frames {
+    for frame in &result.frames {
         let force = &frame.forces[0];
         let off = force.predicted.unwrap() / force.measured.force - 1.0;
         assert!(off.abs() < 0.15, "{force:?}");
@@ -173,10 +173,10 @@ fn noise_leaves_the_truth_within_the_intervals_and_likelihood_agrees_with_errors
 #[test]
 fn what_small_strains_do_not_tell_is_said_and_stays_as_the_card_has_it() {
     let series = Series::new(&[0.02, 0.04], [0.02, 0.01], 3);
-    let found = estimated(&series.frames(), &series.law, false);
-    let vague = found.directions.iter().filter(|one| !one.is_determined());
-    assert!((1..=2).contains(&vague.count()), "{:?}", found.directions);
-    let c10 = &found.parameters[0];
+    let result = estimated(&series.frames(), &series.law, false);
+    let vague = result.directions.iter().filter(|one| !one.is_determined());
+    assert!((1..=2).contains(&vague.count()), "{:?}", result.directions);
+    let c10 = &result.parameters[0];
     assert!(
         (c10.value / series.law.start()[0] - 1.0).abs() < 0.1,
         "{c10:?}"
@@ -201,8 +201,8 @@ fn without_a_force_nothing_is_told_of_a_stiffness() {
 fn a_single_frame_predicts_no_force() {
     let series = Series::new(&[0.5], [0.02, 0.01], 5);
     let law = RegressedLaw::of_card(&Card::load("neo-hooke", Path::new(".")).unwrap(), &["all"]);
-    let found = estimated(&series.frames(), &law.unwrap(), false);
-    assert_eq!(found.prediction_error(), None);
+    let result = estimated(&series.frames(), &law.unwrap(), false);
+    assert_eq!(result.prediction_error(), None);
 }
 
 #[test]
@@ -217,9 +217,9 @@ fn the_error_of_coarse_cells_is_in_the_intervals() {
     }
     let truth = law.start()[0];
     for profiles in [false, true] {
-        let found = estimated(&frames, &law, profiles);
-        assert!(found.holds_mesh_error);
-        let estimate = &found.parameters[0];
+        let result = estimated(&frames, &law, profiles);
+        assert!(result.holds_mesh_error);
+        let estimate = &result.parameters[0];
         let [low, high] = estimate.interval;
         assert!(low < truth && truth < high, "{truth} by {estimate:?}");
         let off = (estimate.value - truth).abs();
@@ -237,10 +237,10 @@ fn intervals_hold_a_factor_that_all_forces_have_in_common() {
         let forces = frames
             .iter_mut()
             .flat_map(|frame| &mut frame.knowledge.forces);
-        for own in forces {
-            own.force *= 1.01;
-            own.standard_deviation *= 0.1;
-            own.common_deviation = common;
+        for measured in forces {
+            measured.force *= 1.01;
+            measured.standard_deviation *= 0.1;
+            measured.common_deviation = common;
         }
         let [low, high] = estimated(&frames, &series.law, true).parameters[0].interval;
         low < truth && truth < high
@@ -266,7 +266,7 @@ fn forces_that_scatter_more_than_stated_widen_the_intervals() {
         wild.force_scatter
     );
     let width =
-        |found: &JointEstimate| found.parameters[0].standard_error / found.parameters[0].value;
+        |result: &JointEstimate| result.parameters[0].standard_error / result.parameters[0].value;
     assert!(
         width(&wild) > 2.0 * width(&calm),
         "{} {}",

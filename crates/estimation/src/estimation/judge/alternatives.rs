@@ -33,7 +33,10 @@ pub struct Granted {
 
 impl NearestField<'_> {
     /// The alternatives of forces, stiffness, law, picture and mesh, with all edges as they are.
-    pub(super) fn alternatives(&mut self, own: Option<&MeshError>) -> Result<Vec<Column>, Error> {
+    pub(super) fn alternatives(
+        &mut self,
+        mesh_error: Option<&MeshError>,
+    ) -> Result<Vec<Column>, Error> {
         let mut all = Vec::new();
         if self.equations.body.is_none() {
             all.push((Alternative::BodyForce, self.smooth_forces()));
@@ -49,8 +52,9 @@ impl NearestField<'_> {
         if self.equations.task.knowledge.scale_deviation == 0.0 {
             columns.push((Alternative::Scale, self.magnification()));
         }
-        if let Some(own) = own {
-            let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
+        if let Some(mesh_error) = mesh_error {
+            let error =
+                DMatrix::from_column_slice(mesh_error.markers.len(), 1, &mesh_error.markers);
             columns.push((Alternative::Mesh, error));
         }
         Ok(columns)
@@ -79,10 +83,10 @@ impl NearestField<'_> {
     /// Forces along x and along y with smooth densities.
     fn smooth_forces(&self) -> Vec<Vec<f64>> {
         let mesh = self.equations.task.specimen.mesh;
-        let (areas, whole) = (nodal_areas(mesh), mesh.bounding_box());
+        let (areas, bounds) = (nodal_areas(mesh), mesh.bounding_box());
         let mut forces = vec![vec![0.0; self.field.len()]; 12];
         for (node, position) in mesh.nodes.iter().enumerate() {
-            for (shape, value) in shapes(*position, whole).into_iter().enumerate() {
+            for (shape, value) in shapes(*position, bounds).into_iter().enumerate() {
                 for axis in [0, 1] {
                     forces[6 * axis + shape][2 * node + axis] = areas[node] * value;
                 }
@@ -92,10 +96,10 @@ impl NearestField<'_> {
     }
 
     fn varied_stiffness(&self) -> Vec<Vec<f64>> {
-        let whole = self.equations.task.specimen.mesh.bounding_box();
+        let bounds = self.equations.task.specimen.mesh.bounding_box();
         self.stresses(5, &|cell, position, kinematics| {
             let stress = self.equations.law(cell).stress(kinematics).1;
-            let shapes = shapes(position, whole);
+            let shapes = shapes(position, bounds);
             shapes[1..].iter().map(|shape| stress * *shape).collect()
         })
     }
@@ -143,18 +147,18 @@ impl NearestField<'_> {
         let mut forces = vec![vec![0.0; self.field.len()]; count];
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
-            let own: Vec<f64> = nodes
+            let motion: Vec<f64> = nodes
                 .iter()
                 .flat_map(|node| [self.field[2 * node], self.field[2 * node + 1]])
                 .collect();
             let centre = mesh.position(cell, mesh.shape(cell).centre());
             for point in self.equations.energy.cell_points(cell) {
-                let Ok(kinematics) = Kinematics::new(&point.gradient(&own)) else {
+                let Ok(kinematics) = Kinematics::new(&point.gradient(&motion)) else {
                     continue;
                 };
                 let all = stresses(cell, centre, &kinematics).into_iter();
                 for (stress, force) in all.zip(&mut forces) {
-                    let mut added = vec![0.0; own.len()];
+                    let mut added = vec![0.0; motion.len()];
                     point.add_force(&stress, &mut added);
                     for (pair, node) in added.chunks_exact(2).zip(nodes) {
                         force[2 * node] += pair[0];

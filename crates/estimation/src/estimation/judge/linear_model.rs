@@ -79,15 +79,19 @@ impl Model {
     }
 
     /// That of a search.
-    pub fn of_search(rows: &Rows, found: &NearestField) -> Self {
-        let (linear, fit, variances) = (&found.linear, &found.fit, &found.variances);
-        Self::new(rows, &found.equations, linear, fit, variances)
+    pub fn of_search(rows: &Rows, nearest_field: &NearestField) -> Self {
+        let (linear, fit, variances) = (
+            &nearest_field.linear,
+            &nearest_field.fit,
+            &nearest_field.variances,
+        );
+        Self::new(rows, &nearest_field.equations, linear, fit, variances)
     }
 
     /// That of one regression with other conditions.
-    pub fn of_score(rows: &Rows, found: &NearestField, scored: &Scored) -> Self {
+    pub fn of_score(rows: &Rows, nearest_field: &NearestField, scored: &Scored) -> Self {
         let (linear, fit, variances) = (&scored.linear, &scored.fit, &scored.variances);
-        Self::new(rows, &found.equations, linear, fit, variances)
+        Self::new(rows, &nearest_field.equations, linear, fit, variances)
     }
 
     /// The model with further columns without penalty.
@@ -116,16 +120,18 @@ impl Model {
                 if length > 0.0 && length.is_finite() {
                     let scale = (column.len() as f64).sqrt() / length;
                     columns.push(column * scale);
-                    information.push(deviation.map_or(0.0, |own| (scale / own).powi(2)));
+                    information.push(deviation.map_or(0.0, |deviation_of_force| {
+                        (scale / deviation_of_force).powi(2)
+                    }));
                 }
             }
         }
-        let (own, all) = (self.design.ncols(), self.design.ncols() + columns.len());
+        let (before, all) = (self.design.ncols(), self.design.ncols() + columns.len());
         let mut design = self.design.clone().resize_horizontally(all, 0.0);
         let mut held = self.held.clone().resize(all, all, 0.0);
         for (index, (column, information)) in columns.iter().zip(information).enumerate() {
-            design.set_column(own + index, column);
-            held[(own + index, own + index)] = information;
+            design.set_column(before + index, column);
+            held[(before + index, before + index)] = information;
         }
         Self {
             design,
@@ -149,18 +155,18 @@ impl Model {
             slope: &self.slope,
         };
         let longest = 0.5 * (rows.extent[0] * rows.extent[1]).sqrt();
-        let found = regression.plausible(rows.spacing, longest);
-        let shown = found.first().is_some_and(|one| one.evidence > EVIDENCE);
-        found.into_iter().take_while(|_| shown).collect()
+        let plausible = regression.plausible(rows.spacing, longest);
+        let shown = plausible.first().is_some_and(|one| one.evidence > EVIDENCE);
+        plausible.into_iter().take_while(|_| shown).collect()
     }
 
     /// The residuals of the markers in mm, after an ordinary regression.
-    pub fn residual_rms(&self, rows: &Rows, found: &NearestField) -> f64 {
+    pub fn residual_rms(&self, rows: &Rows, nearest_field: &NearestField) -> f64 {
         let white = WhiteRegression::new(&self.design, &self.residual, None);
-        let left = white.left(&self.held, &self.slope, 1.0);
+        let fitted = white.left(&self.held, &self.slope, 1.0);
         let count = 2.0 * rows.chosen.len() as f64;
-        left.map_or(f64::NAN, |(square, _)| {
-            (square / count).sqrt() * found.deviation()
+        fitted.map_or(f64::NAN, |(square, _)| {
+            (square / count).sqrt() * nearest_field.deviation()
         })
     }
 }
@@ -173,15 +179,16 @@ impl Reference {
         base: &Model,
         all: Option<&Model>,
         columns: &[Column],
-        own: Option<&MeshError>,
+        mesh_error: Option<&MeshError>,
     ) -> Self {
         let most = all.unwrap_or(base);
         let flexible = || most.with(rows, columns.iter().map(|(_, design)| design));
         let remaining = noise.and_then(|_| flexible().noises(rows).into_iter().next());
         let mut noises = vec![Noise::new(rows, remaining.as_ref())];
         noises.extend(noise.map(|noise| Noise::new(rows, Some(noise))));
-        let mesh = own.map_or(0.0, |own| {
-            let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
+        let mesh = mesh_error.map_or(0.0, |mesh_error| {
+            let error =
+                DMatrix::from_column_slice(mesh_error.markers.len(), 1, &mesh_error.markers);
             MESH * rows.scaled(&error).norm_squared() / (2.0 * rows.chosen.len() as f64)
         });
         let equations = likeliest(&noises, base);
@@ -202,8 +209,8 @@ impl Reference {
                 .regression(&model)
                 .best(&model.held, &model.slope, remaining.variance)?;
         // Columns are added with a length of their own.
-        let own = rows.scaled(design);
-        Some(best[last] * model.design.column(last).norm() / own.norm())
+        let scaled = rows.scaled(design);
+        Some(best[last] * model.design.column(last).norm() / scaled.norm())
     }
 
     /// The reduction of the misfit of the equations by a model.

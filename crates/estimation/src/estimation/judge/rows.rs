@@ -34,15 +34,19 @@ pub struct Clusters {
 
 impl Rows {
     /// The rows; `None` where there are few, or where the residuals are no more than the mesh's own error and the rounding of numbers.
-    pub fn new(found: &NearestField, sound: &[f64], own: Option<&MeshError>) -> Option<Self> {
-        let observations = found.observations();
+    pub fn new(
+        nearest_field: &NearestField,
+        sound: &[f64],
+        mesh_error: Option<&MeshError>,
+    ) -> Option<Self> {
+        let observations = nearest_field.observations();
         let count = observations.positions.len();
         let mut chosen: Vec<usize> = (0..count).filter(|row| sound[*row] > 0.0).collect();
         // Where most are outliers, sound markers cannot be distinguished.
         if 2 * chosen.len() < count {
             chosen = (0..count).collect();
         }
-        if chosen.len() < FEWEST || leaves_nothing(found, &chosen, own) {
+        if chosen.len() < FEWEST || leaves_nothing(nearest_field, &chosen, mesh_error) {
             return None;
         }
         let scale = |marker: &usize| {
@@ -52,7 +56,7 @@ impl Rows {
                 1.0
             };
             let weights = [0, 1].map(|axis| observations.weights[2 * marker + axis]);
-            weights.map(|weight| (weight * trust / found.variances.sound).sqrt())
+            weights.map(|weight| (weight * trust / nearest_field.variances.sound).sqrt())
         };
         let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
         let positions: Vec<[f64; 2]> = chosen
@@ -124,15 +128,19 @@ pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> 
 }
 
 /// Whether the residuals are no more than twice the mesh's own error, or a millionth of the displacement.
-fn leaves_nothing(found: &NearestField, rows: &[usize], own: Option<&MeshError>) -> bool {
+fn leaves_nothing(
+    nearest_field: &NearestField,
+    rows: &[usize],
+    mesh_error: Option<&MeshError>,
+) -> bool {
     const ROUNDING: f64 = 1e-6;
     let sum = |values: &dyn Fn(usize) -> f64| -> f64 {
         let entries = rows.iter().flat_map(|row| [2 * row, 2 * row + 1]);
         entries.map(|entry| values(entry).powi(2)).sum()
     };
-    let observations = found.observations();
-    let left = sum(&|entry| found.fit.residual[entry]);
+    let observations = nearest_field.observations();
+    let residual = sum(&|entry| nearest_field.fit.residual[entry]);
     let moved = sum(&|entry| observations.displacements[entry / 2][entry % 2]);
-    let mesh = own.map_or(0.0, |own| sum(&|entry| own.markers[entry]));
-    left <= (4.0 * mesh).max(ROUNDING * ROUNDING * moved)
+    let mesh = mesh_error.map_or(0.0, |mesh_error| sum(&|entry| mesh_error.markers[entry]));
+    residual <= (4.0 * mesh).max(ROUNDING * ROUNDING * moved)
 }

@@ -126,17 +126,17 @@ impl FieldEstimate {
         let areas: Vec<f64> = (0..self.cells.len())
             .map(|cell| mesh.cell_area(cell))
             .collect();
-        let whole: f64 = areas.iter().sum();
+        let total: f64 = areas.iter().sum();
         let parts = self.cells.iter().zip(&areas);
         let mean = parts
             .clone()
-            .map(|(cell, area)| square(&cell.first_piola_kirchhoff_stress) * area / whole)
+            .map(|(cell, area)| square(&cell.first_piola_kirchhoff_stress) * area / total)
             .sum::<f64>();
         let coarse = parts.filter(|(cell, _)| {
-            let own = cell.mesh_error.powi(2);
-            own > 0.5 * square(&cell.stress_error) && own > MATTERS.powi(2) * mean
+            let square_error = cell.mesh_error.powi(2);
+            square_error > 0.5 * square(&cell.stress_error) && square_error > MATTERS.powi(2) * mean
         });
-        coarse.map(|(_, area)| area / whole).sum()
+        coarse.map(|(_, area)| area / total).sum()
     }
 }
 

@@ -210,9 +210,9 @@ impl Alternative {
             }
             Self::Edges => "an unknown motion of all edges with a stated condition".into(),
             Self::MovedEdge { part, outwards } => {
-                let way = if *outwards > 0.0 { "out" } else { "in" };
+                let direction = if *outwards > 0.0 { "out" } else { "in" };
                 let distance = roughly(outwards.abs());
-                format!("{} about {distance} mm farther {way}", part.words())
+                format!("{} about {distance} mm farther {direction}", part.words())
             }
             Self::BodyForce => "a smooth force on the sheet (friction, weight, a fixture)".into(),
             Self::Stiffness => "a thickness or stiffness that varies over the sheet".into(),

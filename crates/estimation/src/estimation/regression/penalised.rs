@@ -223,14 +223,14 @@ impl Regression<'_> {
         let (normal, _) = normal;
         let covariance = inverse(&matrix, LEAST_PIVOT).ok_or(Undetermined)?;
         let step = &covariance * &target;
-        let left = |(form, smoothing): (&Form, &f64)| {
+        let remaining = |(form, smoothing): (&Form, &f64)| {
             (form.rank - smoothing * form.square.dot(&covariance)).max(0.0)
         };
         let priors = forms.iter().zip(&variances.smoothing);
         Ok(Fit {
             residual: &self.residual - self.design * &step,
             effective: normal.dot(&covariance) / variances.variance,
-            freedom: priors.map(left).collect(),
+            freedom: priors.map(remaining).collect(),
             length: step.dot(&target).max(0.0).sqrt(),
             covariance,
             held,

@@ -87,11 +87,12 @@ impl Robust {
                 trust: vec![1.0; distances.len()],
             };
         }
-        let own = robust_deviation(distances.iter().copied()) * (2.0 * count / freedom).sqrt();
-        let scale = if known && own <= CONTRADICTED {
+        let deviation =
+            robust_deviation(distances.iter().copied()) * (2.0 * count / freedom).sqrt();
+        let scale = if known && deviation <= CONTRADICTED {
             1.0
         } else {
-            own
+            deviation
         };
         let scale = scale.max(f64::MIN_POSITIVE);
         let (mut trust, mut slope, mut squares) = (Vec::new(), 0.0, 0.0);
@@ -136,8 +137,11 @@ mod tests {
         ] {
             let noise = robust.noise(&normal, 0.0, false);
             let mean = noise.trust.iter().sum::<f64>() / normal.len() as f64;
-            let found = 0.09 / (noise.variance / mean);
-            assert!((found - efficiency).abs() < 0.012, "{robust:?} {found}");
+            let computed = 0.09 / (noise.variance / mean);
+            assert!(
+                (computed - efficiency).abs() < 0.012,
+                "{robust:?} {computed}"
+            );
         }
     }
 

@@ -32,49 +32,51 @@ fn standard_errors_are_the_scatter_over_seeds() {
     // Six parameters of the grips for each seed: the mean of z² has a standard deviation of about 0.1.
     let displacement = mean(
         all.iter()
-            .flat_map(|found| {
-                let pairs = found
+            .flat_map(|result| {
+                let pairs = result
                     .displacement
                     .iter()
                     .zip(&exact)
-                    .zip(&found.displacement_error);
+                    .zip(&result.displacement_error);
                 pairs.map(|((u, exact), error)| ((u - exact) / error).powi(2))
             })
             .collect(),
     );
     assert!((displacement - 1.0).abs() < 0.33, "{displacement}");
-    let right = |found: &FieldEstimate| {
-        let force = found.forces.iter().find(|force| force.edge == "right");
+    let right = |result: &FieldEstimate| {
+        let force = result.forces.iter().find(|force| force.edge == "right");
         force.unwrap().force[0]
     };
     // One force for each seed: √(2/40) = 0.22.
     let force = mean(
         all.iter()
-            .map(|found| {
-                let force = right(found);
+            .map(|result| {
+                let force = right(result);
                 ((force.value - truth.force) / force.standard_error).powi(2)
             })
             .collect(),
     );
     assert!(force > 0.4 && force < 1.9, "{force}");
-    for found in &all {
-        let force = right(found);
+    for result in &all {
+        let force = right(result);
         let [low, high] = force.interval;
-        let half = found.reach * force.standard_error;
+        let half = result.reach * force.standard_error;
         assert!(
             (high - force.value - half).abs() < 1e-12 && (force.value - low - half).abs() < 1e-12
         );
-        assert!(found.reach > 1.95 && found.reach < 1.98);
-        assert!(found.contradiction.is_none(), "{:?}", found.contradiction);
+        assert!(result.reach > 1.95 && result.reach < 1.98);
+        assert!(result.contradiction.is_none(), "{:?}", result.contradiction);
     }
-    let held = all.iter().filter(|found| {
-        let [low, high] = right(found).interval;
+    let held = all.iter().filter(|result| {
+        let [low, high] = right(result).interval;
         (low..high).contains(&truth.force)
     });
     let held = held.count();
     assert!(held >= 34, "{held} of 40 intervals of the force hold it");
     // One of a thousand sound markers is taken for an outlier: 9.2 of 9240.
-    let outliers = all.iter().flat_map(|found| found.markers.iter().flatten());
+    let outliers = all
+        .iter()
+        .flat_map(|result| result.markers.iter().flatten());
     let outliers = outliers.filter(|marker| marker.outlier).count();
     assert!((1..=22).contains(&outliers), "{outliers}");
 }
@@ -87,14 +89,14 @@ fn without_noise_the_intervals_hold_the_truth() {
     ));
     let markers = truth.markers(0.0, 1);
     let mesh = Mesh::plate(SIZE, [14, 7], CellShape::Quad9);
-    let found = estimate(
+    let result = estimate(
         &specimen(&mesh),
         &markers,
         &with_grips(EdgeCondition::Rigid),
     )
     .unwrap();
-    assert!(found.contradiction.is_none(), "{:?}", found.contradiction);
-    for edge in &found.forces {
+    assert!(result.contradiction.is_none(), "{:?}", result.contradiction);
+    for edge in &result.forces {
         let wanted = match edge.edge.as_str() {
             "right" => truth.force,
             _ => -truth.force,
@@ -107,19 +109,19 @@ fn without_noise_the_intervals_hold_the_truth() {
     }
     let exact = mesh.nodes.iter().flat_map(|node| truth.at(*node));
     let pairs = exact
-        .zip(&found.displacement)
-        .zip(&found.displacement_error);
-    let inside = pairs.filter(|((exact, u), error)| (exact - *u).abs() <= found.reach * **error);
-    let cover = inside.count() as f64 / found.displacement.len() as f64;
+        .zip(&result.displacement)
+        .zip(&result.displacement_error);
+    let inside = pairs.filter(|((exact, u), error)| (exact - *u).abs() <= result.reach * **error);
+    let cover = inside.count() as f64 / result.displacement.len() as f64;
     assert!(cover > 0.85, "{cover} of the displacements");
-    let cover = stress_cover(&truth, &mesh, &found);
+    let cover = stress_cover(&truth, &mesh, &result);
     assert!(cover > 0.9, "{cover} of the stresses");
 }
 
 /// The share of stresses in the middle of cells, farther than a fifth of the width from the corners, within their intervals.
-fn stress_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
+fn stress_cover(truth: &Truth, mesh: &Mesh, result: &FieldEstimate) -> f64 {
     let (mut inside, mut count) = (0.0, 0.0);
-    for (cell, stress) in found.cells.iter().enumerate() {
+    for (cell, stress) in result.cells.iter().enumerate() {
         let position = mesh.position(cell, mesh.shape(cell).centre());
         let near = |x: f64, y: f64| (position[0] - x).hypot(position[1] - y) < 0.2 * SIZE[1];
         if [0.0, SIZE[0]]
@@ -132,9 +134,9 @@ fn stress_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
         let gradient = truth.mesh.gradient_at(truth.field(), at, local);
         let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
         let exact: [f64; 4] = law().stress(&kinematics).1.into();
-        let own = stress.first_piola_kirchhoff_stress.iter();
-        for ((exact, own), error) in exact.iter().zip(own).zip(&stress.stress_error) {
-            let within = (exact - own).abs() <= found.reach * error;
+        let computed = stress.first_piola_kirchhoff_stress.iter();
+        for ((exact, computed), error) in exact.iter().zip(computed).zip(&stress.stress_error) {
+            let within = (exact - computed).abs() <= result.reach * error;
             inside += f64::from(u8::from(within));
             count += 1.0;
         }
@@ -153,8 +155,8 @@ fn an_edge_is_free_only_where_noise_could_have_made_the_misfit() {
     let mut weak = 0;
     for (seed, share) in [(0, 0.4), (1, 0.6), (2, 0.8), (3, 1.0), (4, 1.3), (5, 1.6)] {
         let markers = truth.markers(share * STRETCH * SIZE[0], seed);
-        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-        for edge in &found.edges {
+        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        for edge in &result.edges {
             let Some(probability) = edge.probability else {
                 continue;
             };
@@ -176,11 +178,11 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
         let wave = wave(marker.position);
         marker.displacement = marker.displacement.map(|u| u + wave);
     }
-    let found = estimate(
+    let result = estimate(
         &specimen(&mesh),
         &markers,
         &with_grips(EdgeCondition::Rigid),
     )
     .unwrap();
-    assert_ne!(found.verdict.answer, Answer::Explained);
+    assert_ne!(result.verdict.answer, Answer::Explained);
 }

@@ -46,10 +46,10 @@ fn a_rigid_pad_inside_of_the_sheet_has_one_motion_and_one_force() {
         unnamed: Unnamed::Free,
         ..Knowledge::default()
     };
-    let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-    assert!((found.effective_parameters - 6.0).abs() < 1e-6);
-    assert_eq!(found.forces.len(), 2);
-    let pad = found
+    let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+    assert!((result.effective_parameters - 6.0).abs() < 1e-6);
+    assert_eq!(result.forces.len(), 2);
+    let pad = result
         .forces
         .iter()
         .find(|force| force.edge == "pad")
@@ -65,11 +65,11 @@ fn a_rigid_pad_inside_of_the_sheet_has_one_motion_and_one_force() {
         assert!(high - low < 0.1 * force[0].hypot(force[1]), "{pad:?}");
         assert!(low < force[axis] && force[axis] < high, "{pad:?} {force:?}");
     }
-    assert!(found.imbalance < 1e-9, "{}", found.imbalance);
+    assert!(result.imbalance < 1e-9, "{}", result.imbalance);
     for node in &mesh.groups()["pad"].nodes {
         for (axis, motion) in MOTION.into_iter().enumerate() {
-            assert!((found.displacement[2 * node + axis] - motion).abs() < 0.02);
+            assert!((result.displacement[2 * node + axis] - motion).abs() < 0.02);
         }
     }
-    assert!(found.holds_mesh_error);
+    assert!(result.holds_mesh_error);
 }

@@ -33,11 +33,11 @@ fn positions(window: &Mesh) -> Vec<[f64; 2]> {
 /// The edges of a window in a sheet, of which nothing is known, bend most where the hole is near.
 #[test]
 fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
-    let (whole, window) = (Truth::on(strip(WHOLE, 24)), strip(WINDOW, 12));
+    let (complete, window) = (Truth::on(strip(WHOLE, 24)), strip(WINDOW, 12));
     let exact = |cell: usize| -> [f64; 4] {
         let position = there(window.position(cell, window.shape(cell).centre()));
-        let (cell, local) = whole.mesh.locate(position);
-        let gradient = whole.mesh.gradient_at(whole.field(), cell, local);
+        let (cell, local) = complete.mesh.locate(position);
+        let gradient = complete.mesh.gradient_at(complete.field(), cell, local);
         let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
         law().stress(&kinematics).1.into()
     };
@@ -50,17 +50,17 @@ fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
     for seed in 0..SEEDS {
         let markers = noisy(
             &positions,
-            &|position| whole.at(there(position)),
+            &|position| complete.at(there(position)),
             NOISE,
             seed,
         );
-        let found = estimate(&specimen(&window), &markers, &knowledge).unwrap();
-        for (cell, (own, sums)) in found.cells.iter().zip(&mut squares).enumerate() {
+        let result = estimate(&specimen(&window), &markers, &knowledge).unwrap();
+        for (cell, (stress, sums)) in result.cells.iter().zip(&mut squares).enumerate() {
             let exact = exact(cell);
             for (component, sum) in sums.iter_mut().enumerate() {
-                let off = own.first_piola_kirchhoff_stress[component] - exact[component];
+                let off = stress.first_piola_kirchhoff_stress[component] - exact[component];
                 sum[0] += off * off;
-                sum[1] += own.stress_error[component].powi(2);
+                sum[1] += stress.stress_error[component].powi(2);
             }
         }
     }

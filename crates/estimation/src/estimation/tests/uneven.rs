@@ -52,12 +52,12 @@ fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
         for seed in 0..4 {
             let markers = markers(&|position| truth.at(position), size, seed);
             let knowledge = with_grips(EdgeCondition::Rigid);
-            let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-            explained += usize::from(found.verdict.answer != Answer::NotExplained);
-            let force = found.forces.iter().find(|force| force.edge == "right");
+            let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            explained += usize::from(result.verdict.answer != Answer::NotExplained);
+            let force = result.forces.iter().find(|force| force.edge == "right");
             let [low, high] = force.unwrap().force[0].interval;
             held += usize::from(low < truth.force && truth.force < high);
-            let [least, most] = extremes(found.noise_range.expect("uneven").into_iter().flatten());
+            let [least, most] = extremes(result.noise_range.expect("uneven").into_iter().flatten());
             assert!(most > 2.0 * least, "{least} {most}");
         }
     }
@@ -97,15 +97,15 @@ fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals(
     for seed in 0..4 {
         let at = |position| fine.displacement_at(field, position);
         let markers = markers(&at, &|_| [0.01; 2], seed);
-        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-        let force = found.forces.iter().find(|force| force.edge == "right");
-        for (axis, own) in force.unwrap().force.iter().enumerate() {
+        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let force = result.forces.iter().find(|force| force.edge == "right");
+        for (axis, component) in force.unwrap().force.iter().enumerate() {
             let exact = traction[axis] * SIZE[1] * THICKNESS;
-            let [low, high] = own.interval;
-            assert!(low < exact && exact < high, "{seed}: {own:?} {exact}");
+            let [low, high] = component.interval;
+            assert!(low < exact && exact < high, "{seed}: {component:?} {exact}");
             assert!(
-                own.standard_error < 0.1 * traction[0] * SIZE[1] * THICKNESS,
-                "{own:?}"
+                component.standard_error < 0.1 * traction[0] * SIZE[1] * THICKNESS,
+                "{component:?}"
             );
         }
     }

@@ -62,7 +62,7 @@ fn pva() -> Arc<dyn HyperelasticLaw> {
     Card::load("pva-10", std::path::Path::new(".")).unwrap().law
 }
 
-fn found(
+fn estimated(
     law: Arc<dyn HyperelasticLaw>,
     mesh: &crate::mesh::Mesh,
     markers: &[Marker],
@@ -83,18 +83,18 @@ fn too_few_independent_values_leave_the_right_law_undecided_with_intervals_that_
     let root = root(&positions, LENGTH);
     let estimated = |seed| {
         let markers = disturbed(&truth, &positions, Some(&root), 0.1, seed);
-        found(law(), &mesh, &markers)
+        estimated(law(), &mesh, &markers)
     };
     let all: Vec<FieldEstimate> = (0..8).into_par_iter().map(estimated).collect();
-    for found in &all {
-        assert_ne!(found.verdict.answer, Answer::NotExplained);
-        let force = found.forces.iter().find(|force| force.edge == "right");
+    for estimated in &all {
+        assert_ne!(estimated.verdict.answer, Answer::NotExplained);
+        let force = estimated.forces.iter().find(|force| force.edge == "right");
         let force = &force.unwrap().force[0];
         let [low, high] = force.interval;
         assert!(low < truth.force && truth.force < high, "{force:?}");
         assert!(high - low < 0.1 * truth.force, "{force:?}");
     }
-    let undecided = all.iter().map(|found| &found.verdict);
+    let undecided = all.iter().map(|estimated| &estimated.verdict);
     let undecided: Vec<_> = undecided
         .filter(|verdict| verdict.answer == Answer::Undecided)
         .collect();
@@ -112,10 +112,10 @@ fn a_wrong_law_is_refuted_by_white_noise_and_never_explained_by_correlated_noise
     let root = root(&positions, LENGTH);
     for seed in 0..4 {
         let white = disturbed(&truth, &positions, None, 0.02, seed);
-        let white = found(pva(), &mesh, &white).verdict;
+        let white = estimated(pva(), &mesh, &white).verdict;
         assert_eq!(white.answer, Answer::NotExplained, "{seed} {white:?}");
         let noisy = disturbed(&truth, &positions, Some(&root), 0.02, seed);
-        let noisy = found(pva(), &mesh, &noisy);
+        let noisy = estimated(pva(), &mesh, &noisy);
         assert!(!noisy.is_explained(), "{seed} {:?}", noisy.verdict);
     }
 }

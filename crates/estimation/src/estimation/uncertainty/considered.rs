@@ -45,15 +45,15 @@ impl NearestField<'_> {
         let neighbours = law.map_or(Vec::new(), |law| law.neighbours());
         let slopes = self.equations.slopes_between(neighbours, &self.field)?;
         let (strips, of_places) = self.unknown_places(edges);
-        let (own, all) = (slopes.len(), slopes.len() + strips.len());
+        let (of_law, all) = (slopes.len(), slopes.len() + strips.len());
         let mut squares = DMatrix::zeros(all, all);
         if let Some(law) = law {
             squares
-                .view_mut((0, 0), (own, own))
+                .view_mut((0, 0), (of_law, of_law))
                 .copy_from(law.covariance());
         }
         squares
-            .view_mut((own, own), (strips.len(), strips.len()))
+            .view_mut((of_law, of_law), (strips.len(), strips.len()))
             .copy_from(&of_places);
         let forces = [slopes.clone(), strips].concat();
         let tangent = &mut self.equations.newton.tangent;
@@ -92,11 +92,11 @@ impl NearestField<'_> {
         &self,
         considered: &Considered,
     ) -> Result<Vec<[f64; 2]>, Error> {
-        let own = considered.slopes.len();
-        if own == 0 {
+        let count = considered.slopes.len();
+        if count == 0 {
             return Ok(Vec::new());
         }
-        let squares = considered.squares.view((0, 0), (own, own));
+        let squares = considered.squares.view((0, 0), (count, count));
         let along = |body: usize, axis: usize| -> Result<f64, Error> {
             let (grip, row) = self.grip_of(body, axis, &[])?;
             let slope = |index: usize, _| {
@@ -104,7 +104,7 @@ impl NearestField<'_> {
                     + dot(&grip.pull, &considered.changes[index]);
                 direct + dot(&row, considered.answers.column(index).as_slice())
             };
-            let slopes = DVector::from_fn(own, slope);
+            let slopes = DVector::from_fn(count, slope);
             Ok(slopes.dot(&(squares * &slopes)).max(0.0).sqrt())
         };
         self.by_body(along)
@@ -118,18 +118,22 @@ impl NearestField<'_> {
             squares,
             ..
         } = considered;
-        let (own, more) = (answers.nrows(), answers.ncols());
+        let (before, more) = (answers.nrows(), answers.ncols());
         let across = &answers * &squares;
-        let mut whole = DMatrix::zeros(own + more, own + more);
-        whole
-            .view_mut((0, 0), (own, own))
+        let mut joined = DMatrix::zeros(before + more, before + more);
+        joined
+            .view_mut((0, 0), (before, before))
             .copy_from(&(&self.fit.covariance + &across * answers.transpose()));
-        whole.view_mut((0, own), (own, more)).copy_from(&across);
-        whole
-            .view_mut((own, 0), (more, own))
+        joined
+            .view_mut((0, before), (before, more))
+            .copy_from(&across);
+        joined
+            .view_mut((before, 0), (more, before))
             .copy_from(&across.transpose());
-        whole.view_mut((own, own), (more, more)).copy_from(&squares);
-        self.fit.covariance = whole;
+        joined
+            .view_mut((before, before), (more, more))
+            .copy_from(&squares);
+        self.fit.covariance = joined;
         self.linear.sensitivities.extend(changes);
     }
 }
@@ -167,9 +171,9 @@ mod tests {
             };
             estimate(&specimen(&mesh), &truth.markers(0.1, 1), &knowledge).unwrap()
         };
-        let right = |found: &FieldEstimate| {
-            let index = found.forces.iter().position(|own| own.edge == "right");
-            (index.unwrap(), found.forces[index.unwrap()].force[0])
+        let right = |result: &FieldEstimate| {
+            let index = result.forces.iter().position(|force| force.edge == "right");
+            (index.unwrap(), result.forces[index.unwrap()].force[0])
         };
         let [plain, uncertain] = [of(None, Vec::new()), of(recorded(), Vec::new())];
         let ((_, before), (index, after)) = (right(&plain), right(&uncertain));
@@ -182,8 +186,8 @@ mod tests {
         );
         let wide = before.standard_error.hypot(deviation);
         assert!(before.value == after.value && (after.standard_error / wide - 1.0).abs() < 1e-9);
-        let stress = |found: &FieldEstimate| {
-            let middle = found.cells[found.cells.len() / 2];
+        let stress = |result: &FieldEstimate| {
+            let middle = result.cells[result.cells.len() / 2];
             (
                 middle.first_piola_kirchhoff_stress[0],
                 middle.stress_error[0],

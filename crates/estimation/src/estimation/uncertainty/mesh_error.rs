@@ -72,13 +72,13 @@ impl Fine {
     /// The nodes and sides of the refined mesh that a body holds.
     fn hold(&self, body: &Body) -> Hold {
         let nodes = [0, 1].map(|axis| -> BTreeSet<usize> {
-            let own = body.edges.iter().flat_map(|edge| &self.held[*edge][axis]);
-            own.map(|unknown| unknown / 2).collect()
+            let unknowns = body.edges.iter().flat_map(|edge| &self.held[*edge][axis]);
+            unknowns.map(|unknown| unknown / 2).collect()
         });
-        let whole: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
+        let held: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
         Hold {
             rank: body.rank,
-            sides: Hold::sides(&self.mesh, &whole),
+            sides: Hold::sides(&self.mesh, &held),
             nodes,
         }
     }
@@ -120,21 +120,23 @@ impl NearestField<'_> {
     /// The mesh's own error, where the difference is known.
     pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
-        let found = self.mesh_difference(edges)?;
+        let difference = self.mesh_difference(edges)?;
         let target = self
             .equations
-            .mesh_target(&found, &self.linear, &self.variances);
+            .mesh_target(&difference, &self.linear, &self.variances);
         let change = &self.fit.covariance * target;
         let MeshDifference {
             fine,
             markers: at_markers,
             forces,
-        } = found;
+        } = difference;
         let there = fine.mesh.displacement_on(&fine.displacement, mesh);
         let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
         let along = |values: &[f64], slopes: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let whole = values.iter().enumerate();
-            whole.map(|(row, value)| value + slopes(row)).collect()
+            let values_of_rows = values.iter().enumerate();
+            values_of_rows
+                .map(|(row, value)| value + slopes(row))
+                .collect()
         };
         let columns = || self.linear.sensitivities.iter().zip(change.iter());
         let adapted: Vec<f64> = (0..difference.len())
@@ -217,12 +219,12 @@ impl NearestField<'_> {
         let holds: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
         let holds: Vec<&Hold> = holds.iter().collect();
         let shares = reaction_shares(&fine.mesh, &holds).into_iter().zip(bodies);
-        let difference = |(shares, own): ([Vec<Share>; 2], &Body)| {
+        let difference = |(shares, body): ([Vec<Share>; 2], &Body)| {
             let there = Body {
                 shares,
-                ..own.clone()
+                ..body.clone()
             };
-            let (before, after) = (own.force(&reactions), there.force(&fine.residual));
+            let (before, after) = (body.force(&reactions), there.force(&fine.residual));
             [0, 1].map(|axis| after[axis] - before[axis])
         };
         shares.map(difference).collect()
@@ -240,9 +242,9 @@ impl Equations<'_> {
         let mut target = self.target_of(&difference.markers, linear, variances);
         let measured = self.task.knowledge.measured_forces().iter().enumerate();
         for (row, measured) in measured {
-            let own = self.bodies.iter().zip(&difference.forces);
-            let own = own.filter(|(body, _)| body.name == measured.edge);
-            let off: f64 = own.map(|(_, force)| force[measured.axis]).sum();
+            let bodies = self.bodies.iter().zip(&difference.forces);
+            let bodies = bodies.filter(|(body, _)| body.name == measured.edge);
+            let off: f64 = bodies.map(|(_, force)| force[measured.axis]).sum();
             let slopes = linear.force_rows.0.row(row).transpose();
             target -= slopes * (off / measured.standard_deviation);
         }
@@ -307,24 +309,27 @@ fn is_near(position: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
 fn held_inside(mesh: &Mesh, fine: &Mesh, edge: &Edge, axis: usize, held: &[bool]) -> Vec<usize> {
     let nodes = edge.segment.nodes.iter().copied();
     let pad: BTreeSet<usize> = nodes.filter(|node| held[2 * node + axis]).collect();
-    let mut found = BTreeSet::new();
+    let mut unknown_nodes = BTreeSet::new();
     for coarse in 0..mesh.cell_count() {
-        let own = mesh.cell(coarse);
+        let nodes = mesh.cell(coarse);
         let parts = (4 * coarse..4 * coarse + 4).flat_map(|part| fine.cell(part));
         let sides = mesh.shape(coarse).edges();
-        let sides = sides.iter().map(|side| [own[side[0]], own[side[1]]]);
+        let sides = sides.iter().map(|side| [nodes[side[0]], nodes[side[1]]]);
         let sides: Vec<_> = sides
             .filter(|ends| ends.iter().all(|end| held[2 * end + axis]))
             .collect();
-        let whole = own.iter().all(|node| held[2 * node + axis])
-            && own.iter().any(|node| pad.contains(node));
+        let is_held = nodes.iter().all(|node| held[2 * node + axis])
+            && nodes.iter().any(|node| pad.contains(node));
         let on_side = |node: usize| {
             let mut near = sides
                 .iter()
                 .filter(|ends| ends.iter().any(|end| pad.contains(end)));
             near.any(|ends| is_near(fine.nodes[node], ends.map(|end| mesh.nodes[end])))
         };
-        found.extend(parts.filter(|node| whole || on_side(**node)).copied());
+        unknown_nodes.extend(parts.filter(|node| is_held || on_side(**node)).copied());
     }
-    found.into_iter().map(|node| 2 * node + axis).collect()
+    unknown_nodes
+        .into_iter()
+        .map(|node| 2 * node + axis)
+        .collect()
 }

@@ -36,7 +36,9 @@ impl NearestField<'_> {
         let mut strips = self.strips(edges);
         let mut all = vec![0.0; self.field.len()];
         for strip in &strips {
-            all.iter_mut().zip(strip).for_each(|(sum, own)| *sum += own);
+            all.iter_mut()
+                .zip(strip)
+                .for_each(|(sum, value)| *sum += value);
         }
         if strips.len() > 1 {
             parts.push(MovedPart::FreeEdges);
@@ -68,8 +70,8 @@ impl NearestField<'_> {
         added.map_err(|fault| equations.inverted(fault))?;
         let changes = equations.newton.tangent.changes(&[forces]);
         let change = changes.map_err(solve)?.remove(0);
-        let whole: Vec<f64> = change.iter().zip(&motion).map(|(u, g)| u + g).collect();
-        let markers = self.observations().interpolation.multiply(&whole);
+        let total: Vec<f64> = change.iter().zip(&motion).map(|(u, g)| u + g).collect();
+        let markers = self.observations().interpolation.multiply(&total);
         Ok(DMatrix::from_vec(markers.len(), 1, markers))
     }
 
@@ -98,11 +100,11 @@ impl NearestField<'_> {
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let across = [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
         let inwards = [0, 1].map(|axis| across[axis] * (centre[axis] - middle[axis]));
-        let way = -(inwards[0] + inwards[1]).signum();
+        let outwards = -(inwards[0] + inwards[1]).signum();
         let gradient = mesh.gradient_at(&self.field, cell, local);
         [0, 1].map(|axis| {
             let [along_x, along_y] = [gradient[2 * axis], gradient[2 * axis + 1]];
-            way * (along_x * across[0] + along_y * across[1])
+            outwards * (along_x * across[0] + along_y * across[1])
         })
     }
 
@@ -169,7 +171,7 @@ mod tests {
     use crate::mesh::{CellShape, Outline};
 
     /// How far the edges of a plate are found from those of a mesh that lie so much farther in.
-    fn found(
+    fn estimated(
         truth: &Truth,
         [bottom, top]: [f64; 2],
         noise: f64,
@@ -184,36 +186,37 @@ mod tests {
         let amid = |marker: &Marker| marker.position[1] > 2.0 && marker.position[1] < width - 2.0;
         let markers: Vec<Marker> = markers.filter(amid).collect();
         let knowledge = with_grips(EdgeCondition::Unknown);
-        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-        let moved = found
-            .verdict
-            .trials
-            .into_iter()
-            .filter_map(|trial| match trial.alternative {
-                Alternative::MovedEdge { part, outwards } => Some((part, outwards)),
-                _ => None,
-            });
-        (found.verdict.answer, moved.collect())
+        let estimated = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let moved =
+            estimated
+                .verdict
+                .trials
+                .into_iter()
+                .filter_map(|trial| match trial.alternative {
+                    Alternative::MovedEdge { part, outwards } => Some((part, outwards)),
+                    _ => None,
+                });
+        (estimated.verdict.answer, moved.collect())
     }
 
     #[test]
     fn the_verdict_tells_how_far_free_edges_lie_from_those_of_the_mesh() {
         let truth = Truth::new();
         // One linearised step about a field with wrong edges tells it to a third.
-        let near = |found: f64, off: f64| (found / off - 1.0).abs() < 0.35;
+        let near = |distance: f64, off: f64| (distance / off - 1.0).abs() < 0.35;
         for off in [0.6, -0.6] {
-            let (answer, moved) = found(&truth, [off; 2], 0.004);
+            let (answer, moved) = estimated(&truth, [off; 2], 0.004);
             assert_eq!(answer, Answer::NotExplained);
             assert!(
                 moved[0].0 == MovedPart::FreeEdges && near(moved[0].1, off),
                 "{moved:?}"
             );
-            let (answer, moved) = found(&truth, [off, 0.0], 0.004);
+            let (answer, moved) = estimated(&truth, [off, 0.0], 0.004);
             assert_eq!(answer, Answer::NotExplained);
             let bottom = MovedPart::FreeEdge("bottom".to_owned());
             assert!(moved[0].0 == bottom && near(moved[0].1, off), "{moved:?}");
         }
-        let (answer, moved) = found(&truth, [0.0; 2], 0.004);
+        let (answer, moved) = estimated(&truth, [0.0; 2], 0.004);
         assert!(
             answer != Answer::NotExplained && moved.is_empty(),
             "{moved:?}"

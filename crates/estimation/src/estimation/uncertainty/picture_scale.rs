@@ -34,8 +34,8 @@ impl Equations<'_> {
         let mut positions: Vec<f64> = positions.zip(moved).map(|(x, u)| x + u).collect();
         let count = observations.positions.len() as f64;
         let middle = [0, 1].map(|axis| positions.iter().skip(axis).step_by(2).sum::<f64>() / count);
-        let own = positions.iter_mut().enumerate();
-        own.for_each(|(row, position)| *position -= middle[row % 2]);
+        let rows = positions.iter_mut().enumerate();
+        rows.for_each(|(row, position)| *position -= middle[row % 2]);
         positions
     }
 }
@@ -108,9 +108,9 @@ mod tests {
         estimate(&specimen(&mesh), &markers, &knowledge).unwrap()
     }
 
-    fn right(found: &FieldEstimate) -> usize {
-        let own = found.forces.iter().position(|own| own.edge == "right");
-        own.unwrap()
+    fn right(result: &FieldEstimate) -> usize {
+        let force = result.forces.iter().position(|force| force.edge == "right");
+        force.unwrap()
     }
 
     #[test]
@@ -119,8 +119,11 @@ mod tests {
         let [plain, larger] = [0.0, 1e-3].map(|error| seen(&truth, error, 0.0, 2));
         let index = right(&plain);
         let change = larger.forces[index].force[0].value - plain.forces[index].force[0].value;
-        let told = 1e-3 * plain.scale_change.forces[index][0];
-        assert!((change / told - 1.0).abs() < 0.05, "{change} {told}");
+        let predicted = 1e-3 * plain.scale_change.forces[index][0];
+        assert!(
+            (change / predicted - 1.0).abs() < 0.05,
+            "{change} {predicted}"
+        );
     }
 
     /// 0.3 %, as likely smaller as larger: most intervals miss the force where nothing is said of it.
@@ -131,8 +134,8 @@ mod tests {
             let errors = [-3e-3, 3e-3].into_iter();
             let cases = errors.flat_map(|error| (0..4).map(move |seed| (error, seed)));
             let holds = cases.filter(|(error, seed)| {
-                let found = seen(&truth, *error, deviation, *seed);
-                let [low, high] = found.forces[right(&found)].force[0].interval;
+                let result = seen(&truth, *error, deviation, *seed);
+                let [low, high] = result.forces[right(&result)].force[0].interval;
                 low < truth.force && truth.force < high
             });
             holds.count()
@@ -166,8 +169,8 @@ mod tests {
                 scale_deviation,
                 ..with_grips(EdgeCondition::Rigid)
             };
-            let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-            found.verdict.answer
+            let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            result.verdict.answer
         };
         assert_eq!(answer(0.0), Answer::NotExplained);
         assert_ne!(answer(5e-3), Answer::NotExplained);
@@ -175,13 +178,13 @@ mod tests {
 
     #[test]
     fn a_scale_that_is_far_off_is_named() {
-        let found = seen(&Truth::new(), 0.05, 0.0, 1);
-        assert_eq!(found.verdict.answer, Answer::NotExplained);
+        let result = seen(&Truth::new(), 0.05, 0.0, 1);
+        assert_eq!(result.verdict.answer, Answer::NotExplained);
         assert_eq!(
-            found.verdict.trials[0].alternative,
+            result.verdict.trials[0].alternative,
             Alternative::Scale,
             "{:?}",
-            found.verdict.trials
+            result.verdict.trials
         );
     }
 }

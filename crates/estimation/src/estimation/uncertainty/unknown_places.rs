@@ -46,7 +46,7 @@ mod tests {
     }
 
     /// The estimate by markers amid the plate.
-    fn found(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
+    fn estimated(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
         let markers = truth.markers(0.3, seed).into_iter();
         let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.position[1]);
         let knowledge = Knowledge {
@@ -58,10 +58,10 @@ mod tests {
     }
 
     /// The share of the stresses P₁₁ beside the free edges that ± 1.96 standard errors hold.
-    fn held(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
+    fn held(truth: &Truth, mesh: &Mesh, result: &FieldEstimate) -> f64 {
         const BESIDE: f64 = 8.0;
         let (mut inside, mut all) = (0, 0);
-        for (cell, own) in found.cells.iter().enumerate() {
+        for (cell, stress) in result.cells.iter().enumerate() {
             let position = mesh.position(cell, mesh.shape(cell).centre());
             if (BESIDE..SIZE[1] - BESIDE).contains(&position[1]) {
                 continue;
@@ -69,8 +69,8 @@ mod tests {
             let (there, local) = truth.mesh.locate(position);
             let gradient = truth.mesh.gradient_at(truth.field(), there, local);
             let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
-            let off = own.first_piola_kirchhoff_stress[0] - law().stress(&kinematics).1[0];
-            inside += u32::from(off.abs() <= 1.96 * own.stress_error[0]);
+            let off = stress.first_piola_kirchhoff_stress[0] - law().stress(&kinematics).1[0];
+            inside += u32::from(off.abs() <= 1.96 * stress.stress_error[0]);
             all += 1;
         }
         f64::from(inside) / f64::from(all)
@@ -83,9 +83,9 @@ mod tests {
             let mesh = narrow(off);
             let share = |gap: Option<f64>| {
                 let of_seed = |seed| {
-                    let found = found(&truth, &mesh, gap, seed);
-                    assert_ne!(found.verdict.answer, Answer::NotExplained);
-                    held(&truth, &mesh, &found)
+                    let estimated = estimated(&truth, &mesh, gap, seed);
+                    assert_ne!(estimated.verdict.answer, Answer::NotExplained);
+                    held(&truth, &mesh, &estimated)
                 };
                 (0..4).map(of_seed).sum::<f64>() / 4.0
             };
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn values_stay_and_only_errors_grow() {
         let (truth, mesh) = (Truth::new(), narrow([1.0, 1.0]));
-        let [plain, considered] = [None, Some(GAP)].map(|gap| found(&truth, &mesh, gap, 1));
+        let [plain, considered] = [None, Some(GAP)].map(|gap| estimated(&truth, &mesh, gap, 1));
         assert_eq!(plain.displacement, considered.displacement);
         let errors = plain
             .displacement_error
@@ -110,9 +110,9 @@ mod tests {
         for (a, b) in plain.cells.iter().zip(&considered.cells) {
             assert!((0..4).all(|i| b.stress_error[i] >= a.stress_error[i] * (1.0 - 1e-9)));
         }
-        let mean = |found: &FieldEstimate| {
-            let errors = found.cells.iter().map(|own| own.stress_error[0]);
-            errors.sum::<f64>() / found.cells.len() as f64
+        let mean = |result: &FieldEstimate| {
+            let errors = result.cells.iter().map(|stress| stress.stress_error[0]);
+            errors.sum::<f64>() / result.cells.len() as f64
         };
         let growth = mean(&considered) / mean(&plain);
         assert!((1.1..10.0).contains(&growth), "{growth}");

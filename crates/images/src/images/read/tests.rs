@@ -56,9 +56,9 @@ fn pages_of_a_file_and_files_of_a_folder_are_frames_in_order() {
     for name in ["f10.png", "f9.png", "g1.png"] {
         image.save(folder.path().join(name)).unwrap();
     }
-    let found = list(&[folder.path().join("f*.png")]).unwrap();
+    let files = list(&[folder.path().join("f*.png")]).unwrap();
     assert_eq!(
-        found.iter().map(ImageFile::name).collect::<Vec<_>>(),
+        files.iter().map(ImageFile::name).collect::<Vec<_>>(),
         ["f9", "f10"]
     );
     assert_eq!(list(&[folder.path().to_owned()]).unwrap().len(), 6);

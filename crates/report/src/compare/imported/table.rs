@@ -70,8 +70,8 @@ type Choice = (usize, f64, f64);
 /// # Errors
 /// [`Error::Input`] with what is wrong.
 pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
-    let found = LENGTHS.map(|names| columns::find(table, names));
-    let heads = found.iter().map(|found| found.as_ref()?.1.as_deref());
+    let matches = LENGTHS.map(|names| columns::find(table, names));
+    let heads = matches.iter().map(|matched| matched.as_ref()?.1.as_deref());
     let head = columns::common_unit(heads);
     let units = Units {
         given: settings.unit.or(Some(1.0)),

@@ -33,7 +33,7 @@ fn written(name: &str, text: &str) -> tempfile::TempPath {
 
 fn refusal(name: &str, text: &str) -> String {
     match ExternalField::read(&written(name, text), &SETTINGS) {
-        Err(told) => told.to_string(),
+        Err(error) => error.to_string(),
         Ok(imported) => imported.sites(&model([6, 2]).mesh).unwrap_err().to_string(),
     }
 }
@@ -252,11 +252,11 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
 
 #[test]
 fn fields_that_do_not_fit_are_refused_with_the_reason() {
-    for (name, text, told) in refused() {
-        let found = refusal(name, &text);
+    for (name, text, expected) in refused() {
+        let message = refusal(name, &text);
         assert!(
-            found.to_lowercase().contains(&told.to_lowercase()),
-            "{told}: {found}"
+            message.to_lowercase().contains(&expected.to_lowercase()),
+            "{expected}: {message}"
         );
     }
 }
@@ -277,9 +277,9 @@ fn columns_choose_rows_and_are_passed_over_by_wish() {
         assert!(sites.difference(&model([6, 2])).unwrap().percent < 1e-10);
     }
     let settings = ignoring("uz");
-    let told =
+    let error =
         ExternalField::read(&written(".csv", "x,y,ux,uy\n1,2,3,4\n"), &settings).unwrap_err();
-    assert!(told.to_string().contains("no column `time`"), "{told}");
+    assert!(error.to_string().contains("no column `time`"), "{error}");
 }
 
 #[test]

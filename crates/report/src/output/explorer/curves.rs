@@ -20,7 +20,9 @@ pub fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
             let models = step.models.iter();
             (
                 step.at,
-                models.map(|(model, own)| (model, of_model(own))).collect(),
+                models
+                    .map(|(model, value)| (model, of_model(value)))
+                    .collect(),
             )
         })
         .collect();
@@ -120,8 +122,8 @@ mod tests {
                 read_warnings: Vec::new(),
                 seconds: 0.0,
             };
-            let found = curves(&results, &[0.5, 1.0]);
-            [0, 1].map(|curve| found[curve]["models"]["finite elements"].clone())
+            let curves = curves(&results, &[0.5, 1.0]);
+            [0, 1].map(|curve| curves[curve]["models"]["finite elements"].clone())
         };
         let width = json!([[0.5, 49.5], [1.0, 49.0]]);
         let force = json!([[0.0, 0.0], [0.5, 4.0], [1.0, 8.0]]);

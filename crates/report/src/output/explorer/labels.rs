@@ -15,10 +15,10 @@ pub fn label(name: &str) -> String {
         ("_s", "s"),
     ];
     let name = name.replace("_at_nodes", "");
-    let found = UNITS
+    let matched = UNITS
         .iter()
         .find_map(|(end, unit)| Some((name.strip_suffix(end)?, format!(" [{unit}]"))));
-    let (words, unit) = found.unwrap_or((&name, String::new()));
+    let (words, unit) = matched.unwrap_or((&name, String::new()));
     let words = words
         .replace('_', " ")
         .replace("mises", "Mises")

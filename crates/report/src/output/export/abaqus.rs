@@ -27,7 +27,10 @@ impl Deck {
 
     /// The numbers of nodes or cells, ten a line, counted from one.
     fn numbers(&mut self, numbers: &[usize]) {
-        let numbers: Vec<String> = numbers.iter().map(|own| (own + 1).to_string()).collect();
+        let numbers: Vec<String> = numbers
+            .iter()
+            .map(|index| (index + 1).to_string())
+            .collect();
         for line in numbers.chunks(10) {
             self.line(&line.join(", "));
         }
@@ -45,12 +48,12 @@ pub fn write(model: &Model) -> String {
     }
     mesh(model, &mut deck);
     ties(model, &mut deck);
-    for own in &model.materials {
-        material(own, &mut deck);
-        let orientation = orientation(own, &mut deck);
+    for part in &model.materials {
+        material(part, &mut deck);
+        let orientation = orientation(part, &mut deck);
         deck.line(&format!(
             "*SOLID SECTION, ELSET={}, MATERIAL={}{orientation}",
-            own.set, own.name
+            part.set, part.name
         ));
         deck.line(&number(given.problem.thickness));
     }
@@ -60,7 +63,7 @@ pub fn write(model: &Model) -> String {
     }
     let mut before = 0.0;
     for factor in given.factors {
-        for factor in model.on_the_way(before, *factor) {
+        for factor in model.intermediate_factors(before, *factor) {
             let times = [(factor - before).abs() / 5.0, (factor - before).abs()];
             step(model, times, factor, &mut deck);
             before = factor;
@@ -107,7 +110,9 @@ fn mesh(model: &Model, deck: &mut Deck) {
         (CellShape::Quad8, eight),
     ] {
         let cells = model.cells.iter().enumerate();
-        let mut cells = cells.filter(|(_, (own, _))| *own == shape).peekable();
+        let mut cells = cells
+            .filter(|(_, (cell_shape, _))| *cell_shape == shape)
+            .peekable();
         if cells.peek().is_some() {
             deck.line(&format!("*ELEMENT, TYPE={name}, ELSET={SPECIMEN}"));
         }
@@ -116,9 +121,9 @@ fn mesh(model: &Model, deck: &mut Deck) {
             deck.line(&format!("{}, {}", cell + 1, nodes.join(", ")));
         }
     }
-    for own in model.materials.iter().filter(|own| own.set != SPECIMEN) {
-        deck.line(&format!("*ELSET, ELSET={}", own.set));
-        deck.numbers(&own.cells);
+    for part in model.materials.iter().filter(|part| part.set != SPECIMEN) {
+        deck.line(&format!("*ELSET, ELSET={}", part.set));
+        deck.numbers(&part.cells);
     }
     for (name, nodes) in model.sets.iter().filter(|(_, nodes)| !nodes.is_empty()) {
         deck.line(&format!("*NSET, NSET={name}"));

@@ -56,8 +56,8 @@ pub fn write(model: &Model) -> String {
 /// All materials.
 fn materials(model: &Model, file: &mut Xml) {
     file.open("Material", &[]);
-    for (own, id) in model.materials.iter().zip(1..) {
-        material(own, id, file);
+    for (part, id) in model.materials.iter().zip(1..) {
+        material(part, id, file);
     }
     file.close("Material");
 }
@@ -116,21 +116,21 @@ struct Domain {
 }
 
 fn domains(model: &Model) -> Vec<Domain> {
-    let domain = |own: &PartMaterial, shape: CellShape| {
-        let cells = own.cells.iter().copied();
+    let domain = |part: &PartMaterial, shape: CellShape| {
+        let cells = part.cells.iter().copied();
         let cells: Vec<usize> = cells.filter(|cell| model.cells[*cell].0 == shape).collect();
         let kind = solid_name(shape);
         (!cells.is_empty()).then(|| Domain {
             name: match model.materials.len() {
                 1 => kind.to_owned(),
-                _ => format!("{kind}_{}", own.set),
+                _ => format!("{kind}_{}", part.set),
             },
             shape,
-            material: own.name.to_lowercase(),
+            material: part.name.to_lowercase(),
             cells,
         })
     };
-    let of_material = |own| CellShape::NAMES.map(|(_, shape)| domain(own, shape));
+    let of_material = |part| CellShape::NAMES.map(|(_, shape)| domain(part, shape));
     let all = model.materials.iter().flat_map(of_material);
     all.flatten().collect()
 }
@@ -141,9 +141,9 @@ fn mesh(model: &Model, columns: &Columns, file: &mut Xml) {
     file.open("Nodes", &[("name", "sheet")]);
     for (node, column) in &columns.0 {
         let [x, y] = model.given.mesh.nodes[*node].map(number);
-        for (level, own) in column.iter().enumerate() {
+        for (level, id) in column.iter().enumerate() {
             let z = number(half * level as f64 / (column.len() - 1) as f64);
-            file.text("node", &[("id", &own.to_string())], &format!("{x},{y},{z}"));
+            file.text("node", &[("id", &id.to_string())], &format!("{x},{y},{z}"));
         }
     }
     file.close("Nodes");

@@ -149,7 +149,7 @@ impl Constraint {
 impl<'a> Model<'a> {
     /// Load factors on the way from one to another one, and that one: codes that lead every node of a step along a straight line
     /// would take the chord of a large turn.
-    pub fn on_the_way(&self, before: f64, factor: f64) -> Vec<f64> {
+    pub fn intermediate_factors(&self, before: f64, factor: f64) -> Vec<f64> {
         let turns = self.held.iter().map(|held| match held.support {
             Support::Rotation { angle, .. } => angle.abs(),
             _ => 0.0,
@@ -174,13 +174,17 @@ impl<'a> Model<'a> {
                 _ => (shape, nodes),
             })
             .collect();
-        let nodes: BTreeSet<usize> = cells.iter().flat_map(|(_, own)| *own).copied().collect();
+        let nodes: BTreeSet<usize> = cells
+            .iter()
+            .flat_map(|(_, nodes)| *nodes)
+            .copied()
+            .collect();
         let mut names = Names::default();
         let (mut sets, mut groups) = (Vec::new(), Vec::new());
         let (mut surfaces, mut group_surfaces) = (Vec::new(), BTreeMap::new());
         let sides = sides(&cells);
         for (group, content) in mesh.groups() {
-            let own = content.nodes.iter().filter(|node| nodes.contains(node));
+            let members = content.nodes.iter().filter(|node| nodes.contains(node));
             let name = names.give(group);
             if !content.edges.is_empty() {
                 group_surfaces.insert(group.as_str(), surfaces.len());
@@ -189,7 +193,7 @@ impl<'a> Model<'a> {
                 surfaces.push((names.give(&format!("{name}_EDGES")), edges));
             }
             groups.push(group.as_str());
-            sets.push((name, own.copied().collect()));
+            sets.push((name, members.copied().collect()));
         }
         let mut model = Self {
             given,
@@ -215,19 +219,23 @@ impl<'a> Model<'a> {
     fn hold(&mut self, names: &mut Names) -> Result<(), Diagnostic> {
         let held = self.given.problem.held_by(self.given.mesh)?;
         for (number, (group, support)) in self.given.problem.supports.iter().enumerate() {
-            let own_set = self.groups.iter().position(|known| known == group);
+            let group_set = self.groups.iter().position(|known| known == group);
             for axis in [0, 1] {
-                let own = self.nodes.iter().copied();
-                let own = own.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
-                let own: Vec<usize> = own.collect();
-                if own.is_empty() {
+                let held_nodes = self.nodes.iter().copied();
+                let held_nodes =
+                    held_nodes.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
+                let held_nodes: Vec<usize> = held_nodes.collect();
+                if held_nodes.is_empty() {
                     continue;
                 }
-                let known = own_set.filter(|set| self.sets[*set].1 == own);
-                let known =
-                    known.or_else(|| self.sets.iter().rposition(|(_, nodes)| *nodes == own));
+                let known = group_set.filter(|set| self.sets[*set].1 == held_nodes);
+                let known = known.or_else(|| {
+                    self.sets
+                        .iter()
+                        .rposition(|(_, nodes)| *nodes == held_nodes)
+                });
                 let set = known.unwrap_or_else(|| {
-                    self.sets.push((names.give("HELD"), own));
+                    self.sets.push((names.give("HELD"), held_nodes));
                     self.sets.len() - 1
                 });
                 self.held.push(Constraint {

@@ -109,11 +109,11 @@ fn supports_loads_and_steps_are_those_of_the_study() {
     let lines = text
         .lines()
         .filter_map(|line| line.strip_prefix("6, 1, 1, "));
-    let found: Vec<f64> = lines.map(|line| line.parse().unwrap()).collect();
-    for (found, angle) in found.iter().zip([0.25, 0.5]) {
-        assert!((found - turned(angle)).abs() < 1e-10, "{found}");
+    let numbers: Vec<f64> = lines.map(|line| line.parse().unwrap()).collect();
+    for (number, angle) in numbers.iter().zip([0.25, 0.5]) {
+        assert!((number - turned(angle)).abs() < 1e-10, "{number}");
     }
-    assert_eq!(found.len(), 2);
+    assert_eq!(numbers.len(), 2);
     let abaqus = export.input_file(Code::Abaqus).unwrap().text;
     assert!(
         abaqus.contains("*HYPERELASTIC, NEO HOOKE\n0.05, 0\n"),

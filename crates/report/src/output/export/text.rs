@@ -33,10 +33,12 @@ impl Names {
             })
             .take(60)
             .collect();
-        let is_own =
-            OWN.contains(&&*plain) || OWN_NUMBERED.iter().any(|own| plain.starts_with(own));
+        let is_reserved = OWN.contains(&&*plain)
+            || OWN_NUMBERED
+                .iter()
+                .any(|reserved| plain.starts_with(reserved));
         let plain = match plain.chars().next() {
-            Some('A'..='Z') if !is_own => plain,
+            Some('A'..='Z') if !is_reserved => plain,
             _ => format!("G_{plain}"),
         };
         let numbered = (2..).map(|number| format!("{plain}_{number}"));

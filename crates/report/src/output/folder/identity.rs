@@ -4,9 +4,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 /// The identity of a run by what was said to it, the contents of all files that it has read, and the program itself.
-pub fn identity(said: &str, files: &[PathBuf], program: Option<&Path>) -> String {
+pub fn identity(statement: &str, files: &[PathBuf], program: Option<&Path>) -> String {
     let mut hasher = DefaultHasher::new();
-    said.hash(&mut hasher);
+    statement.hash(&mut hasher);
     for file in files {
         file.hash(&mut hasher);
         // A file that can no longer be read differs from all others.

@@ -12,7 +12,7 @@ fn run(folder: &Path, inputs: &[&Path], files: &[(&str, &str)]) -> Result<Vec<Pa
 }
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut found = Vec::new();
+    let mut files = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).unwrap() {
@@ -21,12 +21,12 @@ fn names(folder: &Path) -> Vec<String> {
                 open.push(path);
             } else {
                 let name = path.strip_prefix(folder).unwrap().to_string_lossy();
-                found.push(name.replace('\\', "/"));
+                files.push(name.replace('\\', "/"));
             }
         }
     }
-    found.sort();
-    found
+    files.sort();
+    files
 }
 
 #[test]
@@ -38,9 +38,12 @@ fn a_file_of_somebody_else_is_kept_under_another_name() {
     let mut results = ResultFolder::open(path, "run", &[]).unwrap();
     results.add("report.md", b"1").unwrap();
     results.add("force.png", b"1").unwrap();
-    let told = results.in_the_way();
-    assert_eq!(told.len(), 1);
-    assert!(told[0].message.ends_with("report.md.kept-2"), "{told:?}");
+    let warnings = results.in_the_way();
+    assert_eq!(warnings.len(), 1);
+    assert!(
+        warnings[0].message.ends_with("report.md.kept-2"),
+        "{warnings:?}"
+    );
     assert!(results.in_the_way().is_empty());
     results.finish().unwrap();
     run(path, &[], &[("report.md", "2")]).unwrap();
@@ -286,12 +289,16 @@ fn results_of_another_study_and_files_of_another_command_are_told_before_they_ar
     fs::write(&a, "a").unwrap();
     fs::write(&b, "b").unwrap();
     let open = |input: &Path, writer: &str| ResultFolder::open(&path, writer, &[input]).unwrap();
-    let told = |input: &Path, writer: &str| open(input, writer).replaces().map(|told| told.message);
-    assert_eq!(told(&a, "run"), None);
+    let message = |input: &Path, writer: &str| {
+        open(input, writer)
+            .replaces()
+            .map(|warning| warning.message)
+    };
+    assert_eq!(message(&a, "run"), None);
     run(&path, &[&a], &[("report.md", "1")]).unwrap();
-    assert_eq!(told(&a, "run"), None);
-    assert!(told(&b, "run").unwrap().contains("a.toml"));
-    assert_eq!(told(&b, "sweep"), None);
+    assert_eq!(message(&a, "run"), None);
+    assert!(message(&b, "run").unwrap().contains("a.toml"));
+    assert_eq!(message(&b, "sweep"), None);
     let mut sweep = open(&a, "sweep");
     sweep.add("report.md", b"2").unwrap();
     let others = sweep.in_the_way();
@@ -302,5 +309,5 @@ fn results_of_another_study_and_files_of_another_command_are_told_before_they_ar
     drop(sweep);
     // A study that has got another name is the same one.
     fs::rename(&a, folder.path().join("c.toml")).unwrap();
-    assert_eq!(told(&b, "run"), None);
+    assert_eq!(message(&b, "run"), None);
 }

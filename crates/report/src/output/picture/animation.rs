@@ -4,7 +4,7 @@ use png::{BlendOp, DisposeOp, Writer};
 use tiny_skia::Pixmap;
 
 use super::design::DrawResult;
-use super::encode::{Part, colours, encoder, whole};
+use super::encode::{Part, colours, encoder, full};
 use super::look::Look;
 use super::paint::Painter;
 use crate::results::{Animation, FieldFigure, Panel, Scale};
@@ -50,7 +50,7 @@ impl Animation {
         encoder.set_blend_op(BlendOp::Source)?;
         encoder.set_dispose_op(DisposeOp::None)?;
         let mut writer = encoder.write_header()?;
-        writer.write_image_data(&colours(&shown, whole(&shown)))?;
+        writer.write_image_data(&colours(&shown, full(&shown)))?;
         for picture in pictures {
             let picture = picture?;
             put(&mut writer, &picture, changed(&shown, &picture))?;

@@ -42,13 +42,13 @@ impl Bar {
     ) -> Self {
         let range = Range::of(panels.iter(), scale, range);
         let right = panels_right.max(most.min(left + LEAST)).min(most - 14.0);
-        let arrow = |beyond: Option<f64>| beyond.map_or(0.0, |_| ARROW);
+        let arrow = |outside: Option<f64>| outside.map_or(0.0, |_| ARROW);
         let area = Rectangle::new(
             [left + arrow(range.below), top],
             [right - arrow(range.above), top + HEIGHT],
         );
         let length = area.size()[0];
-        let ticks = Ticks::beside([range.low, range.high], scale, length, look.number());
+        let ticks = Ticks::fitting([range.low, range.high], scale, length, look.number());
         let quantity = ticks.numbers.labelled(quantity);
         let extreme = |which, value| extreme(which, value, panels, &quantity);
         let extremes = [

@@ -73,7 +73,7 @@ impl Scaled {
 
     /// A horizontal axis with as many ticks as have room beside one another.
     fn horizontal(axis: &Axis, limits: [f64; 2], length: f64, look: Look) -> Self {
-        let ticks = Ticks::beside(limits, axis.scale, length, look.number());
+        let ticks = Ticks::fitting(limits, axis.scale, length, look.number());
         Self::new(axis, limits, ticks, length, look)
     }
 
@@ -102,7 +102,7 @@ impl<'a> Plan<'a> {
                 Scaled::new(&chart.y, limits, ticks, *height, look)
             })
             .collect();
-        let left = verticals.iter().map(|axis| beside(axis, look));
+        let left = verticals.iter().map(|axis| axis_width(axis, look));
         let left = left.fold(0.0, f64::max);
         let mut frames: Vec<Frame> = Vec::new();
         let mut top = EDGE;
@@ -112,10 +112,10 @@ impl<'a> Plan<'a> {
             let below = charts.get(frames.len() + 1);
             let mut frame = Frame::new(chart, look, room, range, y);
             frame.is_above_its_like = below.is_some_and(|(below, _)| below.x == chart.x);
-            let is_told = frames
+            let is_repeated = frames
                 .last()
                 .is_some_and(|above| same_names(above.chart, chart));
-            top = frame.finish(look, is_told, left, f64::from(width) - EDGE);
+            top = frame.finish(look, is_repeated, left, f64::from(width) - EDGE);
             frames.push(frame);
             if !frames[frames.len() - 1].is_above_its_like {
                 top = place_below(&mut frames, top);
@@ -147,7 +147,7 @@ fn area_height(height: u32, look: Look) -> f64 {
 }
 
 /// What numbers and label of a vertical axis take.
-fn beside(axis: &Scaled, look: Look) -> f64 {
+fn axis_width(axis: &Scaled, look: Look) -> f64 {
     let numbers = axis.ticks.at.iter();
     let numbers = numbers.map(|(_, label)| look.number().width(label));
     let label = look.name().line_height() * axis.label.len() as f64;
@@ -205,8 +205,8 @@ impl<'a> Frame<'a> {
         // The last number may reach beyond the end of its axis.
         let mut end = right;
         if let Some((at, label)) = x.ticks.at.last() {
-            let beyond = 0.5 * look.number().width(label) - (1.0 - x.share(*at)) * (right - left);
-            end -= beyond.max(0.0);
+            let overhang = 0.5 * look.number().width(label) - (1.0 - x.share(*at)) * (right - left);
+            end -= overhang.max(0.0);
             x = Scaled::horizontal(&chart.x, limits, end - left, look);
         }
         Self {
@@ -221,14 +221,14 @@ impl<'a> Frame<'a> {
     }
 
     /// Places the names of lines; the upper end of what is below the chart.
-    fn finish(&mut self, look: Look, is_told: bool, left: f64, right: f64) -> f64 {
+    fn finish(&mut self, look: Look, is_repeated: bool, left: f64, right: f64) -> f64 {
         let below = if self.is_above_its_like {
             GAP
         } else {
             BELOW + look.name().line_height() * self.x.label.len() as f64 + GAP
         };
         let bottom = self.area.high[1] + below;
-        if is_told {
+        if is_repeated {
             return bottom + GAP;
         }
         let drawn: Vec<(bool, Vec<[f64; 2]>)> = self

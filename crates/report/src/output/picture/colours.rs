@@ -137,18 +137,18 @@ impl Range {
 /// The positions with all but a small share of the area between them.
 fn middle(mut parts: Vec<(f64, f64)>) -> Option<[f64; 2]> {
     parts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let whole: f64 = parts.iter().map(|(_, area)| area).sum();
+    let total: f64 = parts.iter().map(|(_, area)| area).sum();
     let mut passed = 0.0;
-    let mut first_beyond = |share: f64| {
+    let mut first_above = |share: f64| {
         let mut rest = parts.iter();
         passed = 0.0;
-        let found = rest.find(|(_, area)| {
+        let part = rest.find(|(_, area)| {
             passed += area;
-            passed > share * whole
+            passed > share * total
         });
-        found.or(parts.last()).map(|(position, _)| *position)
+        part.or(parts.last()).map(|(position, _)| *position)
     };
-    Some([first_beyond(BEYOND)?, first_beyond(1.0 - BEYOND)?])
+    Some([first_above(BEYOND)?, first_above(1.0 - BEYOND)?])
 }
 
 fn areas(panel: &Panel) -> impl Iterator<Item = f64> {
@@ -183,10 +183,10 @@ mod tests {
                 f64::from(i) / 1000.0
             }
         };
-        let found = range((0..1000).map(peak), Scale::Linear);
-        assert!((found.high - 0.998).abs() < 2e-3, "{found:?}");
+        let computed = range((0..1000).map(peak), Scale::Linear);
+        assert!((computed.high - 0.998).abs() < 2e-3, "{computed:?}");
         assert_eq!(
-            (found.above, found.below, found.low),
+            (computed.above, computed.below, computed.low),
             (Some(50.0), None, 0.0)
         );
         let without = range((0..1000).map(|i| f64::from(i) / 999.0), Scale::Linear);
@@ -195,31 +195,34 @@ mod tests {
 
     #[test]
     fn zero_is_in_the_middle_where_the_values_have_both_signs() {
-        let found = range((-30..=99).map(f64::from), Scale::Linear);
+        let computed = range((-30..=99).map(f64::from), Scale::Linear);
         assert_eq!(
-            (found.low, found.high, found.is_signed),
+            (computed.low, computed.high, computed.is_signed),
             (-99.0, 99.0, true)
         );
-        let found = range((-1..=99).map(f64::from), Scale::Linear);
-        assert_eq!((found.low, found.is_signed), (-1.0, false));
+        let computed = range((-1..=99).map(f64::from), Scale::Linear);
+        assert_eq!((computed.low, computed.is_signed), (-1.0, false));
     }
 
     #[test]
     fn a_logarithmic_bar_marks_what_it_does_not_reach() {
-        let found = range(
+        let computed = range(
             (0..400).map(|i| 10f64.powf(f64::from(i) / -50.0)),
             Scale::Logarithmic,
         );
-        assert_eq!((found.low, found.high), (-6.0, 0.0));
-        assert!(found.below.is_some_and(|least| least < 1e-7));
-        let found = range([0.0, 1.0, 10.0].into_iter(), Scale::Logarithmic);
-        assert_eq!((found.low, found.high, found.below), (0.0, 1.0, Some(0.0)));
+        assert_eq!((computed.low, computed.high), (-6.0, 0.0));
+        assert!(computed.below.is_some_and(|least| least < 1e-7));
+        let computed = range([0.0, 1.0, 10.0].into_iter(), Scale::Logarithmic);
+        assert_eq!(
+            (computed.low, computed.high, computed.below),
+            (0.0, 1.0, Some(0.0))
+        );
     }
 
     #[test]
     fn a_field_of_one_value_or_none_has_a_range() {
-        let found = range([2.0; 3].into_iter(), Scale::Linear);
-        assert!((found.low, found.high) == (1.8, 2.2) && found.above.is_none());
+        let computed = range([2.0; 3].into_iter(), Scale::Linear);
+        assert!((computed.low, computed.high) == (1.8, 2.2) && computed.above.is_none());
         assert_eq!(range([0.0; 3].into_iter(), Scale::Linear).high, 0.5);
         for scale in [Scale::Linear, Scale::Logarithmic] {
             assert_eq!(range([f64::NAN; 3].into_iter(), scale).high, 1.0);

@@ -9,7 +9,7 @@ use super::look::Look;
 pub(super) type Part = [u32; 4];
 
 /// All of a picture.
-pub(super) fn whole(picture: &Pixmap) -> Part {
+pub(super) fn full(picture: &Pixmap) -> Part {
     [0, 0, picture.width(), picture.height()]
 }
 
@@ -51,7 +51,7 @@ pub(super) fn encode(picture: &Pixmap, look: Option<Look>) -> Result<Vec<u8>, En
         }));
     }
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&colours(picture, whole(picture)))?;
+    writer.write_image_data(&colours(picture, full(picture)))?;
     writer.finish()?;
     Ok(bytes)
 }

@@ -49,9 +49,9 @@ impl Layout {
     ) -> Self {
         const ABOUT: f64 = 60.0;
         let [low, high] = bounding_box(positions);
-        let whole = f64::from(look.points(WIDTH));
+        let full_width = f64::from(look.points(WIDTH));
         let scaled = |left: f64| {
-            let most = whole - left - EDGE;
+            let most = full_width - left - EDGE;
             (most / (high[0] - low[0])).min(HIGHEST_PLATE / (high[1] - low[1]))
         };
         let height = scaled(ABOUT) * (high[1] - low[1]);
@@ -61,8 +61,8 @@ impl Layout {
         // The last number may reach beyond the panel.
         let points_per_mm = scaled(left + GAP);
         let panels = points_per_mm * (high[0] - low[0]);
-        let x = Ticks::beside([low[0], high[0]], Scale::Linear, panels, look.number());
-        let title = Title::new(title, look, [left, EDGE], whole - left - EDGE);
+        let x = Ticks::fitting([low[0], high[0]], Scale::Linear, panels, look.number());
+        let title = Title::new(title, look, [left, EDGE], full_width - left - EDGE);
         let needed = panels.max(least).max(title.width());
         Self {
             look,
@@ -75,9 +75,9 @@ impl Layout {
             x,
             y,
             width: if look.is_printed() {
-                whole
+                full_width
             } else {
-                (left + needed + GAP + EDGE).min(whole)
+                (left + needed + GAP + EDGE).min(full_width)
             },
         }
     }

@@ -99,7 +99,7 @@ impl Ticks {
 
 impl Ticks {
     /// As many ticks of a horizontal axis of a length as have room beside one another; of the three fewest only the ends.
-    pub fn beside(limits: [f64; 2], scale: Scale, length: f64, letters: Letters) -> Self {
+    pub fn fitting(limits: [f64; 2], scale: Scale, length: f64, letters: Letters) -> Self {
         const APART: f64 = 10.0;
         let fits = |ticks: &Self| {
             ticks.at.windows(2).all(|pair| {
@@ -134,7 +134,11 @@ fn even(range: [f64; 2], most: usize) -> Vec<f64> {
     let about = |about: usize| round_positions(range, about as f64);
     let few = (FEWEST..=most).rev().map(about);
     let mut few = few.filter(|positions| (FEWEST..=most).contains(&positions.len()));
-    let more = || (FEWEST..20).map(about).find(|found| found.len() >= FEWEST);
+    let more = || {
+        (FEWEST..20)
+            .map(about)
+            .find(|positions| positions.len() >= FEWEST)
+    };
     few.next().or_else(more).unwrap_or_default()
 }
 
@@ -340,9 +344,9 @@ mod tests {
                 let low = 0.37 * f64::from(low) - 7.3;
                 let range = [low, low + 0.0173 * f64::from(width * width)];
                 for most in 4..9 {
-                    let found = labels_of(range, scale, most);
+                    let count = labels_of(range, scale, most);
                     assert!(
-                        (3..=most.max(5)).contains(&found),
+                        (3..=most.max(5)).contains(&count),
                         "{scale:?} {range:?} {most}"
                     );
                 }

@@ -150,7 +150,7 @@ fn centres([from, to]: [f64; 2], count: u32) -> std::ops::Range<u32> {
 
 /// Where a horizontal line enters and leaves a triangle.
 fn span(corners: [[f64; 2]; 3], y: f64) -> Option<[f64; 2]> {
-    let mut found: Option<[f64; 2]> = None;
+    let mut extent: Option<[f64; 2]> = None;
     for [from, to] in [[0, 1], [1, 2], [2, 0]].map(|ends| ends.map(|corner| corners[corner])) {
         let [low, high] = [from[1].min(to[1]), from[1].max(to[1])];
         if y < low || y > high {
@@ -162,10 +162,10 @@ fn span(corners: [[f64; 2]; 3], y: f64) -> Option<[f64; 2]> {
             0.0
         };
         let x = from[0] + along * (to[0] - from[0]);
-        let [left, right] = found.unwrap_or([x, x]);
-        found = Some([left.min(x), right.max(x)]);
+        let [left, right] = extent.unwrap_or([x, x]);
+        extent = Some([left.min(x), right.max(x)]);
     }
-    found
+    extent
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
 use tiny_skia::{Path, PathSegment};
 
 use super::design::DrawResult;
-use super::encode::{colours, whole};
+use super::encode::{colours, full};
 use super::letters::{Face, Letters};
 use super::marks::{Colour, Mark, Pen, Words};
 use super::vectors::Vectors;
@@ -77,7 +77,7 @@ impl Vectors {
         pdf.stream(drawing, &compressed(&content)?)
             .filter(Filter::FlateDecode);
         if let Some(shaded) = &self.image {
-            let bytes = compressed(&colours(shaded, whole(shaded)))?;
+            let bytes = compressed(&colours(shaded, full(shaded)))?;
             let mut object = pdf.image_xobject(image, &bytes);
             object.filter(Filter::FlateDecode);
             object.bits_per_component(8);

@@ -9,7 +9,8 @@ pub fn tests_chart(tests: &[TestData]) -> LineChart {
     let stresses = |data: &TestData| data.observations.iter().map(|one| one.stress).collect();
     let stresses: Vec<Vec<f64>> = tests.iter().map(stresses).collect();
     let named = tests.iter().zip(&stresses);
-    let named = named.map(|(data, own)| (data.clone(), &own[..], data.test.name().to_owned()));
+    let named =
+        named.map(|(data, stress)| (data.clone(), &stress[..], data.test.name().to_owned()));
     let named: Vec<_> = named.collect();
     let courses = Course::all(&named);
     let points = courses

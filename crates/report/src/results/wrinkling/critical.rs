@@ -106,8 +106,11 @@ mod tests {
             };
             bending.critical_stress(part, thickness)
         };
-        let close = |found: f64, expected: f64| {
-            assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+        let close = |computed: f64, expected: f64| {
+            assert!(
+                (computed / expected - 1.0).abs() < 1e-3,
+                "{computed} {expected}"
+            );
         };
         close(critical(5.0, 5.0, 0, 0.0), 4.0 * per * PI * PI / 25.0);
         close(critical(5.0, 500.0, 0, 0.0), 4.0 * per * PI * PI / 25.0);

@@ -73,17 +73,17 @@ impl<'a> Deformed<'a> {
             moments.entry(of_cell[cell]).or_default().add(self, cell);
         }
         for edge in sides().filter(|side| side.len() == 1).map(|side| side[0]) {
-            if let Some(own) = moments.get_mut(&of_cell[edge.cell]) {
-                own.end(self, edge.cell, edge.ends);
+            if let Some(entry) = moments.get_mut(&of_cell[edge.cell]) {
+                entry.end(self, edge.cell, edge.ends);
             }
         }
-        let found: BTreeMap<usize, Part> = moments
+        let shapes: BTreeMap<usize, Part> = moments
             .into_iter()
-            .map(|(part, own)| (part, own.part()))
+            .map(|(part, entry)| (part, entry.part()))
             .collect();
         let of_cell = of_cell.iter().zip(compressed);
         of_cell
-            .map(|(part, is)| found.get(part).filter(|_| *is).copied())
+            .map(|(part, is)| shapes.get(part).filter(|_| *is).copied())
             .collect()
     }
 

@@ -33,10 +33,13 @@ fn a_strut_is_told_from_half_of_its_critical_stress_on() {
     let per_square = (std::f64::consts::PI / 3.96).powi(2) * 0.3 / 9.0 / 0.99;
     let half = (-2.0 * stress / per_square).sqrt();
     for (thickness, share) in [(0.98 * half, 100.0), (1.02 * half, 0.0)] {
-        let found = of(thickness, squeezed);
-        assert!((found.area_percent - share).abs() < 1e-9, "{found:?}");
-        assert!((found.smallest[3] - stress).abs() < 1e-14);
-        let [compression, critical] = found.worst;
+        let wrinkling = of(thickness, squeezed);
+        assert!(
+            (wrinkling.area_percent - share).abs() < 1e-9,
+            "{wrinkling:?}"
+        );
+        assert!((wrinkling.smallest[3] - stress).abs() < 1e-14);
+        let [compression, critical] = wrinkling.worst;
         assert!((compression + stress).abs() < 1e-12);
         // Cells count as squares, which they are not any more by 1 %.
         assert!((critical / (per_square * thickness.powi(2)) - 1.0).abs() < 1e-4);
@@ -125,8 +128,8 @@ fn clamped_sheets_wrinkle_at_the_thickness_of_an_eigenvalue_analysis_within_a_fa
     ] {
         let (mesh, fields) = clamped(aspect, strains);
         for ((strain, u), expected) in strains.iter().zip(&fields).zip(expected) {
-            let found = critical_thickness(&mesh, u) / expected;
-            assert!((0.5..2.0).contains(&found), "{aspect}, {strain}: {found}");
+            let ratio = critical_thickness(&mesh, u) / expected;
+            assert!((0.5..2.0).contains(&ratio), "{aspect}, {strain}: {ratio}");
             let area = |thickness: f64| Wrinkling::new(sheet(thickness), &mesh, u).area_percent;
             assert!(area(0.5 * expected) > 1.0, "{aspect}, {strain}");
             assert_eq!(area(5.0 * expected), 0.0, "{aspect}, {strain}");
@@ -139,8 +142,8 @@ fn a_clamped_sheet_wrinkles_at_a_hundredth_of_a_millimetre_and_not_at_two() {
     // 150 × 50 mm, scaled to a width of 1 mm.
     let (mesh, fields) = clamped(3.0, &[0.3]);
     let warned = |thickness: f64| {
-        let found = Wrinkling::new(sheet(thickness / 50.0), &mesh, &fields[0]);
-        warning([("30 % stretch".to_owned(), found)].into_iter())
+        let wrinkling = Wrinkling::new(sheet(thickness / 50.0), &mesh, &fields[0]);
+        warning([("30 % stretch".to_owned(), wrinkling)].into_iter())
     };
     assert_eq!(warned(2.0), None);
     let thin = warned(0.01).unwrap();

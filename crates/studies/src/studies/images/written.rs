@@ -160,7 +160,7 @@ fn problem(tracked: &TrackedImages) -> Map<String, serde_json::Value> {
 
 fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
     let [x, y] = stretches(frame);
-    let found = json!({
+    let quantities = json!({
         "points": frame.markers.len(),
         "largest_displacement_mm": largest(frame),
         "mean_stretch_x": x,
@@ -169,7 +169,7 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
     });
     Step {
         at: frame.number as f64,
-        models: Map::from_iter([("tracked".to_owned(), found)]),
+        models: Map::from_iter([("tracked".to_owned(), quantities)]),
     }
 }
 
@@ -198,9 +198,9 @@ fn findings(tracked: &TrackedImages) -> Vec<Finding> {
         )
     };
     let remedy = "look at these images: the pattern leaves them, is covered, or changes";
-    let found =
+    let finding =
         (!few.is_empty()).then(|| Finding::warning("lost-points", (message(), remedy.to_owned())));
-    found.into_iter().collect()
+    finding.into_iter().collect()
 }
 
 fn figures(tracked: &TrackedImages, frame: &Frame) -> Vec<Figure> {

@@ -64,7 +64,7 @@ fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
     // Both components of as many markers as are independent.
     let values = 2.0 * of_a.independent.min(of_b.independent);
     let correlation = correlation((frames[0], before), (frames[1], after));
-    let refuted = [before, after].map(|own| own.verdict.answer == Answer::NotExplained);
+    let refuted = [before, after].map(|estimate| estimate.verdict.answer == Answer::NotExplained);
     let common = COMMON[usize::from(refuted.contains(&true))];
     if probability(correlation, common, values) >= LEVEL {
         return;
@@ -101,9 +101,9 @@ fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)
 
 fn sound((frame, estimate): (&Frame, &FieldEstimate)) -> BTreeMap<usize, [f64; 2]> {
     let markers = frame.markers.iter().zip(&estimate.markers);
-    let sound = markers.filter_map(|(marker, own)| {
-        let own = own.filter(|own| !own.outlier)?;
-        Some((marker.number, own.residual))
+    let sound = markers.filter_map(|(marker, estimate)| {
+        let estimate = estimate.filter(|estimate| !estimate.outlier)?;
+        Some((marker.number, estimate.residual))
     });
     sound.collect()
 }
@@ -135,7 +135,7 @@ mod tests {
     }
 
     /// A frame of which so much is left, with noise that correlates between neighbours.
-    fn estimated(left: &[[f64; 2]]) -> FieldEstimate {
+    fn estimated(residuals: &[[f64; 2]]) -> FieldEstimate {
         let marker = |residual: &[f64; 2]| {
             Some(MarkerEstimate {
                 residual: *residual,
@@ -155,7 +155,7 @@ mod tests {
             correlation,
             ..Verdict::default()
         };
-        let markers = left.iter().map(marker).collect();
+        let markers = residuals.iter().map(marker).collect();
         FieldEstimate {
             markers,
             verdict,
@@ -165,7 +165,7 @@ mod tests {
 
     /// How many of 200 frames are not explained whose noise is that of a picture at rest, `rest` times as large as their
     /// own, and that have `misfit` times a field in common with a first frame of such an answer.
-    fn told(rest: f64, misfit: f64, first: Answer) -> usize {
+    fn count_unexplained(rest: f64, misfit: f64, first: Answer) -> usize {
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let frames = [frame(1), frame(2)];
         let mut count = 0;
@@ -179,15 +179,15 @@ mod tests {
                 };
                 (0..MARKERS).map(|_| [one(), one()]).collect()
             };
-            let (at_rest, common, own) = (noise(rest), noise(misfit), [noise(1.0), noise(1.0)]);
-            let left = own.map(|own| -> Vec<[f64; 2]> {
-                let all = own.iter().zip(&at_rest).zip(&common);
-                all.map(|((own, rest), common)| {
-                    [0, 1].map(|axis| own[axis] - rest[axis] + common[axis])
+            let (at_rest, common, noises) = (noise(rest), noise(misfit), [noise(1.0), noise(1.0)]);
+            let residuals = noises.map(|noises| -> Vec<[f64; 2]> {
+                let all = noises.iter().zip(&at_rest).zip(&common);
+                all.map(|((value, rest), common)| {
+                    [0, 1].map(|axis| value[axis] - rest[axis] + common[axis])
                 })
                 .collect()
             });
-            let [mut before, mut after] = left.map(|left| estimated(&left));
+            let [mut before, mut after] = residuals.map(|residuals| estimated(&residuals));
             before.verdict.answer = first;
             compare(frames.each_ref(), [&mut before, &mut after]);
             count += usize::from(!after.is_explained());
@@ -197,52 +197,53 @@ mod tests {
 
     #[test]
     fn noise_of_the_picture_at_rest_is_no_misfit_and_what_both_frames_have_in_common_is() {
-        let told = |rest, misfit| told(rest, misfit, Answer::Correlated);
-        assert_eq!([told(0.0, 0.0), told(1.0, 0.0), told(1.5, 0.0)], [0; 3]);
-        assert!(told(2.0, 0.0) <= 1, "{}", told(2.0, 0.0));
-        assert!(told(1.0, 6.0) >= 195, "{}", told(1.0, 6.0));
+        let count = |rest, misfit| count_unexplained(rest, misfit, Answer::Correlated);
+        assert_eq!([count(0.0, 0.0), count(1.0, 0.0), count(1.5, 0.0)], [0; 3]);
+        assert!(count(2.0, 0.0) <= 1, "{}", count(2.0, 0.0));
+        assert!(count(1.0, 6.0) >= 195, "{}", count(1.0, 6.0));
     }
 
     #[test]
     fn beside_a_frame_that_is_not_explained_less_misfit_is_told_and_noise_is_none() {
-        let told = |rest, misfit| told(rest, misfit, Answer::NotExplained);
-        assert!(told(1.0, 0.0) <= 1, "{}", told(1.0, 0.0));
-        assert!(told(1.0, 3.0) >= 190, "{}", told(1.0, 3.0));
+        let count = |rest, misfit| count_unexplained(rest, misfit, Answer::NotExplained);
+        assert!(count(1.0, 0.0) <= 1, "{}", count(1.0, 0.0));
+        assert!(count(1.0, 3.0) >= 190, "{}", count(1.0, 3.0));
     }
 
     #[test]
     fn a_frame_is_handed_on_when_the_one_after_it_is_known() {
-        let left: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
+        let residuals: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
         let frames = [frame(1), frame(2), frame(3)];
         let mut compared = ComparedFrames::default();
         for (index, frame) in frames.iter().enumerate() {
-            let settled = compared.push(frame, estimated(&left));
-            let settled = settled.map(|(before, found)| (before.number, found.is_explained()));
+            let settled = compared.push(frame, estimated(&residuals));
+            let settled =
+                settled.map(|(before, estimate)| (before.number, estimate.is_explained()));
             assert_eq!(settled, (index > 0).then_some((index, false)));
         }
-        let (last, found) = compared.last().unwrap();
-        assert_eq!((last.number, found.is_explained()), (3, false));
+        let (last, estimate) = compared.last().unwrap();
+        assert_eq!((last.number, estimate.is_explained()), (3, false));
         assert_eq!(compared.into_estimates().len(), 3);
     }
 
     #[test]
     fn few_values_white_noise_and_lost_markers_tell_nothing() {
-        let left: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
+        let residuals: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
         let alike = |change: &dyn Fn(&mut FieldEstimate)| {
-            let [mut before, mut after] = [estimated(&left), estimated(&left)];
+            let [mut before, mut after] = [estimated(&residuals), estimated(&residuals)];
             change(&mut after);
             compare([&frame(1), &frame(2)], [&mut before, &mut after]);
             after.is_explained()
         };
         assert!(!alike(&|_| ()));
-        assert!(alike(&|found| found.verdict.correlation = None));
-        assert!(alike(&|found| found
+        assert!(alike(&|estimate| estimate.verdict.correlation = None));
+        assert!(alike(&|estimate| estimate
             .verdict
             .correlation
             .as_mut()
             .unwrap()
             .independent = 2.0));
-        assert!(alike(&|found| found
+        assert!(alike(&|estimate| estimate
             .markers
             .iter_mut()
             .for_each(|marker| *marker = None)));

@@ -82,15 +82,18 @@ mod tests {
         .unwrap();
         let count = |name: &str| mesh.groups()[name].nodes.len();
         assert_eq!((count("square"), count("disc")), (9, 5));
-        let told = name(&mut mesh, &[("left".into(), disc)])
+        let message = name(&mut mesh, &[("left".into(), disc)])
             .unwrap_err()
             .to_string();
-        assert!(told.contains("already has a group `left`"), "{told}");
+        assert!(message.contains("already has a group `left`"), "{message}");
         let far = Area::of(&[50.0, 2.0, 1.0]).unwrap();
-        let told = name(&mut mesh, &[("far".into(), far)])
+        let message = name(&mut mesh, &[("far".into(), far)])
             .unwrap_err()
             .to_string();
-        assert!(told.contains("too few nodes of the mesh: 0"), "{told}");
+        assert!(
+            message.contains("too few nodes of the mesh: 0"),
+            "{message}"
+        );
         assert_eq!(Area::of(&[3.0, 1.0, 1.0, 3.0]), None);
     }
 }

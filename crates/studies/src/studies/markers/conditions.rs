@@ -106,7 +106,7 @@ impl Conditions {
     /// [`Error::Input`] with what does not.
     pub fn suit(&mut self, mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
         let is_kept =
-            |frame: &Option<usize>| frame.is_none_or(|own| !series.at_rest.contains(&own));
+            |frame: &Option<usize>| frame.is_none_or(|number| !series.at_rest.contains(&number));
         self.forces.retain(|(frame, _)| is_kept(frame));
         self.check(mesh)?;
         self.check_frames(series)
@@ -163,9 +163,9 @@ impl Conditions {
                 "name the testing machine's table with --forces FILE",
             )),
             (Some(path), _) => {
-                let (forces, told) = machine::forces(path, &self.force_columns, series)?;
+                let (forces, warnings) = machine::forces(path, &self.force_columns, series)?;
                 self.forces.extend(forces);
-                Ok(told)
+                Ok(warnings)
             }
         }
     }

@@ -166,9 +166,9 @@ mod tests {
             (grid(&waisted, 0.0), true),
             (grid(&waisted, 0.3), false),
         ] {
-            let found = Outline::of_points(&positions).unwrap();
+            let traced = Outline::of_points(&positions).unwrap();
             assert_eq!(
-                is_beside_grid(&positions, &found.outline, found.spacing),
+                is_beside_grid(&positions, &traced.outline, traced.spacing),
                 expected
             );
         }

@@ -19,7 +19,7 @@ pub fn once(
         }
     }
     let doubts = kinds.iter().filter_map(|kind| together(all, kind));
-    doubts.map(|found| Finding::doubt(rule, found)).collect()
+    doubts.map(|doubt| Finding::doubt(rule, doubt)).collect()
 }
 
 fn together(all: &[usize], kind: &[OfFrame]) -> Option<Found> {

@@ -51,11 +51,11 @@ impl MarkerStudy {
         }
         let numbers = self.frame_numbers();
         let findings = RULES.iter().flat_map(|(name, rule)| {
-            let found = self.frames_with(estimates).filter_map(|(frame, estimate)| {
+            let by_frame = self.frames_with(estimates).filter_map(|(frame, estimate)| {
                 let (message, remedy) = rule(self, estimate)?;
                 Some((frame.number, (message, remedy.to_owned())))
             });
-            once(&numbers, name, found)
+            once(&numbers, name, by_frame)
         });
         self.doubts.iter().cloned().chain(findings).collect()
     }
@@ -73,10 +73,10 @@ pub fn remarks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> 
     let rules = [gross_errors, uneven_noise];
     let findings = rules.iter().flat_map(|rule| {
         let frames = study.frames_with(estimates);
-        let found = frames.filter_map(|(frame, estimate)| {
+        let by_frame = frames.filter_map(|(frame, estimate)| {
             Some((frame.number, (rule(study, estimate)?, String::new())))
         });
-        once(&numbers, "", found)
+        once(&numbers, "", by_frame)
     });
     findings.map(|finding| finding.message).collect()
 }

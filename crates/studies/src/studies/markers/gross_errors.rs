@@ -38,19 +38,19 @@ impl MarkerStudy {
         knowledge: Knowledge,
         solve: &dyn Fn(&Knowledge) -> Result<FieldEstimate, Error>,
     ) -> Result<FieldEstimate, Error> {
-        let found = solve(&Knowledge {
+        let estimate = solve(&Knowledge {
             ends_at_gross_errors: self.conditions.robust.is_none(),
             ..knowledge.clone()
         });
-        let in_doubt = match &found {
-            Ok(found) => {
-                has_gross_errors(found)
-                    || MarkerEstimate::scatter_by_median(&found.markers) < IN_DOUBT
+        let in_doubt = match &estimate {
+            Ok(estimate) => {
+                has_gross_errors(estimate)
+                    || MarkerEstimate::scatter_by_median(&estimate.markers) < IN_DOUBT
             }
             Err(fault) => matches!(fault, Error::Solve { .. }),
         };
         if self.conditions.robust.is_some() || !in_doubt {
-            return found.map(|found| judged_beside(found, None));
+            return estimate.map(|estimate| judged_with(estimate, None));
         }
         let robust = Knowledge {
             robust: Robust::Tukey,
@@ -59,12 +59,12 @@ impl MarkerStudy {
         match solve(&robust).ok().filter(has_gross_errors) {
             Some(without) if !has_many(&without) || are_scattered(markers, &without) => Ok(without),
             without => {
-                let has_ended = |found: &FieldEstimate| found.displacement.is_empty();
-                let complete = match found {
-                    Ok(found) if has_ended(&found) => solve(&knowledge),
-                    found => found,
+                let has_ended = |estimate: &FieldEstimate| estimate.displacement.is_empty();
+                let complete = match estimate {
+                    Ok(estimate) if has_ended(&estimate) => solve(&knowledge),
+                    estimate => estimate,
                 };
-                complete.map(|found| judged_beside(found, without))
+                complete.map(|estimate| judged_with(estimate, without))
             }
         }
     }
@@ -72,21 +72,21 @@ impl MarkerStudy {
 
 /// An estimate with full weights for all markers, beside that without gross errors where there are many that lie together: what the
 /// sound markers contradict is not explained, and gross errors that make up the noise leave nothing to judge.
-fn judged_beside(mut found: FieldEstimate, without: Option<FieldEstimate>) -> FieldEstimate {
-    let noise = found.noise;
-    let in_doubt = without.is_some() || has_hidden(&found);
-    let verdict = &mut found.verdict;
+fn judged_with(mut estimate: FieldEstimate, without: Option<FieldEstimate>) -> FieldEstimate {
+    let noise = estimate.noise;
+    let in_doubt = without.is_some() || has_hidden(&estimate);
+    let verdict = &mut estimate.verdict;
     if verdict.answer == Answer::NotExplained || !in_doubt {
-        return found;
+        return estimate;
     }
-    match without.map(|own| own.verdict) {
-        Some(own) if own.answer == Answer::NotExplained => *verdict = own,
+    match without.map(|other| other.verdict) {
+        Some(other) if other.answer == Answer::NotExplained => *verdict = other,
         _ => {
             verdict.answer = Answer::Undecided;
             verdict.reasons.push(Reason::GrossErrors(noise));
         }
     }
-    found
+    estimate
 }
 
 fn has_gross_errors(estimate: &FieldEstimate) -> bool {
@@ -112,16 +112,16 @@ fn has_hidden(estimate: &FieldEstimate) -> bool {
 fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
     let pairs = markers.iter().zip(&estimate.markers);
     let used: Vec<_> = pairs
-        .filter_map(|(marker, own)| Some((marker.position, own.as_ref()?.outlier)))
+        .filter_map(|(marker, estimate)| Some((marker.position, estimate.as_ref()?.outlier)))
         .collect();
     let positions: Vec<[f64; 2]> = used.iter().map(|(position, _)| *position).collect();
     let around = nearest(&positions, AROUND);
     let outliers = (0..used.len()).filter(|index| used[*index].1);
     let (mut count, mut alike, mut neighbours) = (0.0, 0.0, 0.0);
-    for own in outliers {
+    for index in outliers {
         count += 1.0;
-        neighbours += around[own].len() as f64;
-        alike += around[own].iter().filter(|other| used[**other].1).count() as f64;
+        neighbours += around[index].len() as f64;
+        alike += around[index].iter().filter(|other| used[**other].1).count() as f64;
     }
     let share = count / used.len() as f64;
     // Each pair is counted from both ends.
@@ -172,7 +172,7 @@ mod tests {
     fn noise_that_is_made_up_by_gross_errors_explains_nothing() {
         let judged = |far: f64, without: Option<Answer>| {
             let without = without.map(|answer| estimated(answer, 1.0));
-            judged_beside(estimated(Answer::Correlated, far), without)
+            judged_with(estimated(Answer::Correlated, far), without)
         };
         // Noise alone, and noise of which a tenth of the markers makes up nearly all.
         assert_eq!(judged(1.2, None).verdict.answer, Answer::Correlated);

@@ -123,7 +123,9 @@ fn forces_note(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<Strin
     if shown.len() < all {
         notes.push("Forces of the last frames; `forces.csv` has all.".to_owned());
     }
-    let mut without = shown.iter().filter(|(_, own, _)| !own.has_intervals());
+    let mut without = shown
+        .iter()
+        .filter(|(_, estimate, _)| !estimate.has_intervals());
     let count = without.clone().count();
     notes.extend(without.next_back().map(|(frame, estimate, _)| {
         let reason = reason(estimate);

@@ -53,10 +53,10 @@ pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Ste
 }
 
 fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Value {
-    let of = |found: &Estimate| of_estimate(found, estimate.has_intervals());
+    let of = |value: &Estimate| of_estimate(value, estimate.has_intervals());
     let parameters = estimate.parameters.iter();
     let parameters = parameters
-        .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of(found) }));
+        .map(|(key, unit, value)| json!({ "key": key, "unit": unit, "found": of(value) }));
     let checks = estimate.force_checks.iter().map(|check| {
         json!({
             "edge": check.measured.edge,
@@ -93,7 +93,7 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
 }
 
 fn forces(estimate: &FieldEstimate) -> Vec<Value> {
-    let of = |found: &Estimate| of_estimate(found, estimate.has_intervals());
+    let of = |value: &Estimate| of_estimate(value, estimate.has_intervals());
     let change = |index: usize| {
         let change = estimate.scale_change.forces.get(index)?;
         Some(change.map(|change| 0.01 * change))
@@ -111,10 +111,10 @@ fn forces(estimate: &FieldEstimate) -> Vec<Value> {
 }
 
 /// A value with its uncertainty, which only an explained field has.
-pub fn of_estimate(found: &Estimate, explained: bool) -> Value {
+pub fn of_estimate(value: &Estimate, explained: bool) -> Value {
     json!({
-        "value": found.value,
-        "standard_error": explained.then_some(found.standard_error),
-        "interval": explained.then_some(found.interval),
+        "value": value.value,
+        "standard_error": explained.then_some(value.standard_error),
+        "interval": explained.then_some(value.interval),
     })
 }

@@ -228,30 +228,32 @@ mod tests {
     #[test]
     fn forces_are_matched_by_frame_or_between_times() {
         let by_frame = "frame,ux [mm],Load [N]\n2,1,-5\n7,2,8\n";
-        let (found, told) = of(by_frame, "-Load", &[(7, None), (2, None), (3, None)]).unwrap();
-        let values: Vec<_> = found
+        let (forces, warnings) = of(by_frame, "-Load", &[(7, None), (2, None), (3, None)]).unwrap();
+        let values: Vec<_> = forces
             .iter()
             .map(|(frame, one)| (frame.unwrap(), one.force))
             .collect();
         assert_eq!(values, [(7, -8.0), (2, 5.0)]);
-        assert!((found[0].1.standard_deviation - 0.08).abs() < 1e-12);
+        assert!((forces[0].1.standard_deviation - 0.08).abs() < 1e-12);
         assert!(
-            told[0].to_string().contains("no force for the frames 3"),
-            "{told:?}"
+            warnings[0]
+                .to_string()
+                .contains("no force for the frames 3"),
+            "{warnings:?}"
         );
-        let (found, told) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
-        let values: Vec<f64> = found.iter().map(|(_, one)| one.force).collect();
+        let (forces, warnings) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
+        let values: Vec<f64> = forces.iter().map(|(_, one)| one.force).collect();
         assert!(
             (values[0] - 2.0).abs() < 1e-12 && (values[1] - 3.0).abs() < 1e-12,
             "{values:?}"
         );
-        assert!(told.is_empty());
+        assert!(warnings.is_empty());
     }
 
     #[test]
     fn what_cannot_be_matched_is_told_with_its_place() {
         let frame = &[(1, Some(1.0))][..];
-        for (text, column, frames, told) in [
+        for (text, column, frames, expected) in [
             (
                 BY_TIME,
                 "Kraft",
@@ -319,8 +321,8 @@ mod tests {
                 "matched by time, but frame 4 has none",
             ),
         ] {
-            let found = of(text, column, frames).unwrap_err().to_string();
-            assert!(found.contains(told), "{told}: {found}");
+            let message = of(text, column, frames).unwrap_err().to_string();
+            assert!(message.contains(expected), "{expected}: {message}");
         }
     }
 }

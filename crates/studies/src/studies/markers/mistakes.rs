@@ -204,7 +204,9 @@ fn freed<'a>(meant: &'a FieldEstimate, written: &FieldEstimate) -> impl Iterator
     let both = meant.edges.iter().zip(&written.edges);
     let freed = both.filter(move |(meant, written)| {
         let refused = written.condition != EdgeCondition::Free;
-        let is_sure = written.probability.is_some_and(|own| own < surely);
+        let is_sure = written
+            .probability
+            .is_some_and(|probability| probability < surely);
         meant.condition == EdgeCondition::Free && refused && is_sure
     });
     freed.map(|(edge, _)| &*edge.edge)
@@ -244,7 +246,11 @@ mod tests {
     use crate::studies::markers::{Conditions, MeshSource, Request};
 
     /// What is said of a strip of 60 mm × 20 mm with these stretches, written with a mistake or none, and the answer.
-    fn told([x, y]: [f64; 2], noise: f64, mistake: Option<Mistake>) -> (Option<String>, Answer) {
+    fn doubt_and_answer(
+        [x, y]: [f64; 2],
+        noise: f64,
+        mistake: Option<Mistake>,
+    ) -> (Option<String>, Answer) {
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let mut drawn =
             || -> f64 { noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };
@@ -299,12 +305,12 @@ mod tests {
             for noise in [0.0, 0.005] {
                 let free = [stretch, stretch.sqrt().recip()];
                 for mistake in Mistake::ALL {
-                    let (doubt, answer) = told(free, noise, Some(mistake));
+                    let (doubt, answer) = doubt_and_answer(free, noise, Some(mistake));
                     let case = format!("{mistake:?} {stretch} {noise}: {doubt:?}");
                     assert_eq!(answer, Answer::NotExplained, "{case}");
                     assert!(doubt.unwrap().contains(&mistake.words().0), "{case}");
                 }
-                let (doubt, answer) = told(free, noise, None);
+                let (doubt, answer) = doubt_and_answer(free, noise, None);
                 assert_ne!(answer, Answer::NotExplained);
                 assert_eq!(doubt, None, "{stretch} {noise}");
             }
@@ -315,7 +321,7 @@ mod tests {
     fn a_strip_that_is_pulled_along_both_axes_holds_no_mistake() {
         for stretches in [[1.3, 1.1], [1.2, 1.2], [1.3, 1.0], [1.1, 1.02]] {
             for noise in [0.0, 0.02] {
-                let (doubt, answer) = told(stretches, noise, None);
+                let (doubt, answer) = doubt_and_answer(stretches, noise, None);
                 assert_eq!(doubt, None, "{stretches:?} {noise}");
                 assert_ne!(answer, Answer::NotExplained, "{stretches:?} {noise}");
             }

@@ -66,9 +66,9 @@ pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
     const NEIGHBOURS: usize = 8;
     let pairs = frame.markers.iter().zip(&estimate.markers).enumerate();
     let sound: Vec<_> = pairs
-        .filter_map(|(index, (marker, own))| {
-            let own = own.filter(|own| !own.outlier)?;
-            Some((index, marker.position, own.residual))
+        .filter_map(|(index, (marker, estimate))| {
+            let estimate = estimate.filter(|estimate| !estimate.outlier)?;
+            Some((index, marker.position, estimate.residual))
         })
         .collect();
     let positions: Vec<[f64; 2]> = sound.iter().map(|(_, position, _)| *position).collect();

@@ -31,9 +31,9 @@ impl MarkerStudy {
                 ));
             };
             watch(&format!("cells of {} mm", decimals(size, 4)));
-            let found = study.estimate_frame(most_moved(&study)?)?;
-            let share = found.coarse_share(&study.mesh);
-            let asked = found.verdict.asks_for_finer_mesh();
+            let estimate = study.estimate_frame(most_moved(&study)?)?;
+            let share = estimate.coarse_share(&study.mesh);
+            let asked = estimate.verdict.asks_for_finer_mesh();
             if share <= COARSE && !asked {
                 return Ok(study);
             }
@@ -73,7 +73,7 @@ fn most_moved(study: &MarkerStudy) -> Result<&Frame, Error> {
 /// Where the mesh rather than the noise makes the intervals of stress wide.
 pub(super) fn remark(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
     let shares = field.frames_with(estimates);
-    let shares = shares.map(|(frame, found)| (frame.number, found.coarse_share(&field.mesh)));
+    let shares = shares.map(|(frame, estimate)| (frame.number, estimate.coarse_share(&field.mesh)));
     let (number, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (share > COARSE).then(|| {
         let remedy = match field.cell_size {

@@ -31,8 +31,8 @@ pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Findi
         ));
     }
     // The verdict has lines of its own, and a mistake stands before all figures.
-    let told_elsewhere = |doubt: &&Finding| [NOT_EXPLAINED, MISTAKE].contains(&doubt.rule);
-    for doubt in doubts.iter().filter(|doubt| !told_elsewhere(doubt)) {
+    let listed_elsewhere = |doubt: &&Finding| [NOT_EXPLAINED, MISTAKE].contains(&doubt.rule);
+    for doubt in doubts.iter().filter(|doubt| !listed_elsewhere(doubt)) {
         lines.push(format!("doubtful: {}", doubt.message));
         lines.extend((!doubt.remedy.is_empty()).then(|| format!("  {}", doubt.remedy)));
     }
@@ -153,35 +153,37 @@ fn frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> [Block; 2] {
     if study.coarse.is_some() {
         let table = Table::of(frames)
             .column("frame", |(frame, _)| frame.number.to_string())
-            .column("given nodes", |(_, own)| used(own).to_string())
-            .column("correction, root mean square [mm]", |(_, own)| {
-                decimals(residual_rms(own), 5)
+            .column("given nodes", |(_, estimate)| used(estimate).to_string())
+            .column("correction, root mean square [mm]", |(_, estimate)| {
+                decimals(residual_rms(estimate), 5)
             })
-            .column("largest [mm]", |(_, own)| {
-                decimals(largest_correction(own), 5)
+            .column("largest [mm]", |(_, estimate)| {
+                decimals(largest_correction(estimate), 5)
             });
         return [table.block(), Block::paragraph(TRANSFERRED)];
     }
-    let noise = |own: &FieldEstimate| match own.noise_ratio {
-        _ if own.known_noise => "given",
+    let noise = |estimate: &FieldEstimate| match estimate.noise_ratio {
+        _ if estimate.known_noise => "given",
         Some(_) => "given, scaled",
         None => "estimated",
     };
     let table = Table::of(frames)
         .column("frame", |(frame, _)| frame.number.to_string())
-        .column("markers", |(_, own)| used(own).to_string())
-        .column("outliers", |(_, own)| outliers(own).to_string())
-        .column("noise [mm]", |(_, own)| decimals(own.noise, 5))
-        .column("noise is", |(_, own)| noise(own).to_owned())
-        .column("residual [mm]", |(_, own)| decimals(residual_rms(own), 5))
-        .column("effective parameters", |(_, own)| {
-            format!("{:.1}", own.effective_parameters)
+        .column("markers", |(_, estimate)| used(estimate).to_string())
+        .column("outliers", |(_, estimate)| outliers(estimate).to_string())
+        .column("noise [mm]", |(_, estimate)| decimals(estimate.noise, 5))
+        .column("noise is", |(_, estimate)| noise(estimate).to_owned())
+        .column("residual [mm]", |(_, estimate)| {
+            decimals(residual_rms(estimate), 5)
         })
-        .column("largest standard error [mm]", |(_, own)| {
-            let error = own.has_intervals().then(|| largest_error(own));
+        .column("effective parameters", |(_, estimate)| {
+            format!("{:.1}", estimate.effective_parameters)
+        })
+        .column("largest standard error [mm]", |(_, estimate)| {
+            let error = estimate.has_intervals().then(|| largest_error(estimate));
             error.map_or("no interval".to_owned(), |error| decimals(error, 5))
         })
-        .column("steps", |(_, own)| own.steps.to_string());
+        .column("steps", |(_, estimate)| estimate.steps.to_string());
     [table.block(), Block::paragraph(EXPLANATION)]
 }
 

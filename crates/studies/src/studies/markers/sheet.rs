@@ -21,7 +21,10 @@ impl MarkerStudy {
     fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
         match &self.regressed {
             Some(regressed) if !estimate.parameters.is_empty() => {
-                let values = estimate.parameters.iter().map(|(.., found)| found.value);
+                let values = estimate
+                    .parameters
+                    .iter()
+                    .map(|(.., parameter)| parameter.value);
                 regressed.at(&values.collect::<Vec<_>>())
             }
             _ => Arc::clone(&self.card.law),

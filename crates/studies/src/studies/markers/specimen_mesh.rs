@@ -64,7 +64,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
         &format!("a field of {markers} markers"),
         "use every other marker, or fewer frames",
     )?;
-    let whole = |mesh: &Mesh, position: &str| {
+    let afford_mesh = |mesh: &Mesh, position: &str| {
         let need = need(mesh.cell_count() as f64, mesh.nodes.len() as f64, frames);
         affords(
             request,
@@ -76,7 +76,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
     match (&request.mesh, &field.mesh) {
         (MeshSource::File(path, reading), _) => {
             let (mesh, warnings) = import(path, *reading).map_err(Error::Input)?;
-            whole(&mesh, &format!("of {}", path.display()))?;
+            afford_mesh(&mesh, &format!("of {}", path.display()))?;
             let origin = format!("from {}", path.display());
             Ok(SpecimenMesh {
                 warnings,
@@ -85,7 +85,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
         }
         (MeshSource::Outline(path), _) => in_outline(request, path, field),
         (MeshSource::Data, Some(mesh)) => {
-            whole(mesh, "of the field")?;
+            afford_mesh(mesh, "of the field")?;
             Ok(of_field(mesh))
         }
         (MeshSource::Data, None) => match &request.images.mask {
@@ -139,7 +139,7 @@ fn inside(
         .map_err(|reason| Error::input(format!("{}: {reason}", path.display()), hint))?;
     let markers = field.series.positions().len() as f64;
     let spacing = (outline.area() / markers).sqrt();
-    let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
+    let (mesh, size) = mesh_inside(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!("made inside the {what} {}", path.display());
     Ok(SpecimenMesh {
         cell_size: Some(size),
@@ -165,11 +165,11 @@ fn of_field(mesh: &Mesh) -> SpecimenMesh {
 /// A mesh inside the outline of the markers.
 fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
     let (positions, in_gaps) = positions(&field.series, request.holes);
-    let mut found = Outline::of_points(&positions).map_err(no_mesh)?;
+    let mut traced = Outline::of_points(&positions).map_err(no_mesh)?;
     let mut warnings = Vec::new();
-    match (found.outline.holes.len(), request.holes) {
+    match (traced.outline.holes.len(), request.holes) {
         (0, _) => {}
-        (_, false) => found.outline.holes.clear(),
+        (_, false) => traced.outline.holes.clear(),
         (count, true) => {
             let filled = match in_gaps {
                 0 => String::new(),
@@ -182,11 +182,11 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
             warnings.push(Diagnostic::warning("", message).hint(hint));
         }
     }
-    let spacing = found.spacing;
-    let beside_grid = is_beside_grid(&positions, &found.outline, spacing);
-    let reasons = std::mem::take(&mut found.doubts).into_iter();
-    let edge = EdgePlace::of(request, &field.understood, found, beside_grid)?;
-    let (mesh, size) = made(request, &edge.outline, spacing, field.series.frames.len())?;
+    let spacing = traced.spacing;
+    let beside_grid = is_beside_grid(&positions, &traced.outline, spacing);
+    let reasons = std::mem::take(&mut traced.doubts).into_iter();
+    let edge = EdgePlace::of(request, &field.understood, traced, beside_grid)?;
+    let (mesh, size) = mesh_inside(request, &edge.outline, spacing, field.series.frames.len())?;
     let origin = format!(
         "made inside the outline of the markers, which are about {} mm apart{}",
         decimals(spacing, 4),
@@ -210,21 +210,21 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
 /// The places that tell of the outline: those of lost markers too, but for those in gaps that are holes without them, if gaps are
 /// holes; and how many these are. Where so many are lost that the others are scattered, gaps are no holes.
 fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
-    let found = series.places_of_found();
+    let places = series.places_of_found();
     let mut lost = series.lost.clone();
     if gaps_are_holes && !lost.is_empty() {
-        let outline = Outline::of_points(&found).ok();
-        if let Some(own) = outline.filter(|own| !own.is_scattered) {
-            lost.retain(|position| !own.outline.has_in_a_hole(*position));
+        let outline = Outline::of_points(&places).ok();
+        if let Some(traced) = outline.filter(|traced| !traced.is_scattered) {
+            lost.retain(|position| !traced.outline.has_in_a_hole(*position));
         }
     }
     let in_gaps = series.lost.len() - lost.len();
-    (found.into_iter().chain(lost).collect(), in_gaps)
+    (places.into_iter().chain(lost).collect(), in_gaps)
 }
 
 /// A mesh inside an outline, and the size of its cells in mm. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
 /// the specimen and at most about 20,000 are made.
-fn made(
+fn mesh_inside(
     request: &Request,
     outline: &Outline,
     spacing: f64,

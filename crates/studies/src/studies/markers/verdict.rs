@@ -75,11 +75,11 @@ pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
         lines.push(words.to_owned());
     }
     lines.extend(finer_mesh(study, &estimate.verdict));
-    let left = estimate.verdict.residual_rms.filter(|_| !trials.is_empty());
-    lines.extend(left.map(|left| {
+    let residual_rms = estimate.verdict.residual_rms.filter(|_| !trials.is_empty());
+    lines.extend(residual_rms.map(|residual_rms| {
         format!(
             "without outliers the residual is {} mm; in one linearised step it would be",
-            decimals(left, 5)
+            decimals(residual_rms, 5)
         )
     }));
     lines.extend(trials.iter().take(SHOWN).map(|trial| {
@@ -143,8 +143,8 @@ pub(super) fn reasons(verdict: &Verdict) -> Vec<String> {
 }
 
 /// A residual that is known, in mm.
-fn residual(left: f64) -> Option<String> {
-    left.is_finite().then(|| decimals(left, 5))
+fn residual(rms: f64) -> Option<String> {
+    rms.is_finite().then(|| decimals(rms, 5))
 }
 
 /// An alternative in words; an outline made from markers is moved by their distance from the edge.
@@ -188,22 +188,24 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     };
     let table = Table::of(study.frames_with(estimates))
         .column("frame", |(frame, _)| frame.number.to_string())
-        .column("verdict", |(_, own)| own.verdict.answer.words().to_owned())
-        .column_if(is_correlated, "correlation length [mm]", |(_, own)| {
-            of(own, |one| decimals(one.length, 4))
+        .column("verdict", |(_, estimate)| {
+            estimate.verdict.answer.words().to_owned()
+        })
+        .column_if(is_correlated, "correlation length [mm]", |(_, estimate)| {
+            of(estimate, |one| decimals(one.length, 4))
         })
         .column_if(
             is_correlated,
             "correlated share of the variance",
-            |(_, own)| of(own, |one| format!("{:.2}", one.share)),
+            |(_, estimate)| of(estimate, |one| format!("{:.2}", one.share)),
         )
         .column_if(
             is_correlated,
             "equivalent independent markers",
-            |(_, own)| of(own, |one| format!("{:.1}", one.independent)),
+            |(_, estimate)| of(estimate, |one| format!("{:.1}", one.independent)),
         )
-        .column_if(has_reasons, "reason", |(_, own)| {
-            reasons(&own.verdict).join("; ")
+        .column_if(has_reasons, "reason", |(_, estimate)| {
+            reasons(&estimate.verdict).join("; ")
         });
     let mut blocks = vec![
         Block::heading("Verdict"),
@@ -219,7 +221,7 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         let as_it_is = estimate
             .verdict
             .residual_rms
-            .map(|left| ["as it is".to_owned(), decimals(left, 5), String::new()]);
+            .map(|rms| ["as it is".to_owned(), decimals(rms, 5), String::new()]);
         let trials = estimate.verdict.trials.iter().map(|trial| {
             [
                 trial_words(study, trial),
@@ -229,8 +231,8 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         });
         let table = Table::of(as_it_is.into_iter().chain(trials))
             .column("alternative", |[words, ..]| words.clone())
-            .column("residual without outliers [mm]", |[_, left, _]| {
-                left.clone()
+            .column("residual without outliers [mm]", |[_, residual, _]| {
+                residual.clone()
             })
             .column("probability", |[.., probability]| probability.clone());
         blocks.push(table.block());

@@ -207,8 +207,9 @@ fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let positions: Vec<[f64; 2]> = all.iter().map(|marker| marker.position).collect();
     let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
     let numbers = all.iter().map(|marker| marker.number as f64);
-    let of =
-        |name, position: usize| Array::scalars(name, residuals(estimate).map(|own| own[position]));
+    let of = |name, position: usize| {
+        Array::scalars(name, residuals(estimate).map(|residual| residual[position]))
+    };
     let differences = residuals(estimate).flat_map(|[x, y, ..]| [x, y]);
     let misfit = misfits(frame, estimate).into_iter().flatten();
     Grid::scattered(&positions, &measured).with([

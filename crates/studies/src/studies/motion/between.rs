@@ -20,13 +20,13 @@ pub fn with_cubics(instants: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let between = instants.windows(2).flat_map(|pair| {
         let [[t0, x0, v0], [t1, x1, v1]] = [pair[0], pair[1]];
         let h = t1 - t0;
-        let way = (x1 - x0) / h;
-        let fastest = way.abs().max(v0.abs()).max(v1.abs());
-        let is_told = (way - 0.5 * (v0 + v1)).abs() <= FAR * fastest;
+        let slope = (x1 - x0) / h;
+        let fastest = slope.abs().max(v0.abs()).max(v1.abs());
+        let is_smooth = (slope - 0.5 * (v0 + v1)).abs() <= FAR * fastest;
         (0..PARTS).map(move |part| {
             let s = part as f64 / PARTS as f64;
             let r = 1.0 - s;
-            if !is_told {
+            if !is_smooth {
                 return [t0 + s * h, r * x0 + s * x1, r * v0 + s * v1];
             }
             let x =
@@ -47,8 +47,8 @@ mod tests {
     /// A ramp that begins and ends between instants.
     #[test]
     fn what_instants_do_not_tell_is_straight() {
-        let found = with_cubics(&[[0.0, 0.0, 0.0], [1.0, 8.0, 30.0], [2.0, 15.0, 0.0]]);
-        let most = found.iter().fold(0.0, |most: f64, [_, x, _]| most.max(*x));
+        let points = with_cubics(&[[0.0, 0.0, 0.0], [1.0, 8.0, 30.0], [2.0, 15.0, 0.0]]);
+        let most = points.iter().fold(0.0, |most: f64, [_, x, _]| most.max(*x));
         assert!((most - 15.0).abs() < 1e-12, "{most}");
     }
 
@@ -66,9 +66,9 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 20.0)
             .map(|t| [t, t.sin(), t.cos()])
             .collect();
-        let found = with_cubics(&twenty_a_period);
-        assert_eq!(found.len(), 20 * PARTS + 1);
-        for [t, x, v] in found {
+        let points = with_cubics(&twenty_a_period);
+        assert_eq!(points.len(), 20 * PARTS + 1);
+        for [t, x, v] in points {
             assert!(
                 (x - t.sin()).abs() < 1e-4 && (v - t.cos()).abs() < 1e-3,
                 "{t}"

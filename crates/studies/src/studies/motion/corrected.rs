@@ -93,17 +93,18 @@ impl MovingSheet {
             .map(|field| onto_mesh.apply(field))
             .collect();
         let report = |count: usize| progress.tell(&self.at("corrector", step * (count - 1) as f64));
-        let (found, fault) = match equation.correct(&data, &motion.start, self.windows(), &report) {
-            Ok(found) => (found, None),
-            Err(end) => (*end.corrected, Some(end.fault)),
-        };
-        let reached = step * (found.displacement.len() - 1) as f64;
+        let (corrected, fault) =
+            match equation.correct(&data, &motion.start, self.windows(), &report) {
+                Ok(corrected) => (corrected, None),
+                Err(end) => (*end.corrected, Some(end.fault)),
+            };
+        let reached = step * (corrected.displacement.len() - 1) as f64;
         let error = |step: String, fault| Error::Solve {
             model: model.name.clone(),
             step,
             fault,
         };
-        let instants = instants(&motion, &found.displacement, within, step);
+        let instants = instants(&motion, &corrected.displacement, within, step);
         let instants =
             instants.map_err(|fault| error("the force of the supports".into(), fault))?;
         let end = fault.map(|fault| error(format!("time {} s", number(reached)), fault));
@@ -112,7 +113,7 @@ impl MovingSheet {
                 "The corrector moves the springs' motion to the nearest motion that satisfies the sheet's equation of motion at every three \
                  consecutive instants, with {within} steps per interval: {} Newton steps, {} factorisations. Because the start is known, the result \
                  does not depend on the springs.",
-                found.iterations, found.factorisations
+                corrected.iterations, corrected.factorisations
             ),
             motion: (!instants.is_empty()).then(|| self.corrected(&mesh, instants, clock)),
             end,
@@ -185,7 +186,7 @@ fn hermite(pair: &[Instant], s: f64) -> Vec<f64> {
     let shares = [r * r * (1.0 + 2.0 * s), s * s * (1.0 + 2.0 * r)];
     let rates = [length * s * r * r, -length * s * s * r];
     let value = |unknown: usize| {
-        let own = |end: usize| {
+        let term = |end: usize| {
             let Instant {
                 displacement,
                 velocity,
@@ -193,7 +194,7 @@ fn hermite(pair: &[Instant], s: f64) -> Vec<f64> {
             } = &pair[end];
             shares[end] * displacement[unknown] + rates[end] * velocity[unknown]
         };
-        own(0) + own(1)
+        term(0) + term(1)
     };
     (0..pair[0].displacement.len()).map(value).collect()
 }
@@ -245,8 +246,8 @@ mod tests {
         for (i, field) in fields.iter().enumerate() {
             assert!((field[0] - position(0.1 * i as f64)).abs() < 1e-14, "{i}");
         }
-        let found = velocity(&fields, 5, 0.1, &[]);
-        assert!((found[0] - speed(0.5)).abs() < 6e-3);
+        let computed = velocity(&fields, 5, 0.1, &[]);
+        assert!((computed[0] - speed(0.5)).abs() < 6e-3);
     }
 
     /// The distance from a mark, beside it at every place within the steps; at the mark it is the velocity before.
@@ -257,13 +258,16 @@ mod tests {
                 .map(|i| vec![(f64::from(i) - mark).abs()])
                 .collect();
             for instant in 3..=10 {
-                let found = velocity(&fields, instant, 1.0, &[mark])[0];
+                let computed = velocity(&fields, instant, 1.0, &[mark])[0];
                 let expected = if instant as f64 - 1e-6 > mark {
                     1.0
                 } else {
                     -1.0
                 };
-                assert!((found - expected).abs() < 1e-8, "{mark} {instant}: {found}");
+                assert!(
+                    (computed - expected).abs() < 1e-8,
+                    "{mark} {instant}: {computed}"
+                );
             }
         }
     }

@@ -14,7 +14,7 @@ pub struct Deviations {
     /// Of the displacement at each instant, in relative L2 over the largest of all instants, in %.
     pub displacement: Vec<f64>,
     /// Over all instants, in %.
-    pub whole: f64,
+    pub total: f64,
     /// Of the right grip's force over all instants, root mean squares, in %; `None` where the finite elements' has none.
     pub force: Option<f64>,
 }
@@ -50,7 +50,7 @@ impl Deviations {
         let (wrong, force) = pairs.fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
         Self {
             displacement: displacement.collect(),
-            whole: 100.0 * (all / size.max(f64::MIN_POSITIVE)).sqrt(),
+            total: 100.0 * (all / size.max(f64::MIN_POSITIVE)).sqrt(),
             force: (force > 0.0).then(|| 100.0 * (wrong / force).sqrt()),
         }
     }
@@ -99,28 +99,28 @@ impl OwnError {
         let quicker = quicker.and_then(|time| moved(1, time));
         let distance = |a: &ModelMotion, b: &ModelMotion| {
             let expected = b.displacements_on(&elements.mesh);
-            let found = Deviations::between(sheet, &elements.mesh, [a, b], &expected);
-            [Some(found.whole), found.force]
+            let deviations = Deviations::between(sheet, &elements.mesh, [a, b], &expected);
+            [Some(deviations.total), deviations.force]
         };
         let last = distance(&coarse, elements);
-        let before = coarsest.as_ref().map(|own| distance(own, &coarse));
-        let steps = quicker.as_ref().map(|own| distance(&coarse, own));
+        let before = coarsest.as_ref().map(|motion| distance(motion, &coarse));
+        let steps = quicker.as_ref().map(|motion| distance(&coarse, motion));
         let both = [0, 1].map(|which| {
             let last = last[which]?;
-            let before = before.and_then(|own| own[which]);
+            let before = before.and_then(|distances| distances[which]);
             // Of waves, coarse cells tell an order that is too low, and any error with it.
             let cells = before.map_or(last, |before| of_distances(before, last).0.min(last));
-            let steps = steps.and_then(|own| own[which]).unwrap_or(0.0);
+            let steps = steps.and_then(|distances| distances[which]).unwrap_or(0.0);
             Some(cells + BY_HALVED_STEPS * steps)
         });
         Some(Self {
             displacement: both[0]?,
             force: both[1],
-            by_steps: steps.and_then(|own| Some(BY_HALVED_STEPS * own[0]?)),
+            by_steps: steps.and_then(|distances| Some(BY_HALVED_STEPS * distances[0]?)),
             meshes: [&coarse]
                 .into_iter()
                 .chain(&coarsest)
-                .map(|own| own.mesh.describe())
+                .map(|motion| motion.mesh.describe())
                 .collect(),
         })
     }

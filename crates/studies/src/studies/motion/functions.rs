@@ -112,7 +112,7 @@ pub fn reached(motion: &TimeFunction) -> [f64; 2] {
 
 /// The slowest and the fastest rate of a load factor, or stretch, in 1/s, rests left out; nothing where it rests.
 pub fn rates(motion: &TimeFunction) -> Option<[f64; 2]> {
-    let own: Vec<f64> = match motion {
+    let speeds: Vec<f64> = match motion {
         TimeFunction::Constant(_) => Vec::new(),
         TimeFunction::Ramp { begin, end } => vec![1.0 / (end - begin)],
         TimeFunction::Sine {
@@ -126,7 +126,7 @@ pub fn rates(motion: &TimeFunction) -> Option<[f64; 2]> {
             rates.map(f64::abs).collect()
         }
     };
-    let [slowest, fastest] = extremes(own.into_iter().filter(|rate| *rate > 0.0));
+    let [slowest, fastest] = extremes(speeds.into_iter().filter(|rate| *rate > 0.0));
     (slowest <= fastest).then_some([slowest, fastest])
 }
 

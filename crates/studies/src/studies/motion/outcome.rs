@@ -180,9 +180,11 @@ fn compared(
     own_error: Option<&OwnError>,
 ) -> String {
     let mut text = String::new();
-    let of_corrected = of_corrected.as_ref().map(|own| ("corrected motion", own));
-    for (name, own) in std::iter::once(("springs", of_springs)).chain(of_corrected) {
-        let force = own.force.map_or_else(String::new, |force| {
+    let of_corrected = of_corrected
+        .as_ref()
+        .map(|deviations| ("corrected motion", deviations));
+    for (name, deviations) in std::iter::once(("springs", of_springs)).chain(of_corrected) {
+        let force = deviations.force.map_or_else(String::new, |force| {
             format!(
                 ", and the force of the {} by {} %",
                 sheet.measured_name(),
@@ -191,7 +193,7 @@ fn compared(
         });
         text += &format!(
             "The displacement of the {name} deviates from the finite elements' by {} % over all instants{force}. ",
-            percent(own.whole)
+            percent(deviations.total)
         );
     }
     text + &own_error.map_or_else(
@@ -210,8 +212,8 @@ fn in_time(
 ) -> Block {
     let axis = sheet.measured_axis(&motions.elements);
     let corrected = motions.correction.motion.as_ref();
-    let percent = |own: Option<&Deviations>, instant: usize| {
-        let value = own.and_then(|own| own.displacement.get(instant).copied());
+    let percent = |deviations: Option<&Deviations>, instant: usize| {
+        let value = deviations.and_then(|deviations| deviations.displacement.get(instant).copied());
         or_dash(value, |value| format!("{value:.3}"))
     };
     let count = of_springs.displacement.len();
@@ -273,7 +275,9 @@ fn checks(
         )
     };
     let energies = motions.models().map(energy).into_iter();
-    let corrected = of_corrected.as_ref().map(|own| (CORRECTED.name, own));
+    let corrected = of_corrected
+        .as_ref()
+        .map(|deviations| (CORRECTED.name, deviations));
     let (name, last) = corrected.unwrap_or((MASS_SPRING.name, of_springs));
     let until = motions.times()[..last.displacement.len()].last().copied();
     let until = until.unwrap_or_default();
@@ -282,17 +286,17 @@ fn checks(
     } else {
         "over all instants".to_owned()
     };
-    let deviation = |quantity: &str, limit: f64, value: f64, own: Option<f64>| {
-        let own = own.unwrap_or(f64::NAN);
+    let deviation = |quantity: &str, limit: f64, value: f64, error: Option<f64>| {
+        let error = error.unwrap_or(f64::NAN);
         let check = check(format!("{name}: {quantity} {over}"), limit, value);
-        check.judged(judge_by_margin(value, own, limit, &remedy(sheet)), own)
+        check.judged(judge_by_margin(value, error, limit, &remedy(sheet)), error)
     };
-    let own = own_error.map(|own| own.displacement);
-    let displacement = deviation("displacement", limits.deviation_percent, last.whole, own);
+    let error = own_error.map(|error| error.displacement);
+    let displacement = deviation("displacement", limits.deviation_percent, last.total, error);
     let force = limits.force_percent.zip(last.force).map(|(limit, value)| {
-        let own = own_error.and_then(|own| own.force);
+        let error = own_error.and_then(|error| error.force);
         let quantity = format!("force of the {}", sheet.measured_name());
-        deviation(&quantity, limit, value, own)
+        deviation(&quantity, limit, value, error)
     });
     energies.chain([displacement]).chain(force).collect()
 }

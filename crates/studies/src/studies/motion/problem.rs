@@ -224,9 +224,9 @@ impl MovingSheet {
             force: problem.dead_forces(mesh)?,
             time: self.drive.factor.clone(),
         };
-        let points = self.forces.iter().map(|own| MovingForce {
-            force: point_force(mesh, own.at, own.force),
-            time: own.time.clone(),
+        let points = self.forces.iter().map(|point| MovingForce {
+            force: point_force(mesh, point.at, point.force),
+            time: point.time.clone(),
         });
         Ok(Motion {
             energy: model.energy,
@@ -279,8 +279,9 @@ impl MovingSheet {
     /// The force in N of the supports of the measured group, of those of all supports; `None` where no support holds it.
     pub(super) fn measured_force(&self, forces: &[[f64; 2]]) -> Option<[f64; 2]> {
         let supports = self.specimen.problem.supports.iter().zip(forces);
-        let own = supports.filter(|((group, _), _)| *group == self.specimen.group);
-        own.map(|(_, force)| *force)
+        let measured = supports.filter(|((group, _), _)| *group == self.specimen.group);
+        measured
+            .map(|(_, force)| *force)
             .reduce(|sum, force| [sum[0] + force[0], sum[1] + force[1]])
     }
 

@@ -66,8 +66,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
         Along::LoadFactor => specimen::read_moving(root, folder, card, &course),
     };
     course.unknown_keys();
-    let region = specimen.as_ref().map(|own| {
-        let outline = &own.outline;
+    let region = specimen.as_ref().map(|specimen| {
+        let outline = &specimen.outline;
         (outline.lattice(), outline.bounding_box())
     });
     let gravity = read_gravity(&root.section("gravity"));
@@ -139,8 +139,8 @@ const LIKELY_DENSITY: std::ops::RangeInclusive<f64> = 1e-10..=1e-8;
 
 fn read_material(section: &Section, folder: &Path) -> Material {
     let card = read_card(section, folder);
-    let own_density = card.as_ref().and_then(|card| card.density);
-    let density = match own_density {
+    let card_density = card.as_ref().and_then(|card| card.density);
+    let density = match card_density {
         Some(density) if !section.has("density") => density,
         _ => section.quantity("density", Dimension::Density, Bound::Positive),
     };
@@ -213,9 +213,9 @@ fn check_reached(course: &Section, start: f64, driven: Option<(&Card, &Drive)>) 
         return;
     };
     let [least, most] = reached(&drive.factor);
-    let beyond: Vec<f64> = [least.min(start), most.max(start)].into();
-    let beyond: Vec<f64> = beyond.into_iter().filter(|end| *end != start).collect();
-    sections::check_range(course, "motion", &beyond, card);
+    let ends: Vec<f64> = [least.min(start), most.max(start)].into();
+    let ends: Vec<f64> = ends.into_iter().filter(|end| *end != start).collect();
+    sections::check_range(course, "motion", &ends, card);
 }
 
 /// Records a release of what no support holds.
@@ -239,7 +239,7 @@ fn warn_of_rest(root: &Section, start: f64, sheet: &MovingSheet) {
         problem.supports.iter().any(|(_, support)| !support.rests()) || !problem.loads.is_empty();
     let stays = start == 0.0 && reached(&sheet.drive.factor) == [0.0; 2];
     let is_loaded =
-        sheet.gravity != [0.0; 2] || sheet.forces.iter().any(|own| own.force != [0.0; 2]);
+        sheet.gravity != [0.0; 2] || sheet.forces.iter().any(|force| force.force != [0.0; 2]);
     if is_loaded || is_driven && !stays {
         return;
     }

@@ -33,9 +33,9 @@ pub fn json(sheet: &MovingSheet, own_error: Option<&OwnError>) -> Map<String, Va
         "thickness_mm": sheet.specimen.problem.thickness,
         "density_kg_per_m3": 1e12 * sheet.density,
         "says": says,
-        "finite_element_own_error": own_error.map(|own| json!({
-            "displacement_percent": own.displacement,
-            "grip_force_percent": own.force,
+        "finite_element_own_error": own_error.map(|error| json!({
+            "displacement_percent": error.displacement,
+            "grip_force_percent": error.force,
         })),
     }))
 }
@@ -60,9 +60,11 @@ fn sentences(sheet: &MovingSheet) -> Vec<(String, String)> {
         ("viscosity".into(), viscosity(sheet)),
     ];
     let supports = problem.supports.iter();
-    all.extend(supports.map(|(group, own)| (format!("support {group}"), support_words(own))));
+    all.extend(
+        supports.map(|(group, support)| (format!("support {group}"), support_words(support))),
+    );
     let loads = problem.loads.iter();
-    all.extend(loads.map(|(group, own)| (format!("load {group}"), load_words(own))));
+    all.extend(loads.map(|(group, load)| (format!("load {group}"), load_words(load))));
     all.extend([
         (
             format!("{} in time", specimen.along.name()),
@@ -132,9 +134,9 @@ fn gravity(sheet: &MovingSheet) -> String {
 }
 
 fn forces(sheet: &MovingSheet) -> String {
-    let force = |own: &PointForce| {
-        let ([x, y], [fx, fy]) = (own.at, own.force);
-        let time = match &own.time {
+    let force = |point: &PointForce| {
+        let ([x, y], [fx, fy]) = (point.at, point.force);
+        let time = match &point.time {
             TimeFunction::Ramp { begin, end } => format!("growing from {begin} s to {end} s"),
             _ => "from time 0 on".into(),
         };

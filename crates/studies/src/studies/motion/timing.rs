@@ -41,7 +41,7 @@ fn check_swing(section: &Section, time: &TimeSettings, drive: &Drive) {
     let Some(period) = drive.factor.period() else {
         return;
     };
-    let told = |key: &str, length: f64| {
+    let advice = |key: &str, length: f64| {
         let message = format!(
             "is {:.3} times the grip's period of {period} s",
             length / period
@@ -52,7 +52,7 @@ fn check_swing(section: &Section, time: &TimeSettings, drive: &Drive) {
     };
     if let Step::AtMost(step) = time.step {
         let step = step.min(time.interval);
-        let (message, hint) = told("step", step);
+        let (message, hint) = advice("step", step);
         if step > period / FEWEST {
             section.fault("step", &message, &hint);
             return;
@@ -62,7 +62,7 @@ fn check_swing(section: &Section, time: &TimeSettings, drive: &Drive) {
         }
     }
     if time.interval > period / FEWEST * (1.0 + 1e-9) {
-        let (message, hint) = told("interval", time.interval);
+        let (message, hint) = advice("interval", time.interval);
         section.warning(
             "interval",
             &format!("{message}: figures and pictures resolve it poorly"),

@@ -54,7 +54,7 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
     let springs_newton = read_newton(&section);
     section.unknown_keys();
     let correction = read_corrector(&root.section("corrector"), &plate, problem.size, cells);
-    let is_graded = correction.is_some_and(|own| own.is_graded());
+    let is_graded = correction.is_some_and(|correction| correction.is_graded());
     let section = root.section("finite_element");
     let elements = read_elements(&section, &problem, cells, is_graded);
     let elements_newton = read_newton(&section);

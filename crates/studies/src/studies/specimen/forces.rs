@@ -135,7 +135,7 @@ pub fn balances(specimen: &Specimen, models: &Models) -> [Balance; 3] {
 
 /// The worst balance of all models.
 pub fn worst_balance(balances: &[Balance]) -> Option<f64> {
-    let known = balances.iter().filter_map(|own| own.unbalanced);
+    let known = balances.iter().filter_map(|balance| balance.unbalanced);
     known.reduce(larger)
 }
 
@@ -150,24 +150,27 @@ fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
     let free: Vec<usize> = (0..2 * mesh.nodes.len()).filter(is_free).collect();
     let of_step = |step: usize| {
         let groups = solution.groups(step)?.iter();
-        let most = groups.fold(0.0, |most: f64, own| {
-            most.max(own.force[0].hypot(own.force[1]))
+        let most = groups.fold(0.0, |most: f64, group| {
+            most.max(group.force[0].hypot(group.force[1]))
         });
         let residual = &solution.states[step].residual;
-        let left = free
-            .iter()
-            .fold(0.0, |left: f64, unknown| left.max(residual[*unknown].abs()));
-        (most > 0.0).then(|| left / most)
+        let largest = free.iter().fold(0.0, |largest: f64, unknown| {
+            largest.max(residual[*unknown].abs())
+        });
+        (most > 0.0).then(|| largest / most)
     };
     (0..solution.reached()).filter_map(of_step).reduce(larger)
 }
 
 /// The balance of each model in a sentence.
 pub fn balance_words(balances: &[Balance]) -> String {
-    let balances = balances.iter().filter_map(|own| {
-        let unbalanced = own.unbalanced?;
-        let free = or_dash(own.free_nodes, |left| format!("{left:.1e}"));
-        Some(format!("{} {unbalanced:.1e} and {free}", own.model.name))
+    let balances = balances.iter().filter_map(|balance| {
+        let unbalanced = balance.unbalanced?;
+        let free = or_dash(balance.free_nodes, |residual| format!("{residual:.1e}"));
+        Some(format!(
+            "{} {unbalanced:.1e} and {free}",
+            balance.model.name
+        ))
     });
     format!(
         "Balance of forces and moments: the unbalanced part of supports and loads relative to the largest force or moment, and the largest force left \
@@ -189,7 +192,7 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     }
     measured.none_of(finest, step)?;
     let of = |solution: &Solution| Some(solution.groups(step)?[measured.index]);
-    let (expected, found) = (of(finest)?, of(corrected)?);
+    let (expected, computed) = (of(finest)?, of(corrected)?);
     let [.., side] = scales(specimen, models);
     let is_moment = expected.moment.abs() > LEAST * expected.size.max(expected.rounding) * side;
     is_moment.then(|| {
@@ -199,8 +202,8 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
              error of it is not known",
             measured.group,
             specimen.along.describe(specimen.factors[step]),
-            number(found.moment),
-            percent(100.0 * (found.moment / expected.moment - 1.0).abs()),
+            number(computed.moment),
+            percent(100.0 * (computed.moment / expected.moment - 1.0).abs()),
             number(expected.moment)
         )
     })
@@ -263,9 +266,9 @@ pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<V
 
 /// The worst balance of every model, for machines.
 pub fn balances_json(balances: &[Balance]) -> Map<String, Value> {
-    let of_model = |own: &Balance| {
-        let value = json!({ "unbalanced": own.unbalanced, "free_nodes": own.free_nodes });
-        (own.model.key.to_owned(), value)
+    let of_model = |balance: &Balance| {
+        let value = json!({ "unbalanced": balance.unbalanced, "free_nodes": balance.free_nodes });
+        (balance.model.key.to_owned(), value)
     };
     balances.iter().map(of_model).collect()
 }

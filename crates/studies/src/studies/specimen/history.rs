@@ -91,7 +91,7 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
 pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let rows = (0..models.reached()).flat_map(|step| {
         let states = models.all().into_iter();
-        states.filter_map(move |(model, own)| Some((model, own.states.get(step)?)))
+        states.filter_map(move |(model, solution)| Some((model, solution.states.get(step)?)))
     });
     let size = |residual: Option<&f64>| or_dash(residual.copied(), |size| format!("{size:.1e}"));
     let table = Table::of(rows)
@@ -100,20 +100,20 @@ pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
         })
         .column("model", |(model, _)| model.style().name.to_owned())
         .column("load steps", |(_, state)| state.load_steps.to_string())
-        .column("iterations", |(_, own)| {
-            own.convergence.iterations().to_string()
+        .column("iterations", |(_, state)| {
+            state.convergence.iterations().to_string()
         })
-        .column("first residual [–]", |(_, own)| {
-            size(own.convergence.residuals.first())
+        .column("first residual [–]", |(_, state)| {
+            size(state.convergence.residuals.first())
         })
-        .column("last residual [–]", |(_, own)| {
-            size(own.convergence.residuals.last())
+        .column("last residual [–]", |(_, state)| {
+            size(state.convergence.residuals.last())
         })
-        .column("steps cut", |(_, own)| {
-            own.convergence.cut_steps.to_string()
+        .column("steps cut", |(_, state)| {
+            state.convergence.cut_steps.to_string()
         })
-        .column("tangents shifted", |(_, own)| {
-            own.convergence.shifted_steps.to_string()
+        .column("tangents shifted", |(_, state)| {
+            state.convergence.shifted_steps.to_string()
         });
     let mut blocks = vec![
         Block::heading("Convergence"),

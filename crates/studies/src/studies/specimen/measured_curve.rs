@@ -112,12 +112,12 @@ fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
 
 /// Records an extensometer that the study does not have.
 pub(crate) fn check_extensometer(root: &Section, specimen: &Specimen) {
-    let Some(Over::Extensometer(name)) = specimen.measured_curve.as_ref().map(|own| &own.over)
+    let Some(Over::Extensometer(name)) = specimen.measured_curve.as_ref().map(|curve| &curve.over)
     else {
         return;
     };
     let all = specimen.measurements.extensometers.iter();
-    let known: Vec<&str> = all.map(|own| &*own.name).collect();
+    let known: Vec<&str> = all.map(|extensometer| &*extensometer.name).collect();
     if !known.contains(&&**name) {
         let hint = suggestion(name, &known, "the study has");
         let message = format!("the study has no extensometer `{name}`");

@@ -128,9 +128,9 @@ impl<'a> MeasuredFields<'a> {
     fn extensometer_rows(&self, state: &State) -> Vec<Vec<String>> {
         let all = self.specimen.measurements.extensometers.iter();
         let all = all.zip(&state.lengths);
-        all.map(|(own, [rest, now])| {
+        all.map(|(extensometer, [rest, now])| {
             let values = [*rest, *now, now / rest, self.force(state)];
-            self.row(state, &own.name, &values, Vec::new())
+            self.row(state, &extensometer.name, &values, Vec::new())
         })
         .collect()
     }
@@ -140,7 +140,10 @@ impl<'a> MeasuredFields<'a> {
         let group = self.group();
         let last = self.models.iter().filter_map(|model| model.states.last());
         let [x, y] = last.fold([0.0_f64; 2], |most, state| {
-            let force = state.groups.get(group).map_or([0.0; 2], |own| own.force);
+            let force = state
+                .groups
+                .get(group)
+                .map_or([0.0; 2], |group| group.force);
             [0, 1].map(|axis| most[axis].max(force[axis].abs()))
         });
         usize::from(y > x)
@@ -180,7 +183,11 @@ impl<'a> MeasuredFields<'a> {
         let specimen = self.specimen;
         let fields = specimen.pictures.fields.fields.iter();
         let columns: Vec<usize> = fields
-            .filter_map(|field| SheetField::NAMES.iter().position(|(_, own)| own == field))
+            .filter_map(|field| {
+                SheetField::NAMES
+                    .iter()
+                    .position(|(_, other)| other == field)
+            })
             .collect();
         let named = |what: &str, caption: String, charts: Vec<LineChart>| {
             let charts: Vec<_> = charts.into_iter().map(|chart| (chart, 340)).collect();
@@ -213,7 +220,8 @@ impl<'a> MeasuredFields<'a> {
             }
         }
         let extensometers = specimen.measurements.extensometers.iter().enumerate();
-        let charts = extensometers.map(|(index, own)| self.extensometer_chart(index, own));
+        let charts =
+            extensometers.map(|(index, extensometer)| self.extensometer_chart(index, extensometer));
         let caption = format!(
             "Force of {} over the stretch between the ends of each extensometer; computed at the markers only.",
             specimen.group
@@ -258,7 +266,8 @@ impl<'a> MeasuredFields<'a> {
         let mut lines = Vec::new();
         for (model, _) in self.shown() {
             let mut states = self.states.iter();
-            let Some(state) = states.find(|own| own.model == model && own.step == step) else {
+            let Some(state) = states.find(|state| state.model == model && state.step == step)
+            else {
                 continue;
             };
             let style = self.models[model].style;
@@ -300,7 +309,7 @@ fn positions_in(specimen: &Specimen, model: &ModelSeries) -> Vec<Position> {
     let probes: Vec<[f64; 2]> = wanted.probes.iter().map(|probe| probe.at).collect();
     let lines: Vec<[f64; 2]> = wanted.lines.iter().flat_map(LineCut::points).collect();
     let all = [probes, lines].into_iter().zip(BEYOND);
-    all.flat_map(|(points, beyond)| positions(model.mesh, &points, beyond))
+    all.flat_map(|(points, margin)| positions(model.mesh, &points, margin))
         .collect()
 }
 
@@ -320,7 +329,7 @@ fn measure(
     let lengths = wanted
         .extensometers
         .iter()
-        .map(|own| own.lengths(model.mesh, u));
+        .map(|extensometer| extensometer.lengths(model.mesh, u));
     Some(State {
         model: index,
         step,

@@ -80,7 +80,7 @@ fn blocks(
              the error at all nodes of the finite elements.",
             models.reference.describe()
         )));
-        blocks.push(own_errors(specimen, models));
+        blocks.push(reference_errors(specimen, models));
         blocks.extend(models.reference.history());
     }
     blocks.extend(history::convergence(specimen, models));
@@ -107,9 +107,13 @@ fn measures(specimen: &Specimen, models: &Models) -> Vec<Measure> {
         value,
         decimals,
     };
-    let displacement = of("displacement", |own| Some(own.displacement), [3, 4]);
+    let displacement = of(
+        "displacement",
+        |distance| Some(distance.displacement),
+        [3, 4],
+    );
     let departure = of("departure", Distance::departure, [2, 3]);
-    let measured = of(what, |own| Some(own.measured.abs()), [2, 3]);
+    let measured = of(what, |distance| Some(distance.measured.abs()), [2, 3]);
     let is_plate = specimen.grids().is_some();
     let departure = is_plate.then_some(departure);
     [displacement]
@@ -141,7 +145,9 @@ fn agreement(specimen: &Specimen, models: &Models, deviations: &[Option<Deviatio
         for measure in measures(specimen, models) {
             let head = format!("{}: {}", kind.style().name, measure.name);
             table = table.column(head, |(_, deviation)| {
-                let value = deviation.of(kind).and_then(|own| (measure.value)(&own));
+                let value = deviation
+                    .of(kind)
+                    .and_then(|distance| (measure.value)(&distance));
                 figure(value, measure.decimals[index])
             });
         }
@@ -169,16 +175,18 @@ fn quantities(
             return (key, Value::Null);
         };
         quantities.extend(match kind {
-            ModelKind::MassSpring => deviation_json(deviation.and_then(|own| own.springs)),
-            ModelKind::Corrected => {
-                let mut own = deviation_json(deviation.map(|own| own.corrected));
-                let correction = deviation.and_then(Deviation::correction_percent);
-                own.insert("displacement_correction_percent".into(), json!(correction));
-                let error = models.on_lattice.correction.discretisation_errors.get(step);
-                own.insert("discretisation_mm".into(), json!(error));
-                own
+            ModelKind::MassSpring => {
+                deviation_json(deviation.and_then(|deviation| deviation.springs))
             }
-            ModelKind::FiniteElement => own_errors_json(models, step, deviation),
+            ModelKind::Corrected => {
+                let mut corrected = deviation_json(deviation.map(|deviation| deviation.corrected));
+                let correction = deviation.and_then(Deviation::correction_percent);
+                corrected.insert("displacement_correction_percent".into(), json!(correction));
+                let error = models.on_lattice.correction.discretisation_errors.get(step);
+                corrected.insert("discretisation_mm".into(), json!(error));
+                corrected
+            }
+            ModelKind::FiniteElement => reference_errors_json(models, step, deviation),
         });
         (key, Value::Object(quantities))
     })
@@ -216,26 +224,26 @@ fn quantities_of_model(
 /// How far a model is from the finite elements.
 fn deviation_json(distance: Option<Distance>) -> Map<String, Value> {
     let mut all = object(json!({
-        "displacement_percent": distance.map(|own| own.displacement),
-        "measured_percent": distance.map(|own| own.measured),
-        "max_difference_mm": distance.map(|own| own.largest),
+        "displacement_percent": distance.map(|distance| distance.displacement),
+        "measured_percent": distance.map(|distance| distance.measured),
+        "max_difference_mm": distance.map(|distance| distance.largest),
     }));
-    if let Some(departure) = distance.and_then(|own| own.departure()) {
+    if let Some(departure) = distance.and_then(|distance| distance.departure()) {
         all.insert("departure_percent".into(), json!(departure));
     }
     all
 }
 
-fn own_errors_json(
+fn reference_errors_json(
     models: &Models,
     step: usize,
     deviation: Option<&Deviation>,
 ) -> Map<String, Value> {
     let reference = &models.reference;
-    let own = |which: usize| deviation.map(|own| own.own[which]);
+    let error = |which: usize| deviation.map(|deviation| deviation.reference_errors[which]);
     object(json!({
         "displacement_discretisation_percent": reference.displacement_percent(step),
-        "departure_discretisation_percent": own(1),
+        "departure_discretisation_percent": error(1),
         "field_discretisation_percent": reference.field_percent(step),
         "measured_discretisation_percent": reference.measured_percent(step),
         "three_meshes_percent": reference.three_meshes_percent(step),
@@ -266,17 +274,19 @@ fn deviation_table(
             specimen.along.value(*factor)
         })
         .column("model", |(_, kind, ..)| kind.style().name.to_owned())
-        .column("displacement [%]", |(.., own, _)| {
-            figure(Some(own.displacement), 4)
+        .column("displacement [%]", |(.., distance, _)| {
+            figure(Some(distance.displacement), 4)
         })
-        .column_if(is_plate, "departure from affine [%]", |(.., own, _)| {
-            figure(own.departure(), 3)
+        .column_if(
+            is_plate,
+            "departure from affine [%]",
+            |(.., distance, _)| figure(distance.departure(), 3),
+        )
+        .column("largest difference [mm]", |(.., distance, _)| {
+            figure(Some(distance.largest), 4)
         })
-        .column("largest difference [mm]", |(.., own, _)| {
-            figure(Some(own.largest), 4)
-        })
-        .column(format!("{what} [%]"), |(.., own, _)| {
-            or_dash(Some(own.measured), |value| format!("{value:+.3}"))
+        .column(format!("{what} [%]"), |(.., distance, _)| {
+            or_dash(Some(distance.measured), |value| format!("{value:+.3}"))
         })
         .column("correction [%]", |(_, kind, _, deviation)| {
             let is_corrected = *kind == ModelKind::Corrected;
@@ -286,7 +296,7 @@ fn deviation_table(
 }
 
 /// What is known of the finite elements' own error at every load factor.
-fn own_errors(specimen: &Specimen, models: &Models) -> Block {
+fn reference_errors(specimen: &Specimen, models: &Models) -> Block {
     let (along, reference) = (specimen.along, &models.reference);
     let (measured, what) = (&reference.measured, reference.measured.name());
     Table::of(0..reference.reached())

@@ -70,7 +70,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     );
     let states = (factors.len(), refinement);
     let specimen = sheet.specimen(root, materials, (&path, &group), states);
-    let outline = specimen.as_ref().map(|own| &own.outline);
+    let outline = specimen.as_ref().map(|specimen| &specimen.outline);
     let measurements = read_measurements(root, outline);
     let measured_curve = read_measured_curve(root, folder, None);
     let specimen = specimen?;
@@ -214,11 +214,11 @@ fn check_elements(root: &Section, outline: &Outline, mesh: &Mesh) {
     let Outline::File { element, .. } = outline else {
         return;
     };
-    let made = outline.elements_on(mesh).element_names();
-    let is_said = CellShape::NAMES.iter().find(|(_, own)| own == element);
-    let said = is_said.map_or("", |(name, _)| *name);
-    if section.has("element") && !section.flag("adaptive") && made != said {
-        let message = format!("the cells of the file make {made} elements, not {said}");
+    let built = outline.elements_on(mesh).element_names();
+    let stated = CellShape::NAMES.iter().find(|(_, shape)| shape == element);
+    let stated_name = stated.map_or("", |(name, _)| *name);
+    if section.has("element") && !section.flag("adaptive") && built != stated_name {
+        let message = format!("the cells of the file make {built} elements, not {stated_name}");
         section.warning(
             "element",
             &message,
@@ -285,11 +285,11 @@ fn affords(
             "take a coarser mesh, or elements of the first degree",
         ),
     };
-    let whole = section.excess(outline.need(states, refinement));
+    let full_excess = section.excess(outline.need(states, refinement));
     let too_much = |outline: &Outline| section.excess(outline.need(states, None)).is_some();
     while refinement.is_none() && too_much(outline) && outline.halve_less() {}
     let affords = section.affords(key, outline.need(states, refinement), smaller);
-    if let Some(excess) = whole.filter(|_| affords) {
+    if let Some(excess) = full_excess.filter(|_| affords) {
         let meshes = match outline.halvings() {
             0 => {
                 "computed on this mesh alone, without an error estimate of their displacement and of the curves that its edges approximate"

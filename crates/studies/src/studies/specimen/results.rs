@@ -33,8 +33,8 @@ pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
     }
     let last = specimen.factors.len() - 1;
     let force = reference.measured.at(&reference.finest, last);
-    let own = reference.measured_percent(last);
-    Ok((force.unwrap_or(f64::NAN), own.unwrap_or(f64::NAN)))
+    let error = reference.measured_percent(last);
+    Ok((force.unwrap_or(f64::NAN), error.unwrap_or(f64::NAN)))
 }
 
 /// One model of a specimen alone; finite elements on the finest mesh of the study.

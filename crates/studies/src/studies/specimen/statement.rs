@@ -13,10 +13,10 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let problem = &specimen.problem;
     let row = |group: &String, text: String| vec![format!("`{group}`"), text];
     let supports = problem.supports.iter();
-    let supports = supports.map(|(group, own)| row(group, support_words(own)));
+    let supports = supports.map(|(group, support)| row(group, support_words(support)));
     let loads = problem.loads.iter();
     let loads: Vec<_> = loads
-        .map(|(group, own)| row(group, load_words(own)))
+        .map(|(group, load)| row(group, load_words(load)))
         .collect();
     let text = format!(
         "The specimen is {}, {} mm thick at rest, of {}. Displacements, rotations, forces, tractions and pressures below are those at \
@@ -58,9 +58,9 @@ pub fn json(specimen: &Specimen) -> Map<String, Value> {
     let problem = &specimen.problem;
     let supports = problem.supports.iter();
     let supports =
-        supports.map(|(group, own)| json!({ "group": group, "says": support_words(own) }));
+        supports.map(|(group, support)| json!({ "group": group, "says": support_words(support) }));
     let loads = problem.loads.iter();
-    let loads = loads.map(|(group, own)| json!({ "group": group, "says": load_words(own) }));
+    let loads = loads.map(|(group, load)| json!({ "group": group, "says": load_words(load) }));
     let mut all = object(json!({
         "specimen": specimen.outline.describe(),
         "thickness_mm": problem.thickness,

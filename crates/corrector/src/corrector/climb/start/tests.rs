@@ -64,7 +64,10 @@ fn check(
     if distance <= limit {
         Ok(climbed)
     } else {
-        Err(format!("{}: {distance:e} mm of {limit:e} mm", climbed.way))
+        Err(format!(
+            "{}: {distance:e} mm of {limit:e} mm",
+            climbed.provenance
+        ))
     }
 }
 
@@ -80,7 +83,7 @@ fn laws_whose_springs_collapse_on_the_coarse_lattice_climb_all_the_same() {
         ] {
             let problem = problem(card, [150.0, 50.0], stretch);
             let climbed = check(&problem, cells, DifferenceScheme::Gauss).unwrap();
-            helped += usize::from(climbed.way.start != Start::Springs);
+            helped += usize::from(climbed.provenance.start != Start::Springs);
         }
     }
     assert!(
@@ -115,9 +118,9 @@ fn any_plate_climbs_to_the_direct_field() {
             50.0 * 10f64.powf(-0.5 * aspect),
         ];
         let problem = problem(laws[law].0, size, 10f64.powf(stretch));
-        let found = check(&problem, cells, scheme);
-        let told = format!("{} {scheme:?} {:?}: {found:?}", laws[law].0, problem.size);
-        prop_assert!(found.is_ok(), "{told}");
+        let checked = check(&problem, cells, scheme);
+        let described = format!("{} {scheme:?} {:?}: {checked:?}", laws[law].0, problem.size);
+        prop_assert!(checked.is_ok(), "{described}");
         Ok(())
     });
     run.unwrap();
@@ -136,8 +139,12 @@ fn where_the_iteration_never_ends_newtons_method_finds_every_grids_field() {
         let climbed = Climb::even(&problem, cells, scheme, never)
             .correct(1.0)
             .unwrap();
-        starts.push(climbed.way.start);
-        assert!(climbed.way.by_load_path.contains(&cells), "{}", climbed.way);
+        starts.push(climbed.provenance.start);
+        assert!(
+            climbed.provenance.by_load_path.contains(&cells),
+            "{}",
+            climbed.provenance
+        );
         let expected = direct(&problem, cells, scheme).unwrap();
         assert!(distance(&climbed, &expected) < 1e-7, "{scheme:?}");
     }
@@ -155,8 +162,11 @@ fn a_way_that_names_springs_began_with_them() {
         DifferenceScheme::Gauss,
         ClimbSettings::FAST,
     );
-    let way = climb.correct(0.5).unwrap().way;
-    assert_eq!((way.start, way.cells), (Start::Springs, [8, 3]));
+    let provenance = climb.correct(0.5).unwrap().provenance;
+    assert_eq!(
+        (provenance.start, provenance.cells),
+        (Start::Springs, [8, 3])
+    );
     let grid = climb.levels[climb.start].grid.clone();
     let mut away = climb.springs(0.5).unwrap();
     away.add(
@@ -164,9 +174,9 @@ fn a_way_that_names_springs_began_with_them() {
         &climb.along_load_path(climb.start, 0.5).unwrap().field,
     );
     assert!(
-        (way.away / away.size() - 1.0).abs() < 1e-3,
+        (provenance.away / away.size() - 1.0).abs() < 1e-3,
         "{} {}",
-        way.away,
+        provenance.away,
         away.size()
     );
     // The field from which the springs begin is another one.

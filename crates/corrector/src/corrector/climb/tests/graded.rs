@@ -38,13 +38,13 @@ fn the_stated_errors_are_true_on_graded_grids() {
                 let mut error = truth.field.onto(&fine, &grid);
                 error.add(-1.0, &solved.field);
                 let ratio = climbed.discretisation_error / error.size();
-                let told = format!("{card} {size:?} {stretch} {scheme:?} graded by {grading}");
-                assert!((0.5..2.0).contains(&ratio), "{told}: {ratio}");
-                let left = iteration.size() / error.size();
-                assert!(left < 0.1, "{told}: {left} of the error");
+                let case = format!("{card} {size:?} {stretch} {scheme:?} graded by {grading}");
+                assert!((0.5..2.0).contains(&ratio), "{case}: {ratio}");
+                let share = iteration.size() / error.size();
+                assert!(share < 0.1, "{case}: {share} of the error");
                 let cycles = climbed.corrections.len();
-                assert!(cycles <= 12, "{told}: {cycles} cycles");
-                assert!(climbed.way.by_load_path.is_empty(), "{told}");
+                assert!(cycles <= 12, "{case}: {cycles} cycles");
+                assert!(climbed.provenance.by_load_path.is_empty(), "{case}");
             }
         }
     }

@@ -23,9 +23,9 @@ impl Columns {
         }
         let mut next = 1;
         let columns = heights.into_iter().map(|(node, height)| {
-            let own = next..next + height;
-            next = own.end;
-            (node, own.collect())
+            let levels = next..next + height;
+            next = levels.end;
+            (node, levels.collect())
         });
         Self(columns.collect())
     }

@@ -15,7 +15,11 @@ impl Model<'_> {
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         let code = self.code.name();
-        let shapes = |shape| self.cells.iter().any(|(own, _)| *own == shape);
+        let shapes = |shape| {
+            self.cells
+                .iter()
+                .any(|(cell_shape, _)| *cell_shape == shape)
+        };
         let nine = (0..self.given.mesh.cell_count())
             .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
         if nine && shapes(CellShape::Quad8) {
@@ -24,17 +28,22 @@ impl Model<'_> {
                     .into(),
             );
         }
-        if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
+        if self.code == Code::CalculiX
+            && self
+                .cells
+                .iter()
+                .any(|(cell_shape, _)| cell_shape.degree() == 1)
+        {
             remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
         }
-        for own in self.materials.iter().filter(|_| self.code != Code::Abaqus) {
+        for material in self.materials.iter().filter(|_| self.code != Code::Abaqus) {
             let of = match self.materials.len() {
                 1 => String::new(),
-                _ => format!(" of the card `{}`", own.card.name),
+                _ => format!(" of the card `{}`", material.card.name),
             };
             remarks.push(format!(
                 "{code} has no incompressible sheet: the bulk modulus{of} is {} MPa, {} times the initial shear modulus",
-                number(self.given.bulk_modulus(self.code, own.card)),
+                number(self.given.bulk_modulus(self.code, material.card)),
                 self.given.bulk_ratio
             ));
         }
@@ -57,14 +66,14 @@ impl Model<'_> {
             );
         }
         let mut materials = self.materials.iter();
-        if materials.any(|own| !own.card.viscosity.is_none()) {
+        if materials.any(|material| !material.card.viscosity.is_none()) {
             remarks.push(
                 "the card's [viscosity] is left out: the file contains the long-term law only"
                     .into(),
             );
         }
         let mut materials = self.materials.iter();
-        if materials.any(|own| own.law == CodeLaw::TensionCurve) {
+        if materials.any(|material| material.law == CodeLaw::TensionCurve) {
             remarks.push("the law depends on the first invariant alone and is exported as Marlow's law with points of its tension curve".into());
         }
         remarks
@@ -136,7 +145,11 @@ impl Model<'_> {
     /// What printed sums of reactions contain besides.
     fn of_reactions(&self) -> Option<String> {
         let sets = || self.held.iter().map(|held| &self.sets[held.set]);
-        let loaded = |node: &usize| self.forces.iter().any(|(own, _)| own == node);
+        let loaded = |node: &usize| {
+            self.forces
+                .iter()
+                .any(|(loaded_node, _)| loaded_node == node)
+        };
         let is_loaded = sets().any(|(_, nodes)| nodes.iter().any(loaded));
         let is_shared = sets().any(|(name, nodes)| {
             let mut others = sets().filter(|(other, _)| other != name);

@@ -28,11 +28,11 @@ impl KeyTimes {
         let mut instants = vec![[0.0, 0.0]];
         for factor in factors {
             let [time, before] = instants[instants.len() - 1];
-            let way = factor - before;
-            let parts = (turn * way.abs() / LARGEST_CHORD).ceil().max(1.0) as usize;
+            let change = factor - before;
+            let parts = (turn * change.abs() / LARGEST_CHORD).ceil().max(1.0) as usize;
             instants.extend((1..=parts).map(|part| {
                 let share = part as f64 / parts as f64;
-                [time + share * way.abs(), before + share * way]
+                [time + share * change.abs(), before + share * change]
             }));
         }
         Self(instants)
@@ -80,7 +80,8 @@ impl Held {
             }
             let at = |axis: usize, factor: f64| {
                 let support = supports[axis].map(|number| &problem.supports[*number].1);
-                let moved = support.and_then(|own| own.displacement(*position, axis, factor));
+                let moved =
+                    support.and_then(|support| support.displacement(*position, axis, factor));
                 // Without the sign of a zero.
                 moved.unwrap_or(0.0) + 0.0
             };

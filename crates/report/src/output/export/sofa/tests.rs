@@ -159,10 +159,10 @@ fn held_and_moved_nodes_masses_and_dampings_are_written() {
     let text = written.text;
     let nodes = &springs.mesh.nodes;
     let at = |component: &str, is_there: &dyn Fn(&[f64; 2]) -> bool| {
-        let found = attribute(&text, component, "indices");
+        let indices = attribute(&text, component, "indices");
         let expected = (0..nodes.len()).filter(|node| is_there(&nodes[*node]));
         let expected: Vec<f64> = expected.map(|node| node as f64).collect();
-        assert_eq!(found, expected, "{component}");
+        assert_eq!(indices, expected, "{component}");
     };
     at("FixedProjectiveConstraint", &|[x, _]| *x == 0.0);
     let inside = |x: f64| x != 0.0 && x != 30.0;

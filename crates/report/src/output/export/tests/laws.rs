@@ -151,12 +151,12 @@ fn every_law_has_its_own_stresses_in_every_code_or_is_refused() {
         else {
             panic!("the words for {} are missing", law.name);
         };
-        let own: Vec<_> = cards
+        let cards_of_law: Vec<_> = cards
             .iter()
             .filter(|card| card.law_name == law.name)
             .collect();
-        assert!(!own.is_empty(), "{}", law.name);
-        for (card, ((_, code), word)) in own.iter().flat_map(|card| {
+        assert!(!cards_of_law.is_empty(), "{}", law.name);
+        for (card, ((_, code), word)) in cards_of_law.iter().flat_map(|card| {
             Code::NAMES
                 .into_iter()
                 .zip(words)
@@ -170,10 +170,10 @@ fn every_law_has_its_own_stresses_in_every_code_or_is_refused() {
             let exported = Exported::read(code, &file.unwrap().text);
             assert_eq!(exported.keyword, *word, "{}", card.name);
             let allowed = if *word == "MARLOW" { 1e-4 } else { 1e-6 };
-            let found = deviation(card, &|sheet| published(&exported, sheet));
+            let error = deviation(card, &|sheet| published(&exported, sheet));
             assert!(
-                found < allowed,
-                "{} of {} in {}: {found:.1e}",
+                error < allowed,
+                "{} of {} in {}: {error:.1e}",
                 law.name,
                 card.name,
                 code.name()
@@ -204,9 +204,9 @@ fn assert_compressibility(card: &Card, code: Code, exported: &Exported) {
 }
 
 fn assert_refused(card: &Card, code: Code, file: Result<InputFile, Error>) {
-    let told = file.expect_err(&card.name).to_string();
+    let message = file.expect_err(&card.name).to_string();
     if card.bulk_modulus().is_some() {
-        assert!(told.contains("is compressible"), "{told}");
+        assert!(message.contains("is compressible"), "{message}");
         return;
     }
     for expected in [
@@ -215,7 +215,7 @@ fn assert_refused(card: &Card, code: Code, file: Result<InputFile, Error>) {
         "Ogden",
         "gelbench materials fit",
     ] {
-        assert!(told.contains(expected), "{told}");
+        assert!(message.contains(expected), "{message}");
     }
 }
 

@@ -44,10 +44,10 @@ impl Exported {
     pub(super) fn of_xml(text: &str) -> Self {
         let (_, material) = text.split_once("name=\"material_1\" type=\"").unwrap();
         let (keyword, rest) = material.split_once("\">").unwrap();
-        let (own, _) = rest.split_once("</material>").unwrap();
-        let axis = own.split_once("<a>").map(|(_, axis)| row(axis));
-        let own = own.split("<mat_axis").next().unwrap();
-        let values = own.lines().filter_map(|line| line.split_once('>'));
+        let (body, _) = rest.split_once("</material>").unwrap();
+        let axis = body.split_once("<a>").map(|(_, axis)| row(axis));
+        let body = body.split("<mat_axis").next().unwrap();
+        let values = body.lines().filter_map(|line| line.split_once('>'));
         Self {
             keyword: keyword.into(),
             values: values.map(|(_, value)| row(value)[0]).collect(),
@@ -60,13 +60,14 @@ impl Exported {
 pub(super) fn numbers(text: &str, keyword: &str) -> Vec<Vec<f64>> {
     let (_, after) = text.split_once(keyword).unwrap();
     let lines = after.lines().skip(1);
-    let own = lines.take_while(|line| !line.starts_with('*'));
-    own.map(row).collect()
+    let rows = lines.take_while(|line| !line.starts_with('*'));
+    rows.map(row).collect()
 }
 
 pub(super) fn row(text: &str) -> Vec<f64> {
-    let own = text.split('<').next().unwrap();
-    own.split(',')
+    let content = text.split('<').next().unwrap();
+    content
+        .split(',')
         .map(|field| field.trim().parse().unwrap())
         .collect()
 }

@@ -23,9 +23,9 @@ impl Solids {
     /// Whether one node stands in the middle between two others.
     fn assert_middle(&self, node: f64, ends: [f64; 2]) {
         let [a, b] = ends.map(|end| self.position(end));
-        for (axis, found) in self.position(node).iter().enumerate() {
+        for (axis, coordinate) in self.position(node).iter().enumerate() {
             assert!(
-                (found - 0.5 * (a[axis] + b[axis])).abs() < 1e-9,
+                (coordinate - 0.5 * (a[axis] + b[axis])).abs() < 1e-9,
                 "{node} between {ends:?}"
             );
         }

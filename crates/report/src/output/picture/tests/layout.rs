@@ -37,15 +37,17 @@ fn check(size: Size, marks: &[Mark], what: &str) {
         .collect();
     assert!(words.len() > 4, "{what}");
     for (index, one) in words.iter().enumerate() {
-        let own = one.bounds();
+        let bounds = one.bounds();
         let [width, height] = [f64::from(size.0), f64::from(size.1)];
-        let is_inside =
-            own.low[0] >= 0.0 && own.low[1] >= 0.0 && own.high[0] <= width && own.high[1] <= height;
-        assert!(is_inside, "{what}: {one:?} {own:?} {size:?}");
+        let is_inside = bounds.low[0] >= 0.0
+            && bounds.low[1] >= 0.0
+            && bounds.high[0] <= width
+            && bounds.high[1] <= height;
+        assert!(is_inside, "{what}: {one:?} {bounds:?} {size:?}");
         for other in &words[..index] {
             let theirs = other.bounds();
             let apart = (0..2).any(|axis| {
-                own.low[axis] >= theirs.high[axis] || theirs.low[axis] >= own.high[axis]
+                bounds.low[axis] >= theirs.high[axis] || theirs.low[axis] >= bounds.high[axis]
             });
             assert!(apart, "{what}: {:?} on {:?}", one.words, other.words);
         }

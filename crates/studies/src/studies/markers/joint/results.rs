@@ -121,10 +121,10 @@ fn problem(
     let explained = report::is_explained(joint, specimens);
     let estimate = &joint.estimate;
     let parameters = estimate.with_keys().map(|(parameter, value)| {
-        let mut own = of_estimate(value, explained && value.standard_error > 0.0);
-        own["key"] = parameter.key.into();
-        own["unit"] = parameter.unit().into();
-        own
+        let mut entry = of_estimate(value, explained && value.standard_error > 0.0);
+        entry["key"] = parameter.key.into();
+        entry["unit"] = parameter.unit().into();
+        entry
     });
     let directions = estimate.directions.iter().map(|direction| {
         json!({

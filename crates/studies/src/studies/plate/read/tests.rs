@@ -62,7 +62,7 @@ fn studies_and_the_library_have_the_same_defaults() {
 fn all_faults_are_told_at_once_with_line_key_and_hint() {
     let text = "[plate]\nlenght = \"15 cm\"\nwidth = 50\nthickness = \"-2 mm\"\ncells = [60, 0]\n\
                 [material]\ncard = \"pva10\"\n[load]\nstretches = [\"15 mm\"]\n";
-    let told = faults(text);
+    let messages = faults(text);
     let expected = [
         (
             "plate.toml:2: plate.lenght: unknown key",
@@ -86,8 +86,8 @@ fn all_faults_are_told_at_once_with_line_key_and_hint() {
         ),
         ("plate.toml:9: load.stretches: \"15 mm\"", "%"),
     ];
-    assert_eq!(told.len(), expected.len(), "{told:#?}");
-    for (line, (start, hint)) in told.iter().zip(expected) {
+    assert_eq!(messages.len(), expected.len(), "{messages:#?}");
+    for (line, (start, hint)) in messages.iter().zip(expected) {
         assert!(line.starts_with(start) && line.contains(hint), "{line}");
     }
 }
@@ -95,9 +95,9 @@ fn all_faults_are_told_at_once_with_line_key_and_hint() {
 #[test]
 fn of_many_faults_the_first_are_told_and_the_others_counted() {
     let keys: String = (0..3000).map(|key| format!("k{key} = 1\n")).collect();
-    let told = faults(&format!("[plate]\n{keys}"));
-    assert_eq!(told.len(), 51);
-    assert_eq!(told[50], "2950 further findings are not listed");
+    let messages = faults(&format!("[plate]\n{keys}"));
+    assert_eq!(messages.len(), 51);
+    assert_eq!(messages[50], "2950 further findings are not listed");
 }
 
 #[test]
@@ -135,18 +135,18 @@ fn settings_that_contradict_each_other_are_refused() {
 fn a_plate_that_is_compared_with_itself_is_told_so() {
     let fine = grids("[plate]\ncells = [240, 80]\n").elements;
     assert!(fine.cells[1] >= 40 && fine.grading > 1.0);
-    let own = "[plate]\ncells = [48, 16]\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
+    let base = "[plate]\ncells = [48, 16]\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
     let equal = "[corrector]\ngrading = 1\n";
-    let study = parse(&format!("{own}{equal}")).unwrap();
+    let study = parse(&format!("{base}{equal}")).unwrap();
     assert!(study.warnings[0].to_string().contains("own equations"));
     let is_own_reference = |text: &str| grids(text).is_own_reference();
-    assert!(is_own_reference(&format!("{own}{equal}")));
+    assert!(is_own_reference(&format!("{base}{equal}")));
     let gauss = "[corrector]\ngrading = 1\nscheme = \"gauss\"\n";
-    assert!(!is_own_reference(&format!("{own}{gauss}")));
-    let graded = own.replace("grading = 1", "grading = 2");
+    assert!(!is_own_reference(&format!("{base}{gauss}")));
+    let graded = base.replace("grading = 1", "grading = 2");
     assert!(!is_own_reference(&format!("{graded}{equal}")));
     assert!(is_own_reference(&graded));
-    let q1 = own.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
+    let q1 = base.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
     assert!(is_own_reference(&format!("{q1}{gauss}")));
 }
 
@@ -160,10 +160,10 @@ fn compressions_are_a_path_of_their_own() {
 fn a_stretch_outside_the_range_of_the_card_is_a_warning() {
     let study = parse("[load]\nstretches = [0.5, 1.2]\n").unwrap();
     assert_eq!(study.warnings.len(), 1);
-    let told = study.warnings[0].to_string();
+    let warning = study.warnings[0].to_string();
     assert!(
-        told.contains("120 % stretch") && told.contains("0 to 100 %"),
-        "{told}"
+        warning.contains("120 % stretch") && warning.contains("0 to 100 %"),
+        "{warning}"
     );
 }
 
@@ -179,10 +179,10 @@ fn a_stretch_beyond_the_stability_of_the_law_is_a_warning() {
     let text = "[material]\ncard = \"vw.toml\"\n[load]\nstretches = [0.5, 0.75]\n";
     let study = load(&folder.path().join("plate.toml"), text, Budget::USUAL).unwrap();
     assert_eq!(study.warnings.len(), 1, "{:?}", study.warnings);
-    let told = study.warnings[0].to_string();
+    let warning = study.warnings[0].to_string();
     assert!(
-        told.contains("75 % stretch is beyond the stable range"),
-        "{told}"
+        warning.contains("75 % stretch is beyond the stable range"),
+        "{warning}"
     );
 }
 
@@ -200,10 +200,10 @@ fn softening(more: &str) -> Result<Loaded<Specimen>, Error> {
 #[test]
 fn only_a_material_that_softens_is_unloaded() {
     let history = "[load]\nstretches = [\"30 %\", \"60 %\", \"20 %\", \"60 %\"]\n";
-    let told = faults(history);
+    let messages = faults(history);
     assert!(
-        told[0].contains("from small to large") && told[0].contains("[softening]"),
-        "{told:?}"
+        messages[0].contains("from small to large") && messages[0].contains("[softening]"),
+        "{messages:?}"
     );
     let direct = "[corrector]\nmethod = \"direct\"\n";
     let study = softening(&format!("{history}{direct}")).unwrap();
@@ -247,6 +247,6 @@ fn automatic_finite_elements_are_as_fine_as_can_be_afforded() {
         few[1] == 160 && all[1] < 100 && all[1] >= 60,
         "{few:?} {all:?}"
     );
-    let own = format!("{fine}{many}[finite_element]\ncells = [280, 160]\n");
-    assert!(faults(&own)[0].contains("bytes of memory"));
+    let stated = format!("{fine}{many}[finite_element]\ncells = [280, 160]\n");
+    assert!(faults(&stated)[0].contains("bytes of memory"));
 }

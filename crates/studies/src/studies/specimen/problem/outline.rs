@@ -253,12 +253,12 @@ impl Outline {
             return None;
         }
         // What is left between a curve and chords falls with h², between a curve and parabolas with h⁴.
-        let whole = if mesh.degree() == 1 {
+        let factor = if mesh.degree() == 1 {
             4.0 / 3.0
         } else {
             16.0 / 15.0
         };
-        Some((self.elements_on(&mesh.rounded()?), whole))
+        Some((self.elements_on(&mesh.rounded()?), factor))
     }
 
     /// The triangles that local refinement begins with: as coarse as the coarsest of three meshes.
@@ -323,10 +323,10 @@ mod tests {
 
     #[test]
     fn places_are_told_without_what_rounding_left() {
-        let told = |position: f64| without_rounding(position, 20.0).to_string();
-        assert_eq!(told(6.123233995736766e-16), "0");
-        assert_eq!(told(20.000000000000004), "20");
-        assert_eq!(told(0.1 + 0.2), "0.3");
-        assert_eq!(told(-12.345678), "-12.345678");
+        let rounded = |position: f64| without_rounding(position, 20.0).to_string();
+        assert_eq!(rounded(6.123233995736766e-16), "0");
+        assert_eq!(rounded(20.000000000000004), "20");
+        assert_eq!(rounded(0.1 + 0.2), "0.3");
+        assert_eq!(rounded(-12.345678), "-12.345678");
     }
 }

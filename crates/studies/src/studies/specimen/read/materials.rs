@@ -152,7 +152,10 @@ impl Entry<'_> {
     /// What is wrong with the region of an entry that follows others, and the remedy.
     fn fault(&self, before: &[Self], outline: &Outline, mesh: &Mesh) -> Option<(String, String)> {
         let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
-        if let Some((one, other)) = before.first().and_then(|own| own.other_state(self)) {
+        if let Some((one, other)) = before
+            .first()
+            .and_then(|material| material.other_state(self))
+        {
             let message = format!("this card is in {one}, and the first one in {other}");
             return fault(
                 message,
@@ -160,7 +163,7 @@ impl Entry<'_> {
             );
         }
         let Some(region) = &self.on else {
-            let is_second = before.iter().any(|own| own.on.is_none());
+            let is_second = before.iter().any(|material| material.on.is_none());
             let message = "is missing: another card is for all remaining cells already";
             let message = is_second.then(|| message.to_owned())?;
             return fault(
@@ -174,14 +177,14 @@ impl Entry<'_> {
                 "take shape = \"mesh\" with a file whose cells have names, or write one [material]";
             return fault(message, hint);
         }
-        let before = before.iter().filter_map(|own| own.on.as_deref());
+        let before = before.iter().filter_map(|material| material.on.as_deref());
         fault_of(region, &before.collect::<Vec<_>>(), mesh)
     }
 
     /// The plane states of another card and of this one, where they differ.
     fn other_state(&self, other: &Self) -> Option<(&'static str, &'static str)> {
-        let state = |own: &Self| Some(own.card.as_ref()?.law.plane_state());
-        let (own, other) = (state(self)?, state(other)?);
-        (own != other).then(|| (other.name(), own.name()))
+        let state = |material: &Self| Some(material.card.as_ref()?.law.plane_state());
+        let (plane, other) = (state(self)?, state(other)?);
+        (plane != other).then(|| (other.name(), plane.name()))
     }
 }

@@ -92,15 +92,15 @@ fn read_mesh(section: &Section, import: &Import) -> Option<(Mesh, Exemptions)> {
         allowed: allowed.ok()?,
     };
     let read = import(&file, reading);
-    let (mesh, told) = match read {
-        Ok((mesh, told)) => (Some(mesh), told),
-        Err(told) => (None, told),
+    let (mesh, diagnostics) = match read {
+        Ok((mesh, diagnostics)) => (Some(mesh), diagnostics),
+        Err(diagnostics) => (None, diagnostics),
     };
-    for found in told {
-        let hint = found.hint.unwrap_or_default();
-        match found.severity {
-            Severity::Error => section.fault("file", &found.message, &hint),
-            Severity::Warning => section.warning("file", &found.message, &hint),
+    for diagnostic in diagnostics {
+        let hint = diagnostic.hint.unwrap_or_default();
+        match diagnostic.severity {
+            Severity::Error => section.fault("file", &diagnostic.message, &hint),
+            Severity::Warning => section.warning("file", &diagnostic.message, &hint),
         }
     }
     Some((mesh?, reading.allowed))

@@ -18,7 +18,7 @@ pub struct SupportsAndLoads<'a> {
     supports: Vec<Entry<'a, Support>>,
     loads: Vec<Entry<'a, Load>>,
     /// Whether all entries could be read.
-    whole: bool,
+    complete: bool,
 }
 
 impl<'a> SupportsAndLoads<'a> {
@@ -34,7 +34,7 @@ impl<'a> SupportsAndLoads<'a> {
         Self {
             supports,
             loads,
-            whole: all_supports && all_loads,
+            complete: all_supports && all_loads,
         }
     }
 
@@ -50,8 +50,14 @@ impl<'a> SupportsAndLoads<'a> {
 
     /// Records groups that the specimen does not have.
     pub fn check_groups(&self, mesh: &Mesh) {
-        let supports = self.supports.iter().map(|own| (&own.section, &own.group));
-        let loads = self.loads.iter().map(|own| (&own.section, &own.group));
+        let supports = self
+            .supports
+            .iter()
+            .map(|entry| (&entry.section, &entry.group));
+        let loads = self
+            .loads
+            .iter()
+            .map(|entry| (&entry.section, &entry.group));
         // That one is missing is told already.
         let stated = supports.chain(loads).filter(|(_, group)| !group.is_empty());
         for (section, group) in stated {
@@ -98,18 +104,19 @@ impl<'a> SupportsAndLoads<'a> {
     /// Records what keeps the problem from being solved on a mesh, at the entry that each fault names.
     pub fn check(&self, root: &Section, problem: &BoundaryProblem, mesh: &Mesh) {
         let known = |group: &str| mesh.groups().contains_key(group);
-        let supports = self.supports.iter().map(|own| &own.group);
-        let mut groups = supports.chain(self.loads.iter().map(|own| &own.group));
+        let supports = self.supports.iter().map(|entry| &entry.group);
+        let mut groups = supports.chain(self.loads.iter().map(|entry| &entry.group));
         if self.supports.is_empty()
-            || !self.whole
+            || !self.complete
             || !problem.thickness.is_finite()
-            || !groups.all(|own| known(own))
+            || !groups.all(|group| known(group))
         {
             return; // told already
         }
         let unstrained = |()| problem.unstrained(mesh).map_err(|fault| vec![fault]);
-        let found = problem.check(mesh).and_then(unstrained);
-        for fault in found.map_or_else(|faults| faults, |found| found.into_iter().collect()) {
+        let checked = problem.check(mesh).and_then(unstrained);
+        for fault in checked.map_or_else(|faults| faults, |warnings| warnings.into_iter().collect())
+        {
             let hint = fault.hint.unwrap_or_default();
             let entry = match fault.key.as_str() {
                 "load" => named(&self.loads, "load", &fault.message),
@@ -131,19 +138,23 @@ impl<'a> SupportsAndLoads<'a> {
 /// The last entry of a list that a fault names by its number, or the first by its group.
 fn named<'a, T>(entries: &'a [Entry<'a, T>], what: &str, message: &str) -> Option<&'a Section<'a>> {
     let numbered = entries.iter().enumerate();
-    let mut by_number = numbered.filter(|(number, own)| {
+    let mut by_number = numbered.filter(|(number, entry)| {
         message.contains(&format!(
             "{what} {} on the group `{}`",
             number + 1,
-            own.group
+            entry.group
         ))
     });
     let by_group = || {
-        let of_group = |own: &&Entry<T>| message.starts_with(&format!("the group `{}`", own.group));
+        let of_group =
+            |entry: &&Entry<T>| message.starts_with(&format!("the group `{}`", entry.group));
         entries.iter().find(of_group)
     };
-    let found = by_number.next_back().map(|(_, own)| own).or_else(by_group);
-    found.map(|own| &own.section)
+    let entry = by_number
+        .next_back()
+        .map(|(_, entry)| entry)
+        .or_else(by_group);
+    entry.map(|entry| &entry.section)
 }
 
 /// The entries of a list in the file, and whether all could be read; none where it has no such list.
@@ -166,8 +177,8 @@ fn entries<'a, T>(
         })
     });
     let entries: Vec<_> = entries.collect();
-    let whole = entries.len() == written;
-    (entries, whole)
+    let complete = entries.len() == written;
+    (entries, complete)
 }
 
 fn pairs<T: Copy>(entries: &[Entry<T>]) -> Vec<(String, T)> {

@@ -1,7 +1,7 @@
 //! The corrected fields of a path, and how each was reached.
 
 use crate::corrector::Multipliers;
-use crate::corrector::climb::Way;
+use crate::corrector::climb::Provenance;
 use crate::solve::State;
 
 /// Where the corrector began at a load factor.
@@ -30,7 +30,7 @@ pub struct Correction {
     /// The multipliers, condition after condition; none where they were not computed.
     pub multipliers: Vec<Vec<Multipliers>>,
     /// How a climb came to each field; empty where none climbed.
-    pub climbs: Vec<Way>,
+    pub climbs: Vec<Provenance>,
     /// The discretisation errors in mm of those that began at springs on a coarser mesh.
     pub discretisation_errors: Vec<f64>,
 }

@@ -46,12 +46,12 @@ pub fn solve(
     progress: Progress,
 ) -> Solution {
     let report = |factor: f64| specimen.report_solved(progress, &model.name, factor);
-    let on_the_way = |factor: f64| {
+    let report_short_step = |factor: f64| {
         let at = specimen.along.describe((1e4 * factor).round() / 1e4);
         progress.tell(&format!("{}, {at}, one of many short steps", model.name));
     };
     let attendance = Attendance {
-        on_the_way: &on_the_way,
+        on_the_way: &report_short_step,
         ..progress.along(&report)
     };
     let states = model.attended(&specimen.factors, settings, attendance);
@@ -185,10 +185,10 @@ pub fn solve_corrected(
         ));
     }
     let springs = solve_springs(specimen, ends, progress)?;
-    let found = OnLattice::correct(specimen, &mesh, springs, nested, ends, progress)?;
+    let on_lattice = OnLattice::correct(specimen, &mesh, springs, nested, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of(MASS_SPRING.name));
-    Ok((found.corrected, found.correction.multipliers))
+    Ok((on_lattice.corrected, on_lattice.correction.multipliers))
 }
 
 /// The corrections at all load factors.
@@ -277,9 +277,9 @@ impl<'a> Corrections<'a> {
         };
         let (reached, snaps) = (reached.displacement.clone(), reached.convergence.snaps);
         let start = springs.map_or(Start::Alone, |_| Start::LoadSteps);
-        let found = self.correct(springs.unwrap_or(&reached), &reached, stage);
-        let found = found.map_err(|fault| Box::new(End::at(specimen, stage.factor, fault)));
-        found.map(|(mut field, multipliers)| {
+        let corrected = self.correct(springs.unwrap_or(&reached), &reached, stage);
+        let corrected = corrected.map_err(|fault| Box::new(End::at(specimen, stage.factor, fault)));
+        corrected.map(|(mut field, multipliers)| {
             field.convergence.snaps = snaps;
             ((field, multipliers), start)
         })

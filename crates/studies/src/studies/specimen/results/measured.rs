@@ -31,10 +31,10 @@ pub struct Measured {
 impl Measured {
     /// The value in N or mm, from what happens at all groups.
     pub fn of(&self, groups: &[GroupState]) -> f64 {
-        let own = &groups[self.index];
+        let group = &groups[self.index];
         match self.quantity {
-            Quantity::Force => own.force[self.axis],
-            Quantity::Displacement => own.displacement[self.axis],
+            Quantity::Force => group.force[self.axis],
+            Quantity::Displacement => group.displacement[self.axis],
         }
     }
 
@@ -120,15 +120,15 @@ impl Specimen {
         let force = self.along_larger(&self.group, last, Quantity::Force);
         let held_along = self.held_along(mesh, &held);
         let nodes = |group: &str| &mesh.groups()[group].nodes;
-        let own = moved
+        let pushed = moved
             .iter()
             .find(|pushed| nodes(pushed.group) == nodes(&self.group));
         // A support that does more than the load along another axis is what is measured.
-        let is_beside = |own: &Pushed| {
-            held_along[force.axis] && own.axis.is_some_and(|axis| axis != force.axis)
+        let is_transverse = |pushed: &Pushed| {
+            held_along[force.axis] && pushed.axis.is_some_and(|axis| axis != force.axis)
         };
-        if let Some(own) = own.filter(|own| !is_beside(own)) {
-            return self.displaced(own, last);
+        if let Some(pushed) = pushed.filter(|pushed| !is_transverse(pushed)) {
+            return self.displaced(pushed, last);
         }
         if held_along == [false; 2] {
             return self.along_larger(&self.group, last, Quantity::Displacement);
@@ -176,10 +176,10 @@ impl Specimen {
     fn held_along(&self, mesh: &Mesh, held: &Held) -> [bool; 2] {
         let nodes = &mesh.groups()[&self.group].nodes;
         [0, 1].map(|axis| {
-            let own = nodes
+            let held_nodes = nodes
                 .iter()
                 .filter(|node| held.contains_key(&(2 * *node + axis)));
-            2 * own.count() > nodes.len()
+            2 * held_nodes.count() > nodes.len()
         })
     }
 
@@ -210,10 +210,10 @@ impl Specimen {
 
     /// Whether no other nodes than those of the measured group are held along an axis.
     fn holds_alone(&self, mesh: &Mesh, held: &Held, axis: usize) -> bool {
-        let own = &mesh.groups()[&self.group].nodes;
+        let nodes = &mesh.groups()[&self.group].nodes;
         held.keys()
             .filter(|unknown| *unknown % 2 == axis)
-            .all(|unknown| own.contains(&(unknown / 2)))
+            .all(|unknown| nodes.contains(&(unknown / 2)))
     }
 }
 

@@ -58,7 +58,7 @@ pub fn correct(
             None => Start::GridsAlone,
         };
         fields.push(field.state, start, field.multipliers);
-        fields.correction.climbs.extend(field.way);
+        fields.correction.climbs.extend(field.provenance);
     }
     Ok(fields)
 }

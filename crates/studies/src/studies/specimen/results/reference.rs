@@ -154,10 +154,10 @@ impl Reference {
             return by_meshes;
         }
         let known = by_meshes.into_iter().chain(self.recovered_percent(step));
-        let own = known.reduce(larger)?;
+        let error = known.reduce(larger)?;
         match self.outline {
-            Some(_) => Some(own + self.outline_percent(step)?),
-            None => Some(own),
+            Some(_) => Some(error + self.outline_percent(step)?),
+            None => Some(error),
         }
     }
 
@@ -179,7 +179,8 @@ impl Reference {
     /// Whether most of the own error is that of a file's outline, which more cells leave as it is.
     fn is_outline(&self) -> bool {
         let mut changes = self.outline.iter().flatten().enumerate();
-        let most = |change: f64, own: Option<f64>| own.is_some_and(|own| change > 0.5 * own);
+        let most =
+            |change: f64, error: Option<f64>| error.is_some_and(|error| change > 0.5 * error);
         let is_most = |(step, change): (usize, &OutlineChange)| {
             let of_measured = self.outline_percent(step).unwrap_or(0.0);
             most(change.displacement_percent, self.displacement_percent(step))
@@ -189,7 +190,7 @@ impl Reference {
     }
 
     /// What is said about a file's outline.
-    pub(super) fn outline_told(&self) -> Option<Block> {
+    pub(super) fn outline_note(&self) -> Option<Block> {
         let steps = 0..self.outline.as_ref()?.len();
         let percents = steps.filter_map(|step| self.outline_percent(step));
         let most = percents.reduce(larger)?;
@@ -211,13 +212,13 @@ impl Reference {
         if self.measures_none(step) {
             return Some(0.0);
         }
-        let all = [coarse, middle, &self.finest].map(|own| self.measured.at(own, step));
+        let all = [coarse, middle, &self.finest].map(|solution| self.measured.at(solution, step));
         let [Some(coarse), Some(middle), Some(fine)] = all else {
             return None;
         };
-        let found = richardson([coarse, middle, fine]);
-        let last = 100.0 * ((fine - middle) / found.extrapolated).abs();
-        Some(self.beside_corners(found.error_percent, last))
+        let estimate = richardson([coarse, middle, fine]);
+        let last = 100.0 * ((fine - middle) / estimate.extrapolated).abs();
+        Some(self.beside_corners(estimate.error_percent, last))
     }
 
     /// Whether three meshes show an order at a load factor.
@@ -225,7 +226,7 @@ impl Reference {
         let [coarse, middle] = &self.coarser[..] else {
             return false;
         };
-        let all = [coarse, middle, &self.finest].map(|own| self.measured.at(own, step));
+        let all = [coarse, middle, &self.finest].map(|solution| self.measured.at(solution, step));
         let [Some(coarse), Some(middle), Some(fine)] = all else {
             return false;
         };
@@ -275,10 +276,10 @@ impl Reference {
     }
 
     /// An error of the displacement with that of a file's outline.
-    fn with_outline(&self, step: usize, own: Option<f64>) -> Option<f64> {
+    fn with_outline(&self, step: usize, error: Option<f64>) -> Option<f64> {
         match &self.outline {
-            Some(changes) => Some(own? + changes.get(step)?.displacement_percent),
-            None => own,
+            Some(changes) => Some(error? + changes.get(step)?.displacement_percent),
+            None => error,
         }
     }
 
@@ -301,7 +302,7 @@ impl Reference {
             let fields: Vec<Vec<f64>> = fields.collect();
             let distance = |u: &[f64], v: &[f64]| percent_at_all_nodes(at, u, v);
             match &fields[..] {
-                [halved, own] if is_refined => Some(self.by_halving(distance(own, halved))),
+                [halved, finest] if is_refined => Some(self.by_halving(distance(finest, halved))),
                 [only, fine] => Some(distance(only, fine)),
                 [first, second, fine] => {
                     Some(self.by_coarser(step, distance(first, second), distance(second, fine)))
@@ -329,8 +330,8 @@ impl Reference {
     ///
     /// Two meshes of local refinement tell little of it: most of their cells are the same.
     fn by_halving(&self, distance: f64) -> f64 {
-        let left = 0.5_f64.powi(self.finest.mesh.shape(0).degree() as i32);
-        distance / (1.0 - left)
+        let remainder = 0.5_f64.powi(self.finest.mesh.shape(0).degree() as i32);
+        distance / (1.0 - remainder)
     }
 
     /// How many times larger recovery tells the error of what is measured than three meshes do, 1 at least: coarse cells tell too high an order

@@ -119,8 +119,15 @@ impl Reference {
             let halved = specimen.outline.fitted(triangles.refined_where(&all));
             let mesh = specimen.outline.elements_on(&halved);
             // Where a path ends is told of the meshes whose results are given.
-            let mut untold = Vec::new();
-            on_mesh(specimen, &mesh, Some(finest), FILE, &mut untold, progress)
+            let mut ignored_ends = Vec::new();
+            on_mesh(
+                specimen,
+                &mesh,
+                Some(finest),
+                FILE,
+                &mut ignored_ends,
+                progress,
+            )
         });
         let all_halved = all_halved.transpose()?;
         Self::of_meshes(specimen, meshes, rounds, all_halved, ends, progress)
@@ -203,8 +210,8 @@ pub fn finest(
     let mut all = Vec::new();
     let finest = nested(specimen, &mut all, progress)?.pop();
     let finest = finest.expect("a mesh at least");
-    let is_whole = finest.reached() == specimen.factors.len();
-    ends.extend(all.pop().filter(|_| !is_whole));
+    let is_complete = finest.reached() == specimen.factors.len();
+    ends.extend(all.pop().filter(|_| !is_complete));
     Ok(finest)
 }
 
@@ -227,7 +234,7 @@ fn on_mesh(
     let settings = specimen.elements_newton;
     let by_quarter = quarter(specimen, mesh).and_then(|quarter| {
         let report = |factor: f64| specimen.report_solved(progress, &model.name, factor);
-        let coarser = coarser.map(|own| (&own.mesh, &own.states[..]));
+        let coarser = coarser.map(|solution| (&solution.mesh, &solution.states[..]));
         let attendance = progress.along(&report);
         quarter.states(&model, &specimen.factors, coarser, settings, attendance)
     });
@@ -250,8 +257,8 @@ impl Round {
         let known = || estimates.iter().enumerate();
         let known = || known().filter_map(|(step, estimate)| Some((step, estimate.as_ref()?)));
         let mut errors = known().filter_map(|(step, estimate)| {
-            let own = measured.at(solution, step)?;
-            Some(100.0 * (estimate.force / own).abs())
+            let value = measured.at(solution, step)?;
+            Some(100.0 * (estimate.force / value).abs())
         });
         let mut energies = known().map(|(_, estimate)| estimate.energy.percent());
         Self {
@@ -279,12 +286,12 @@ fn outline_changes(
     middle: Option<&Solution>,
     progress: Progress,
 ) -> Result<Option<Vec<OutlineChange>>, Error> {
-    let Some((rounded, whole)) = specimen.outline.rounded_mesh() else {
+    let Some((rounded, factor)) = specimen.outline.rounded_mesh() else {
         return Ok(None);
     };
     // Where a path ends is told of the meshes whose results are given.
-    let mut untold = Vec::new();
-    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, middle, FILE, &mut untold, progress);
+    let mut ignored_ends = Vec::new();
+    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, middle, FILE, &mut ignored_ends, progress);
     let rounded = on(&rounded)?;
     let halved;
     let middle = match middle {
@@ -296,10 +303,11 @@ fn outline_changes(
     };
     let corrected = specimen.outline.corrected_mesh();
     let change = |step| {
-        let [curved, straight] = [&rounded, middle].map(|own| on_nodes_of(&corrected, own, step));
+        let [curved, straight] =
+            [&rounded, middle].map(|solution| on_nodes_of(&corrected, solution, step));
         Some(OutlineChange {
-            measured: whole * (what.at(&rounded, step)? - what.at(middle, step)?),
-            displacement_percent: whole.abs()
+            measured: factor * (what.at(&rounded, step)? - what.at(middle, step)?),
+            displacement_percent: factor.abs()
                 * area_weighted_percent(&corrected, &curved?, &straight?),
         })
     };
@@ -320,7 +328,7 @@ fn indicators(cells: usize, estimates: &[Option<ErrorEstimate>]) -> Vec<f64> {
 
 /// The estimates that lack no point.
 fn complete(estimates: Vec<Option<ErrorEstimate>>) -> Vec<Option<ErrorEstimate>> {
-    let complete = |one: Option<ErrorEstimate>| one.filter(|own| own.energy.is_complete);
+    let complete = |one: Option<ErrorEstimate>| one.filter(|estimate| estimate.energy.is_complete);
     estimates.into_iter().map(complete).collect()
 }
 
@@ -351,9 +359,9 @@ fn estimates(
     let is_of_grip = measured.group == specimen.group && measured.axis == 0;
     let by_quarter = quarter(specimen, mesh).filter(|_| is_of_grip);
     let by_quarter = by_quarter.and_then(|quarter| quarter.influences(states));
-    let of_whole = || model.influences(states, &measured.group, measured.axis);
-    let influences = by_quarter.unwrap_or_else(of_whole).into_iter();
-    let influences = influences.map(|own| own.map(|field| on_sides(&field)));
+    let of_full = || model.influences(states, &measured.group, measured.axis);
+    let influences = by_quarter.unwrap_or_else(of_full).into_iter();
+    let influences = influences.map(|influence| influence.map(|field| on_sides(&field)));
     let fields = states.iter().map(|state| on_sides(&state.displacement));
     let fields: Vec<Vec<f64>> = fields.collect();
     let solved = fields.iter().map(|displacement| SheetSolution {

@@ -28,7 +28,7 @@ impl Reference {
 
     /// The outline's share of the error, and the rounds of local refinement.
     pub fn history(&self) -> Vec<Block> {
-        let outline = self.outline_told();
+        let outline = self.outline_note();
         if self.rounds.is_empty() {
             return outline.into_iter().collect();
         }

@@ -32,7 +32,7 @@ pub struct Deviation {
     /// Of the corrected field.
     pub corrected: Distance,
     /// The finite elements' own errors of displacement, departure and what is measured in %; not a number where they are not known.
-    pub own: [f64; 3],
+    pub reference_errors: [f64; 3],
     /// Whether what is measured is none, of the corrected field and of the finite elements.
     pub measures_none: bool,
 }
@@ -128,7 +128,7 @@ pub fn deviations(specimen: &Specimen, models: &Models) -> Vec<Option<Deviation>
         Some(Deviation {
             springs: of(ModelKind::MassSpring),
             corrected,
-            own: [
+            reference_errors: [
                 displacement,
                 displacement / share,
                 reference.measured_percent(step).unwrap_or(f64::NAN),
@@ -151,7 +151,7 @@ pub fn is_open(specimen: &Specimen, models: &Models) -> bool {
 /// The largest true deviation lies between d − e at the load factor with the largest measured one, d, and the largest
 /// d + e of all load factors.
 fn worst(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
-    let [deviation, own] = pairs.clone().fold([f64::NEG_INFINITY, 0.0], |most, pair| {
+    let [deviation, error] = pairs.clone().fold([f64::NEG_INFINITY, 0.0], |most, pair| {
         if pair[0] > most[0] || pair[0].is_nan() {
             pair
         } else {
@@ -160,7 +160,7 @@ fn worst(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
     });
     let above = pairs.map(|[d, e]| d + e - deviation);
     // A number that is not known stays so.
-    [deviation, above.fold(own, larger)]
+    [deviation, above.fold(error, larger)]
 }
 
 /// The requirements, over all load factors with a corrected field and finite elements.
@@ -209,19 +209,25 @@ fn deviation_checks(
     let check = |(judged, name, limit): (Judged, &str, Option<f64>)| {
         let limit = limit?;
         let pairs = deviations.iter();
-        let pairs = pairs.map(|own| [own.corrected.size(judged), own.own[judged as usize]]);
-        let [deviation, own] = worst(pairs);
-        let nothing = judged == Judged::Measured && deviations.iter().all(|own| own.measures_none);
+        let pairs = pairs.map(|entry| {
+            [
+                entry.corrected.size(judged),
+                entry.reference_errors[judged as usize],
+            ]
+        });
+        let [deviation, error] = worst(pairs);
+        let nothing =
+            judged == Judged::Measured && deviations.iter().all(|entry| entry.measures_none);
         let judgement = if nothing {
             Judgement::Exact(NOTHING)
         } else if is_own_reference(specimen) {
             own_reference()
         } else {
-            judge(deviation, own, limit, remedy)
+            judge(deviation, error, limit, remedy)
         };
         let quantity = format!("corrected {name} from the finite elements");
         let check = Check::new(quantity, "%", Wanted::AtMost(limit), SOURCE, deviation);
-        Some(check.judged(judgement, own))
+        Some(check.judged(judgement, error))
     };
     judged.into_iter().filter_map(check).collect()
 }
@@ -243,7 +249,7 @@ fn correction_check(specimen: &Specimen, deviations: &[Deviation], remedy: &str)
         let judgement = if is_own_reference(specimen) {
             own_reference()
         } else {
-            judge_correction(pair, deviation.own[0], 100.0 - wanted, remedy)
+            judge_correction(pair, deviation.reference_errors[0], 100.0 - wanted, remedy)
         };
         // A ratio of two roundings is no correction, and none is needed.
         let value = match judgement {
@@ -251,13 +257,13 @@ fn correction_check(specimen: &Specimen, deviations: &[Deviation], remedy: &str)
             _ => correction,
         };
         if least.as_ref().is_none_or(|(before, ..)| value < *before) {
-            least = Some((value, deviation.own[0], judgement));
+            least = Some((value, deviation.reference_errors[0], judgement));
         }
     }
-    let (value, own, judgement) = least?;
+    let (value, error, judgement) = least?;
     let quantity = "correction of the displacement";
     let check = Check::new(quantity, "%", Wanted::AtLeast(wanted), SOURCE, value);
-    Some(check.judged(judgement, own))
+    Some(check.judged(judgement, error))
 }
 
 #[cfg(test)]
@@ -266,11 +272,11 @@ mod tests {
 
     #[test]
     fn the_worst_of_all_load_factors_comes_with_what_is_not_known_about_it() {
-        let [deviation, own] = worst([[1.0, 0.01], [2.0, 0.02]].into_iter());
-        assert!(deviation == 2.0 && (own - 0.02).abs() < 1e-12);
+        let [deviation, error] = worst([[1.0, 0.01], [2.0, 0.02]].into_iter());
+        assert!(deviation == 2.0 && (error - 0.02).abs() < 1e-12);
         // A smaller deviation that could be larger than the largest one.
-        let [deviation, own] = worst([[1.9, 0.5], [2.0, 0.02]].into_iter());
-        assert!(deviation == 2.0 && (own - 0.4).abs() < 1e-12);
+        let [deviation, error] = worst([[1.9, 0.5], [2.0, 0.02]].into_iter());
+        assert!(deviation == 2.0 && (error - 0.4).abs() < 1e-12);
         assert!(worst([[1.0, f64::NAN], [2.0, 0.0]].into_iter())[1].is_nan());
         assert!(worst([[1.0, 0.1], [f64::NAN, 0.0], [3.0, 0.1]].into_iter())[0].is_nan());
     }

@@ -28,7 +28,7 @@ impl fmt::Display for Start {
 
 /// How a climb came to its field.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Way {
+pub struct Provenance {
     /// The start of the field on the first grid.
     pub start: Start,
     /// Cells of the first grid.
@@ -40,7 +40,7 @@ pub struct Way {
     pub by_load_path: Vec<[usize; 2]>,
 }
 
-impl Way {
+impl Provenance {
     /// The way from one start on a grid with so many cells.
     pub(super) fn from_start(start: Start, cells: [usize; 2]) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl Way {
     }
 }
 
-impl fmt::Display for Way {
+impl fmt::Display for Provenance {
     /// `springs, corrected on 8 × 4 cells`, and `; Newton's method along a path of load steps on 60 × 20 cells` where it was needed.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [along, across] = self.cells;

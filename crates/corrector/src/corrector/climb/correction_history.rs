@@ -32,25 +32,25 @@ const SMALLEST: f64 = 1.0 - SLOWEST;
 
 /// Corrections of an iteration, one after the other.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fall {
+pub struct CorrectionHistory {
     /// Root mean squares over the nodes in mm.
     pub corrections: Vec<f64>,
     /// θ, as far as known.
     pub weakest: f64,
     diagonal: Vec<f64>,
-    beside: Vec<f64>,
+    off_diagonal: Vec<f64>,
     /// βⱼ/αⱼ of the last iteration.
     carried: f64,
 }
 
-impl Fall {
+impl CorrectionHistory {
     /// Begins with a first correction; `weakest` is θ of coarser grids, 1 where there are none.
     pub fn new(first: f64, weakest: f64) -> Self {
         Self {
             corrections: vec![first],
             weakest,
             diagonal: Vec::new(),
-            beside: Vec::new(),
+            off_diagonal: Vec::new(),
             carried: 0.0,
         }
     }
@@ -62,9 +62,9 @@ impl Fall {
             return;
         }
         self.diagonal.push(1.0 / length + self.carried);
-        self.beside.push(share.sqrt() / length);
+        self.off_diagonal.push(share.sqrt() / length);
         self.carried = share / length;
-        let smallest = smallest_eigenvalue(&self.diagonal, &self.beside);
+        let smallest = smallest_eigenvalue(&self.diagonal, &self.off_diagonal);
         self.weakest = self.weakest.min(smallest.max(SMALLEST));
     }
 
@@ -74,7 +74,7 @@ impl Fall {
     }
 
     /// The error that the last correction leaves once it has been applied.
-    pub fn left(&self) -> f64 {
+    pub fn remaining_error(&self) -> f64 {
         let last = self.corrections[self.corrections.len() - 1];
         let rate = self.rate().max(1.0 - self.weakest);
         last * (ROOM * rate / (1.0 - rate)).max(LEFT)
@@ -86,8 +86,8 @@ impl Fall {
             return 0.0;
         };
         let steps = (self.corrections.len() - 1) as f64;
-        let whole = (last / self.first()).powf(1.0 / steps);
-        whole.max(last / before).min(SLOWEST)
+        let mean_ratio = (last / self.first()).powf(1.0 / steps);
+        mean_ratio.max(last / before).min(SLOWEST)
     }
 
     /// θ for an iteration that continues this one: from Lanczos' matrix, or from the fall of the corrections.
@@ -107,10 +107,10 @@ impl Fall {
 }
 
 /// The smallest eigenvalue of a symmetric tridiagonal matrix.
-fn smallest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
+fn smallest_eigenvalue(diagonal: &[f64], off_diagonal: &[f64]) -> f64 {
     let entry = |row: usize, column: usize| match row.abs_diff(column) {
         0 => diagonal[row],
-        1 => beside[row.min(column)],
+        1 => off_diagonal[row.min(column)],
         _ => 0.0,
     };
     let size = diagonal.len();
