@@ -70,7 +70,7 @@ fn too_large_studies_are_refused_with_key_estimate_and_remedy() {
         ),
         (
             study("released_plate.toml", &[("step", "\"1e-9 s\"")]),
-            ["time.step", "550,000,000 time steps"],
+            ["time.step", "143,000,000 time steps"],
         ),
         (
             study(

@@ -177,12 +177,17 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     )
 }
 
+/// How many instants of the corrected motion are marked on a curve: more of them would hide the line that they are on.
+const MARKERS: usize = 60;
+
 fn probes(sheet: &MovingSheet, motions: &Motions) -> LineChart {
     let mut lines = Vec::new();
     for (probe, colour) in sheet.probes.iter().zip(PALETTE.into_iter().cycle()) {
         lines.extend(motions.correction.motion.as_ref().map(|corrected| {
             let points =
                 corrected.points(|now| [now.time, corrected.at(&now.displacement, probe)[0]]);
+            let points = points.iter().step_by(points.len().div_ceil(MARKERS).max(1));
+            let points: Vec<[f64; 2]> = points.copied().collect();
             let label = format!("{}, corrected", probe.name);
             Line::new(label, points, colour, Stroke::Points)
         }));
