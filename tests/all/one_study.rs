@@ -240,7 +240,7 @@ fn what_is_measured_within_a_sheet_in_uniaxial_tension_is_exact_in_every_model_t
         close("stretch_2", stretch.powf(-0.5));
         close("displacement_x_mm", 7.0 * (stretch - 1.0));
         close("cauchy_xy_MPa", 0.0);
-        assert!((of(&lengths, clip, "stretch") - stretch).abs() < 1e-9);
+        assert!((of(&lengths, clip, "extensometer_stretch") - stretch).abs() < 1e-9);
         // σ A, with A = A₀ / λ of 10 × 2 mm².
         let force = 20.0 / stretch * of(&head, row, "cauchy_xx_MPa");
         assert!((of(&lengths, clip, "force_x_N") / force - 1.0).abs() < 1e-8);
@@ -341,12 +341,12 @@ fn a_measured_curve_is_drawn_over_that_of_the_models() {
         };
         let lines = &charts[0].0.lines;
         assert_eq!((lines.len(), &*lines[0].label), (4, "measured"));
-        // The third row has 2 N or 20 N, and 2 mm, 2 cm, a stretch of 2, or 2 %.
+        // The third row has 2 N or 20 N, and 2 mm, 2 cm, a stretch of 200 % from rest, or 2 %.
         let [moved, force] = lines[0].points[2];
         let expected = [
             ("Standardweg", 2.0),
             ("cm", 20.0),
-            ("stretch", 100.0),
+            ("stretch", 200.0),
             ("strain", 2.0),
         ];
         let expected = expected
