@@ -107,8 +107,8 @@ pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
 
 /// The same of a plate's lattice, which may have an area term.
 pub fn warning_of_plate(law: &dyn HyperelasticLaw) -> Option<String> {
-    let told = warning(law)?;
-    Some(told + "; an area term (`mass_spring.area_term`) gives them the sheet's ν")
+    let message = warning(law)?;
+    Some(message + "; an area term (`mass_spring.area_term`) gives them the sheet's ν")
 }
 
 impl MassSpring {
@@ -244,8 +244,8 @@ impl MassSpring {
     /// Stretch and force of every spring of a lattice with a history, which is empty for a lattice that was never loaded.
     pub fn spring_states(&self, displacement: &[f64], history: &[f64]) -> Vec<SpringState> {
         let state = |(index, spring): (usize, &Spring)| {
-            let own = self.lattice.connectivity().values(index, displacement);
-            let pose = self.lattice.pose_after(index, &own, history);
+            let displacements = self.lattice.connectivity().values(index, displacement);
+            let pose = self.lattice.pose_after(index, &displacements, history);
             SpringState {
                 stretch: pose.stretch,
                 force: spring.area * pose.response.nominal_stress,

@@ -41,7 +41,7 @@ impl<'a> Dashpots<'a> {
         };
         let branches = material.recursions(elapsed).zip(&memory[1..]);
         branches
-            .map(|(own, q)| own.keeps * q + own.takes * (now - memory[0]))
+            .map(|(recursion, q)| recursion.keeps * q + recursion.takes * (now - memory[0]))
             .collect()
     }
 }
@@ -83,7 +83,7 @@ impl Viscosity for Dashpots<'_> {
                 .sum();
             let takes: f64 = material
                 .recursions(motion.elapsed)
-                .map(|own| own.takes)
+                .map(|recursion| recursion.takes)
                 .sum();
             relaxing = pose.stretch * q;
             // d(λ Q)/dλ with dQ = Σ takes dS∞ and λ dS∞/dλ = P′ − S∞.

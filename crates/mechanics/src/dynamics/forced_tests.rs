@@ -113,11 +113,11 @@ fn the_steady_state_is_that_of_the_difference_equations() {
                 (v * turn).im,
                 (a * turn).im,
             ];
-            let found = [&now.displacement, &now.velocity, &now.acceleration].map(|x| x[0]);
-            for (found, expected) in found.into_iter().zip(expected) {
+            let computed = [&now.displacement, &now.velocity, &now.acceleration].map(|x| x[0]);
+            for (computed, expected) in computed.into_iter().zip(expected) {
                 assert!(
-                    (found - expected).abs() < 1e-9,
-                    "{integrator:?}, {} s: {found} {expected}",
+                    (computed - expected).abs() < 1e-9,
+                    "{integrator:?}, {} s: {computed} {expected}",
                     now.time
                 );
             }
@@ -269,8 +269,8 @@ fn kinks_between_instants_are_met_and_not_told() {
     assert_eq!(history.times(), [0.0, 0.25, 0.5, 0.75, 1.0]);
     let speeds: Vec<f64> = history.instants.iter().map(|now| now.velocity[0]).collect();
     // 3 mm in 0.75 s.
-    for (found, expected) in speeds.into_iter().zip([0.0, 4.0, 4.0, 4.0, 0.0]) {
-        assert!((found - expected).abs() < 1e-12);
+    for (speed, expected) in speeds.into_iter().zip([0.0, 4.0, 4.0, 4.0, 0.0]) {
+        assert!((speed - expected).abs() < 1e-12);
     }
     // ½ k u² at the end, and the kinetic energy that was given and taken back.
     let end = &history.instants[4].energy;

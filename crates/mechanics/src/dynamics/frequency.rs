@@ -35,8 +35,8 @@ pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
     };
     let pairs = modes.into_iter().map(|mode| (effective(&mode), mode));
     let most = pairs.max_by(|a, b| a.0.total_cmp(&b.0));
-    let whole: f64 = along().map(|i| mass[i]).sum();
-    most.filter(|(effective, _)| *effective >= PRINCIPAL * whole)
+    let total: f64 = along().map(|i| mass[i]).sum();
+    most.filter(|(effective, _)| *effective >= PRINCIPAL * total)
         .map(|(_, mode)| mode)
 }
 
@@ -53,8 +53,8 @@ pub fn principal(
 ) -> Result<Option<Mode>, SolveFault> {
     for count in [6, 24, 96] {
         let modes = slowest(motion, held, displacement, count)?;
-        if let Some(found) = strongest(modes, &motion.mass, axis) {
-            return Ok(Some(found));
+        if let Some(mode) = strongest(modes, &motion.mass, axis) {
+            return Ok(Some(mode));
         }
     }
     Ok(None)
@@ -110,10 +110,10 @@ pub fn slowest(
         if changes.fold(0.0, larger) < TOLERANCE {
             let shapes = basis * &ritz.eigenvectors;
             let mode = |(value, shape): (&f64, DVectorView<f64>)| {
-                let own = shape.component_div(&roots);
+                let scaled = shape.component_div(&roots);
                 Mode {
                     frequency: 1.0 / (TAU * value.sqrt()),
-                    shape: spread(assembly.free(), own.as_slice(), held.len()),
+                    shape: spread(assembly.free(), scaled.as_slice(), held.len()),
                 }
             };
             return Ok(values.iter().zip(shapes.column_iter()).map(mode).collect());
@@ -216,8 +216,8 @@ mod tests {
         }
         // The largest Ritz value with its bound is never below, and not far above.
         let most = squares[squares.len() - 1].sqrt();
-        let found = fastest(pattern, &stiffness, &mass);
-        assert!((1.0..1.05).contains(&(found / most)), "{found} {most}");
+        let highest = fastest(pattern, &stiffness, &mass);
+        assert!((1.0..1.05).contains(&(highest / most)), "{highest} {most}");
     }
 
     #[test]
@@ -232,8 +232,8 @@ mod tests {
             mode(2.0, [0.7, 0.0, 0.7, -0.3]),
             mode(3.0, [-0.1, 0.8, 0.0, 0.9]),
         ];
-        let found = [0, 1].map(|axis| strongest(modes.clone(), &[1.0; 4], axis).unwrap().frequency);
-        assert_eq!(found, [2.0, 3.0]);
+        let frequencies = [0, 1].map(|axis| strongest(modes.clone(), &[1.0; 4], axis).unwrap().frequency);
+        assert_eq!(frequencies, [2.0, 3.0]);
         assert_eq!(strongest(modes[..1].to_vec(), &[1.0; 4], 0), None);
     }
 }

@@ -79,7 +79,7 @@ impl Implicit {
     /// Whether there is a factor for a step of this length, up to rounding of times.
     fn has_factor(&self, step: f64) -> bool {
         self.factorised
-            .is_some_and(|own| (own / step - 1.0).abs() < 1e-6)
+            .is_some_and(|factor_step| (factor_step / step - 1.0).abs() < 1e-6)
     }
 
     /// Factorises K + γ/(β h) C + (1 − αₘ)/((1 − α_f) β h²) M at a state.
@@ -257,8 +257,8 @@ impl Stepper for Implicit {
         if self.longest.is_none() {
             let held = motion.held(at.time);
             let modes = frequency::slowest(motion, &held, &at.displacement, 1)?;
-            let own = modes.first().map(|mode| 1.0 / mode.frequency);
-            let periods = own.into_iter().chain(motion.shortest_period());
+            let slowest_period = modes.first().map(|mode| 1.0 / mode.frequency);
+            let periods = slowest_period.into_iter().chain(motion.shortest_period());
             let shortest = periods.reduce(f64::min);
             self.longest = shortest.map(|period| period / STEPS_IN_PERIOD);
         }

@@ -325,14 +325,14 @@ impl<'a> March<'a> {
     fn astray(&self, energy: &EnergyBalance, trust: Trust) -> f64 {
         let gain = energy.total() - self.pace.from.total();
         let viscous_work = energy.viscous_work - self.pace.from.viscous_work;
-        let made = match trust {
+        let created = match trust {
             Trust::AllEnergies => gain,
             Trust::ViscousWorkTooLarge => gain.min(gain - viscous_work),
         };
         if self.stepper.conserves() {
-            made.max(-gain)
+            created.max(-gain)
         } else {
-            made
+            created
         }
     }
 

@@ -39,14 +39,14 @@ impl StepForces<'_> {
             memory: self.memory.of(element),
             elapsed: self.elapsed,
         };
-        let size = local.stiffness.as_ref().map_or(0, |own| own.len());
+        let size = local.stiffness.as_ref().map_or(0, |stiffness| stiffness.len());
         let [mut by_displacement, mut by_velocity] = [(); 2].map(|()| vec![0.0; size]);
         let tangents = [&mut by_displacement[..], &mut by_velocity[..]];
-        let own = ViscousLocal {
+        let viscous_local = ViscousLocal {
             force: local.residual,
             tangents: local.stiffness.is_some().then_some(tangents),
         };
-        viscosity.add_element(element, motion, own)?;
+        viscosity.add_element(element, motion, viscous_local)?;
         let parts = by_displacement.iter().zip(&by_velocity);
         for (sum, (k, c)) in local.stiffness.into_iter().flatten().zip(parts) {
             *sum += self.by_displacement * k + self.by_velocity * c;
@@ -70,11 +70,11 @@ impl Potential for StepForces<'_> {
     fn evaluate_element(&self, element: usize, u: &[f64], mut local: Local<'_>) -> Evaluated {
         let mut energy = 0.0;
         if self.elastic {
-            let own = Local {
+            let elastic_local = Local {
                 residual: &mut *local.residual,
                 stiffness: local.stiffness.as_deref_mut(),
             };
-            energy = self.energy.evaluate_element(element, u, own)?;
+            energy = self.energy.evaluate_element(element, u, elastic_local)?;
         }
         if let Some(viscosity) = self.viscosity {
             self.add_viscous(viscosity, element, u, local)?;

@@ -125,8 +125,8 @@ impl Memory {
                 memory: self.of(element),
                 elapsed,
             };
-            let own = self.starts[element]..self.starts[element + 1];
-            viscosity.remember(element, motion, &mut next.values[own])?;
+            let range = self.starts[element]..self.starts[element + 1];
+            viscosity.remember(element, motion, &mut next.values[range])?;
         }
         Ok(next)
     }

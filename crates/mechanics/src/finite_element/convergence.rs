@@ -98,44 +98,44 @@ mod tests {
     #[test]
     fn corners_have_the_exponents_of_williams() {
         for (degrees, exponent) in [(360.0_f64, 0.5), (270.0, 0.544_483_7), (225.0, 0.673_583)] {
-            let found = corner_exponent(degrees.to_radians());
-            assert!((found - exponent).abs() < 1e-6, "{degrees}: {found}");
+            let computed = corner_exponent(degrees.to_radians());
+            assert!((computed - exponent).abs() < 1e-6, "{degrees}: {computed}");
         }
     }
 
     #[test]
     fn a_power_law_is_extrapolated_exactly() {
         let value = |h: f64| 3.0 + 0.2 * h.powf(1.7);
-        let found = richardson([value(4.0), value(2.0), value(1.0)]);
-        assert!((found.order.unwrap() - 1.7).abs() < 1e-12);
-        assert!((found.extrapolated - 3.0).abs() < 1e-12);
-        assert!((found.error_percent - 20.0 / 3.0).abs() < 1e-10);
+        let extrapolation = richardson([value(4.0), value(2.0), value(1.0)]);
+        assert!((extrapolation.order.unwrap() - 1.7).abs() < 1e-12);
+        assert!((extrapolation.extrapolated - 3.0).abs() < 1e-12);
+        assert!((extrapolation.error_percent - 20.0 / 3.0).abs() < 1e-10);
     }
 
     #[test]
     fn an_order_by_accident_makes_no_error_small() {
         // The error changes its sign between the last two meshes: 1 %, 0.1 % and -0.09 %, or nearly vanishes.
         for fine in [0.9991, 1.000_999] {
-            let found = richardson([1.01, 1.001, fine]);
-            assert!(found.error_percent > 0.003, "{fine}: {found:?}");
+            let extrapolation = richardson([1.01, 1.001, fine]);
+            assert!(extrapolation.error_percent > 0.003, "{fine}: {extrapolation:?}");
         }
         assert_eq!(richardson([2.0; 3]).error_percent, 0.0);
     }
 
     #[test]
     fn a_sequence_that_hardly_converges_is_not_extrapolated_far_away() {
-        let found = richardson([45.8, 45.9, 45.99]);
-        assert_eq!(found.extrapolated, 45.99);
-        assert!(found.error_percent > 0.5, "{found:?}");
+        let extrapolation = richardson([45.8, 45.9, 45.99]);
+        assert_eq!(extrapolation.extrapolated, 45.99);
+        assert!(extrapolation.error_percent > 0.5, "{extrapolation:?}");
     }
 
     #[test]
     fn a_sequence_that_does_not_converge_gets_no_order() {
-        let found = richardson([1.0, 1.1, 1.0]);
-        assert_eq!(found.order, None);
-        assert_eq!(found.extrapolated, 1.0);
+        let extrapolation = richardson([1.0, 1.1, 1.0]);
+        assert_eq!(extrapolation.order, None);
+        assert_eq!(extrapolation.extrapolated, 1.0);
         // The last difference is all that is known of its error.
-        assert!((found.error_percent - 10.0).abs() < 1e-12);
+        assert!((extrapolation.error_percent - 10.0).abs() < 1e-12);
         let apart = richardson([1.0, 1.1, 1.3]);
         assert!(apart.order.is_none() && apart.extrapolated == 1.3);
     }

@@ -64,7 +64,7 @@ pub fn side_by_side(
     influences: Vec<Result<Vec<f64>, SolveFault>>,
 ) -> Vec<Result<ErrorEstimate, SolveFault>> {
     let pairs = solutions.into_par_iter().zip(influences);
-    let estimates = pairs.map(|(own, influence)| Ok(own.estimate(recovery, &influence?)));
+    let estimates = pairs.map(|(solution, influence)| Ok(solution.estimate(recovery, &influence?)));
     estimates.collect()
 }
 
@@ -173,10 +173,10 @@ impl SheetSolution<'_> {
             let z = Vector4::from(mesh.gradient_at(influence, point.cell, point.local));
             let z_error = Vector4::from(other.at(mesh, point.cell, point.local)) - z;
             let linear = point.tangent * error;
-            let beyond = self
+            let nonlinear = self
                 .stress(point.cell, &(point.gradient + error))
                 .map_or(0.0, |stress| (stress - point.stress - linear).dot(&z));
-            force += point.volume * (linear.dot(&z_error) + beyond);
+            force += point.volume * (linear.dot(&z_error) + nonlinear);
             energy.add(point, &error);
         });
         if !energy.is_complete {
@@ -194,12 +194,12 @@ impl SheetSolution<'_> {
     /// The distance in the energy norm to the field whose displacement gradient at a point of a cell in natural coordinates is given:
     /// the true error, where that field is the exact one.
     pub fn distance(&self, gradient: impl Fn(usize, [f64; 2]) -> [f64; 4]) -> EnergyError {
-        let mut found = EnergyError::of_cells(self.mesh.cell_count());
-        found.is_complete = self.each_point(|point| {
+        let mut total = EnergyError::of_cells(self.mesh.cell_count());
+        total.is_complete = self.each_point(|point| {
             let error = Vector4::from(gradient(point.cell, point.local)) - point.gradient;
-            found.add(point, &error);
+            total.add(point, &error);
         });
-        found
+        total
     }
 
     fn stress(&self, cell: usize, gradient: &PlaneTensor) -> Option<PlaneTensor> {
@@ -216,8 +216,8 @@ impl SheetSolution<'_> {
             for (local, weight) in self.mesh.shape(cell).product_quadrature(&GAUSS_3) {
                 let gradient = self.mesh.gradient_at(self.displacement, cell, local);
                 let gradient = Vector4::from(gradient);
-                let response = Kinematics::new(&gradient).map(|own| law.response(&own));
-                let Some(response) = response.ok().filter(|own| own.tangent.sum().is_finite())
+                let response = Kinematics::new(&gradient).map(|kinematics| law.response(&kinematics));
+                let Some(response) = response.ok().filter(|response| response.tangent.sum().is_finite())
                 else {
                     all = false;
                     continue;
@@ -310,13 +310,13 @@ mod tests {
             mesh: &mesh,
             displacement: &u,
         };
-        let found = solved.distance(|_, _| (1.1 * h).into());
-        assert!((found.percent() - 10.0).abs() < 1e-9);
+        let error = solved.distance(|_, _| (1.1 * h).into());
+        assert!((error.percent() - 10.0).abs() < 1e-9);
         let response = law.response(&Kinematics::new(&h).unwrap());
         let norm = 2.0 * 72.0 * h.dot(&(response.tangent * h));
-        assert!((found.norm_squared / norm - 1.0).abs() < 1e-12);
-        assert!((found.squared() / (0.01 * norm) - 1.0).abs() < 1e-9);
-        let squares = found.cell_percents().into_iter().map(|share| share * share);
+        assert!((error.norm_squared / norm - 1.0).abs() < 1e-12);
+        assert!((error.squared() / (0.01 * norm) - 1.0).abs() < 1e-9);
+        let squares = error.cell_percents().into_iter().map(|share| share * share);
         assert!((squares.sum::<f64>() - 100.0).abs() < 1e-7);
     }
 
@@ -340,8 +340,8 @@ mod tests {
         let rest = Vector4::new(-0.2, 0.0, 0.0, -0.2);
         let response = law.response(&Kinematics::new(&rest).unwrap());
         assert!(turn.dot(&(response.tangent * turn)) < 0.0);
-        let found = solved.distance(|_, _| (rest + turn).into());
-        assert!(found.cells.iter().all(|cell| (0.0..1e-12).contains(cell)));
+        let error = solved.distance(|_, _| (rest + turn).into());
+        assert!(error.cells.iter().all(|cell| (0.0..1e-12).contains(cell)));
     }
 
     /// Twice the surplus of the potential, and the error of the force, on a plate whose corners are resolved.
@@ -366,13 +366,13 @@ mod tests {
         };
         let (.., exact) = solve([60, 20], Element::Q2, 3.0);
         for (element, grading) in [(Element::Q1, 2.0), (Element::Q2, 3.0)] {
-            let (model, solution, found) = solve([30, 10], element, grading);
+            let (model, solution, values) = solve([30, 10], element, grading);
             let estimate = model
                 .estimate(&problem, &solution, &Recovery::new(&model.mesh))
                 .unwrap();
-            let surplus = 2.0 * (found[0] - exact[0]);
+            let surplus = 2.0 * (values[0] - exact[0]);
             let effectivity = (estimate.energy.squared() / surplus).sqrt();
-            let force = estimate.force / (found[1] - exact[1]);
+            let force = estimate.force / (values[1] - exact[1]);
             assert!(
                 (0.8..1.8).contains(&effectivity),
                 "{element:?}: {effectivity}"

@@ -41,9 +41,9 @@ pub struct Quarter {
 impl Quarter {
     /// The quarter of a plate's elements on a mesh; `None` where the plate need not stay symmetric, remembers its loads, or has cells that are
     /// not symmetric.
-    pub fn of(plate: &ClampedPlate, whole: &Mesh, linear_solver: LinearSolver) -> Option<Self> {
+    pub fn of(plate: &ClampedPlate, full: &Mesh, linear_solver: LinearSolver) -> Option<Self> {
         let law = &plate.law;
-        let cells = whole.grid().cells;
+        let cells = full.grid().cells;
         let is_symmetric = law.is_isotropic()
             && law.softening().is_none()
             && plate.stretches.iter().all(|stretch| *stretch > 0.0)
@@ -51,7 +51,7 @@ impl Quarter {
         if !is_symmetric {
             return None;
         }
-        let steps = cells.map(|cells| cells * whole.degree());
+        let steps = cells.map(|cells| cells * full.degree());
         let half = steps.map(|steps| steps / 2);
         let image = |node: usize| {
             let position = [node / (steps[1] + 1), node % (steps[1] + 1)];
@@ -59,8 +59,8 @@ impl Quarter {
             let [i, j] = [0, 1].map(|axis| position[axis].min(steps[axis] - position[axis]));
             (i * (half[1] + 1) + j, mirrored)
         };
-        let images: Vec<(usize, [bool; 2])> = (0..whole.nodes.len()).map(image).collect();
-        let mesh = part(whole, &images);
+        let images: Vec<(usize, [bool; 2])> = (0..full.nodes.len()).map(image).collect();
+        let mesh = part(full, &images);
         let held = [
             (Side::Left.name(), [Some(0.0), Some(0.0)]),
             (MIDDLES[0], [Some(0.5 * plate.size[0]), None]),
@@ -91,7 +91,7 @@ impl Quarter {
     /// `None` where one was not found in this way, or is not stable.
     pub fn states(
         &self,
-        whole: &Model,
+        full: &Model,
         stretches: &[f64],
         coarser: Option<(&Mesh, &[State])>,
         settings: NewtonSettings,
@@ -102,38 +102,38 @@ impl Quarter {
         if let Some((mesh, states)) = coarser {
             model = model.near(mesh, states);
         }
-        let own = model.attended(stretches, settings, attendance).ok()?;
-        let field = |own: &State| {
+        let quarters = model.attended(stretches, settings, attendance).ok()?;
+        let field = |quarter: &State| {
             (
-                own.factor,
-                self.unfolded(&own.displacement, own.factor * self.length),
+                quarter.factor,
+                self.unfolded(&quarter.displacement, quarter.factor * self.length),
             )
         };
-        let fields: Vec<(f64, Vec<f64>)> = own.iter().map(field).collect();
-        let mut states = whole.equilibria_near(&fields, settings).ok()?;
-        for (state, own) in states.iter_mut().zip(own) {
-            let (log, before) = (&mut state.convergence, own.convergence);
+        let fields: Vec<(f64, Vec<f64>)> = quarters.iter().map(field).collect();
+        let mut states = full.equilibria_near(&fields, settings).ok()?;
+        for (state, quarter) in states.iter_mut().zip(quarters) {
+            let (log, before) = (&mut state.convergence, quarter.convergence);
             let iterations = before.iterations();
             log.residuals
                 .splice(0..0, before.residuals.into_iter().take(iterations));
             log.cut_steps += before.cut_steps;
             log.shifted_steps += before.shifted_steps;
             log.snaps += before.snaps;
-            state.load_steps = own.load_steps;
+            state.load_steps = quarter.load_steps;
         }
         Some(states)
     }
 
     /// The fields of the whole plate in mm/mm caused by a motion of the right grip along X at states; `None` where one of these is not symmetric.
     pub fn influences(&self, states: &[State]) -> Option<Vec<Result<Vec<f64>, SolveFault>>> {
-        let own: Option<Vec<State>> = states.iter().map(|state| self.folded(state)).collect();
-        let found = self.model().influences(&own?, MIDDLES[0], 0).into_iter();
+        let quarters: Option<Vec<State>> = states.iter().map(|state| self.folded(state)).collect();
+        let influences = self.model().influences(&quarters?, MIDDLES[0], 0).into_iter();
         // The middle moves half as far as the grip.
-        let whole = |own: Vec<f64>| {
-            let halved: Vec<f64> = own.iter().map(|z| 0.5 * z).collect();
+        let unfold = |quarter: Vec<f64>| {
+            let halved: Vec<f64> = quarter.iter().map(|z| 0.5 * z).collect();
             self.unfolded(&halved, 1.0)
         };
-        Some(found.map(|own| own.map(whole)).collect())
+        Some(influences.map(|quarter| quarter.map(unfold)).collect())
     }
 
     /// A field of the quarter on the whole plate, whose right grip has moved by `end`.
@@ -149,9 +149,9 @@ impl Quarter {
     /// A state on the quarter, as far as its field matters; `None` where it is not symmetric.
     fn folded(&self, state: &State) -> Option<State> {
         let mut field = vec![0.0; 2 * self.mesh.nodes.len()];
-        for (whole, (node, mirrored)) in self.images.iter().enumerate() {
+        for (full, (node, mirrored)) in self.images.iter().enumerate() {
             if *mirrored == [false; 2] {
-                let [x, y] = [0, 1].map(|axis| state.displacement[2 * whole + axis]);
+                let [x, y] = [0, 1].map(|axis| state.displacement[2 * full + axis]);
                 (field[2 * node], field[2 * node + 1]) = (x, y);
             }
         }
@@ -168,13 +168,13 @@ impl Quarter {
 }
 
 /// The cells of a plate whose nodes are images of themselves, with the middle lines as groups.
-fn part(whole: &Mesh, images: &[(usize, [bool; 2])]) -> Mesh {
-    let own = |node: &usize| images[*node].1 == [false; 2];
-    let nodes = (0..images.len()).filter(own).map(|node| whole.nodes[node]);
-    let cells = (0..whole.cell_count()).filter(|cell| whole.cell(*cell).iter().all(own));
+fn part(full: &Mesh, images: &[(usize, [bool; 2])]) -> Mesh {
+    let is_kept = |node: &usize| images[*node].1 == [false; 2];
+    let nodes = (0..images.len()).filter(is_kept).map(|node| full.nodes[node]);
+    let cells = (0..full.cell_count()).filter(|cell| full.cell(*cell).iter().all(is_kept));
     let cells = cells.map(|cell| {
-        let nodes = whole.cell(cell).iter().map(|node| images[*node].0);
-        (whole.shape(cell), nodes.collect())
+        let nodes = full.cell(cell).iter().map(|node| images[*node].0);
+        (full.shape(cell), nodes.collect())
     });
     let mut mesh = Mesh::new(nodes.collect(), cells);
     let [_, end] = mesh.bounding_box();
@@ -226,31 +226,31 @@ mod tests {
             };
             let model = elements.model(&plate);
             let attendance = Attendance::told(&|_| ());
-            let own = quarter.states(&model, &plate.stretches, None, settings, attendance);
-            let own = own.unwrap_or_else(|| panic!("{card}: none"));
-            let whole = model.solve(&plate.stretches, settings, &|_| ()).unwrap();
-            for (own, whole) in own.iter().zip(&whole) {
-                let off = largest_difference(&own.displacement, &whole.displacement);
-                assert!(off < 1e-7, "{card} {}: {off} mm", own.factor);
-                let size = whole
+            let folded = quarter.states(&model, &plate.stretches, None, settings, attendance);
+            let folded = folded.unwrap_or_else(|| panic!("{card}: none"));
+            let full = model.solve(&plate.stretches, settings, &|_| ()).unwrap();
+            for (folded, full) in folded.iter().zip(&full) {
+                let off = largest_difference(&folded.displacement, &full.displacement);
+                assert!(off < 1e-7, "{card} {}: {off} mm", folded.factor);
+                let size = full
                     .residual
                     .iter()
                     .fold(0.0, |most: f64, r| most.max(r.abs()));
-                let off = largest_difference(&own.residual, &whole.residual);
+                let off = largest_difference(&folded.residual, &full.residual);
                 assert!(
                     off < 1e-8 * size,
                     "{card} {}: {off} of {size} N",
-                    own.factor
+                    folded.factor
                 );
-                let energies = [own, whole].map(|state| state.convergence.energy);
+                let energies = [folded, full].map(|state| state.convergence.energy);
                 assert!(
                     (energies[0] / energies[1] - 1.0).abs() < 1e-9,
                     "{card} {energies:?}"
                 );
             }
-            let expected = model.influences(&whole, Side::Right.name(), 0);
-            for (own, whole) in quarter.influences(&own).unwrap().iter().zip(&expected) {
-                let off = largest_difference(own.as_ref().unwrap(), whole.as_ref().unwrap());
+            let expected = model.influences(&full, Side::Right.name(), 0);
+            for (folded, full) in quarter.influences(&folded).unwrap().iter().zip(&expected) {
+                let off = largest_difference(folded.as_ref().unwrap(), full.as_ref().unwrap());
                 assert!(off < 1e-7, "{card}: {off} mm/mm");
             }
             symmetric += 1;

@@ -202,16 +202,16 @@ impl<'a> Patches<'a> {
         let least = 1 + usize::from(self.on_boundary[corner]);
         for layers in 1..MOST_LAYERS {
             if layers >= least
-                && let Some(found) = self.fit_on(corner, &cells, self.degree)
+                && let Some(fit) = self.fit_on(corner, &cells, self.degree)
             {
-                return found;
+                return fit;
             }
             self.grow(&mut cells);
         }
         // On a mesh of very few cells: the highest degree that they determine.
         let lower = (1..=self.degree).rev();
-        let mut found = lower.filter_map(|degree| self.fit_on(corner, &cells, degree));
-        found.next().unwrap_or_else(|| Fit {
+        let mut fits = lower.filter_map(|degree| self.fit_on(corner, &cells, degree));
+        fits.next().unwrap_or_else(|| Fit {
             nodes: Vec::new(),
             origin: self.mesh.nodes[corner],
             scale: [1.0; 2],
@@ -316,11 +316,11 @@ mod tests {
                         1.0,
                         0.4 * y - cubic * 0.06 * y * y,
                     ];
-                    let found = recovered.at(&mesh, cell, local);
-                    for (found, exact) in found.iter().zip(exact) {
+                    let gradient = recovered.at(&mesh, cell, local);
+                    for (gradient, exact) in gradient.iter().zip(exact) {
                         assert!(
-                            (found - exact).abs() < 1e-9,
-                            "{name} {cell}: {found} {exact}"
+                            (gradient - exact).abs() < 1e-9,
+                            "{name} {cell}: {gradient} {exact}"
                         );
                     }
                 }
@@ -338,9 +338,9 @@ mod tests {
                 .flat_map(|[x, y]| [0.1 * x, 0.2 * y])
                 .collect();
             let recovered = Recovery::new(&mesh).gradient(&u);
-            let found = recovered.at(&mesh, 0, kind.centre());
-            for (found, exact) in found.iter().zip([0.1, 0.0, 0.0, 0.2]) {
-                assert!((found - exact).abs() < 1e-12, "{name}: {found}");
+            let gradient = recovered.at(&mesh, 0, kind.centre());
+            for (gradient, exact) in gradient.iter().zip([0.1, 0.0, 0.0, 0.2]) {
+                assert!((gradient - exact).abs() < 1e-12, "{name}: {gradient}");
             }
         }
     }

@@ -109,13 +109,13 @@ pub const ASSIGN: &str = "name the columns x [mm], y [mm], ux [mm] and uy [mm], 
 /// [`Error::Input`] with the existing columns where there is none, and what to do.
 pub fn required(table: &Table, names: Names, hint: &str) -> Result<(usize, Option<String>), Error> {
     find(table, names).ok_or_else(|| {
-        let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
-        let found = if found.iter().all(|name| name.is_empty()) {
+        let headings: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
+        let headings = if headings.iter().all(|name| name.is_empty()) {
             "the columns have no names".to_owned()
         } else {
-            format!("the file has {}", found.join(", "))
+            format!("the file has {}", headings.join(", "))
         };
-        let message = format!("there is no column `{}`: {found}", plainly(names));
+        let message = format!("there is no column `{}`: {headings}", plainly(names));
         table.refuse_columns(message, hint)
     })
 }
@@ -161,8 +161,8 @@ pub fn length(
 /// A remark where a given unit corrects the head of a file.
 pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Option<Diagnostic> {
     let (head, given) = (head?, given?);
-    let said = millimetres(head)?;
-    ((given / said - 1.0).abs() > 1e-12).then(|| {
+    let stated = millimetres(head)?;
+    ((given / stated - 1.0).abs() > 1e-12).then(|| {
         let message = format!(
             "{} states {head}, --unit states {given} mm: the latter is used",
             table.source.name
@@ -280,9 +280,9 @@ pub const OUT_OF_PLANE: [Names; 2] = [HEIGHT, LIFT];
 
 /// The columns out of the plane that are present and not ignored.
 pub fn out_of_plane(table: &Table, names: [Names; 2], ignored: &[String]) -> Vec<usize> {
-    let found = names.map(|names| find(table, names).map(|(index, _)| index));
+    let indices = names.map(|names| find(table, names).map(|(index, _)| index));
     let wanted = |index: &usize| !is_ignored(&table.columns[*index], ignored);
-    found.into_iter().flatten().filter(wanted).collect()
+    indices.into_iter().flatten().filter(wanted).collect()
 }
 
 /// Checks that the points stay in a plane: heights differ by less than a hundredth of the field's size, and no

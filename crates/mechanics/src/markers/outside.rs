@@ -9,8 +9,8 @@ const FULL: f64 = 0.99;
 
 /// The lost points within the specimen, as far as the points show it: in a whole matrix without rows or columns at the rim that
 /// have no marker at all, and without gaps at the rim of more than a tenth of the rest. Points that are not a matrix all count.
-pub fn within(found: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    match Matrix::of(found, &lost) {
+pub fn within(tracked: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    match Matrix::of(tracked, &lost) {
         Some(matrix) => {
             let outside = matrix.outside();
             let kept = lost.into_iter().filter(|position| {
@@ -27,30 +27,30 @@ pub fn within(found: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 struct Matrix {
     lines: [Vec<f64>; 2],
     /// Whether a marker was found, by row and column.
-    found: Vec<Vec<bool>>,
+    tracked: Vec<Vec<bool>>,
 }
 
 impl Matrix {
     /// The matrix of all points; `None` where they are not a matrix, or nothing is lost.
-    fn of(found: &[[f64; 2]], lost: &[[f64; 2]]) -> Option<Self> {
-        if lost.is_empty() || found.is_empty() {
+    fn of(tracked: &[[f64; 2]], lost: &[[f64; 2]]) -> Option<Self> {
+        if lost.is_empty() || tracked.is_empty() {
             return None;
         }
-        let all = || found.iter().chain(lost);
+        let all = || tracked.iter().chain(lost);
         let lines = [0, 1].map(|axis| lines(all().map(|position| position[axis]).collect()));
         let [columns, rows] = lines.each_ref().map(Vec::len);
-        let count = (found.len() + lost.len()) as f64;
-        let whole = (rows * columns) as f64;
-        if columns.min(rows) < 3 || count < FULL * whole || count > whole / FULL {
+        let count = (tracked.len() + lost.len()) as f64;
+        let full = (rows * columns) as f64;
+        if columns.min(rows) < 3 || count < FULL * full || count > full / FULL {
             return None;
         }
         let mut matrix = Self {
             lines,
-            found: vec![vec![false; columns]; rows],
+            tracked: vec![vec![false; columns]; rows],
         };
-        for position in found {
+        for position in tracked {
             let [x, y] = matrix.index(*position);
-            matrix.found[y][x] = true;
+            matrix.tracked[y][x] = true;
         }
         Some(matrix)
     }
@@ -64,7 +64,7 @@ impl Matrix {
             match next {
                 0 => 0,
                 end if end == lines.len() || nearer(end - 1) < nearer(end) => end - 1,
-                own => own,
+                upper => upper,
             }
         })
     }
@@ -72,8 +72,8 @@ impl Matrix {
     /// The points outside, by row and column.
     fn outside(&self) -> Vec<Vec<bool>> {
         let [columns, rows] = self.lines.each_ref().map(Vec::len);
-        let row = |y: &usize| self.found[*y].iter().any(|found| *found);
-        let column = |x: &usize| self.found.iter().any(|row| row[*x]);
+        let row = |y: &usize| self.tracked[*y].iter().any(|tracked| *tracked);
+        let column = |x: &usize| self.tracked.iter().any(|row| row[*x]);
         let span = |some: &dyn Fn(&usize) -> bool, count: usize| {
             let first = (0..count).find(some).unwrap_or(0);
             first..(0..count).rfind(some).map_or(count, |last| last + 1)
@@ -105,7 +105,7 @@ impl Matrix {
             let columns = near(x, columns);
             near(y, rows).flat_map(move |y| columns.clone().map(move |x| (x, y)))
         };
-        let is_empty = |x: usize, y: usize| around(x, y).all(|(x, y)| !self.found[y][x]);
+        let is_empty = |x: usize, y: usize| around(x, y).all(|(x, y)| !self.tracked[y][x]);
         let mut empty = vec![vec![false; self.lines[0].len()]; self.lines[1].len()];
         let at_rim = |x: usize, y: usize| {
             [columns.start, columns.end - 1].contains(&x) || [rows.start, rows.end - 1].contains(&y)
@@ -135,7 +135,7 @@ fn lines(mut values: Vec<f64>) -> Vec<f64> {
         .last()
         .zip(values.first())
         .map_or(0.0, |(last, first)| last - first);
-    values.dedup_by(|next, own| *next - *own <= ROUNDING * range);
+    values.dedup_by(|next, previous| *next - *previous <= ROUNDING * range);
     values
 }
 
@@ -144,11 +144,11 @@ mod tests {
     use super::*;
 
     /// The points of a matrix of 12 × 8 that a specimen has, and the others.
-    fn matrix(is_found: impl Fn(usize, usize) -> bool) -> [Vec<[f64; 2]>; 2] {
+    fn matrix(is_tracked: impl Fn(usize, usize) -> bool) -> [Vec<[f64; 2]>; 2] {
         let all: Vec<(usize, usize)> = (0..8).flat_map(|y| (0..12).map(move |x| (x, y))).collect();
         let position = |(x, y): &(usize, usize)| [0.3 * *x as f64, 0.3 * *y as f64];
         [true, false].map(|wanted| {
-            let some = all.iter().filter(|(x, y)| is_found(*x, *y) == wanted);
+            let some = all.iter().filter(|(x, y)| is_tracked(*x, *y) == wanted);
             some.map(position).collect()
         })
     }
@@ -156,30 +156,30 @@ mod tests {
     #[test]
     fn rows_and_columns_without_a_marker_and_large_gaps_at_the_rim_are_outside() {
         let padded = |x: usize, y: usize| (2..11).contains(&x) && (1..7).contains(&y);
-        let [found, lost] = matrix(padded);
-        assert_eq!(within(&found, lost), Vec::<[f64; 2]>::new());
+        let [tracked, lost] = matrix(padded);
+        assert_eq!(within(&tracked, lost), Vec::<[f64; 2]>::new());
         // What is lost within stays, as do a few at the rim of the specimen.
         let blind = |x: usize, y: usize| padded(x, y) && (x, y) != (5, 3) && (x, y) != (5, 1);
-        let [found, lost] = matrix(blind);
-        let kept = within(&found, lost);
+        let [tracked, lost] = matrix(blind);
+        let kept = within(&tracked, lost);
         assert_eq!(kept.len(), 2, "{kept:?}");
         // A waist.
         let waist = |x: usize, y: usize| !(3..=8).contains(&x) || (2..6).contains(&y);
-        let [found, lost] = matrix(waist);
-        assert!(within(&found, lost).is_empty());
+        let [tracked, lost] = matrix(waist);
+        assert!(within(&tracked, lost).is_empty());
     }
 
     #[test]
     fn markers_that_are_lost_here_and_there_count() {
         let scattered = |x: usize, y: usize| (7 * x + 5 * y).is_multiple_of(3);
-        let [found, lost] = matrix(scattered);
-        assert_eq!(within(&found, lost.clone()), lost);
+        let [tracked, lost] = matrix(scattered);
+        assert_eq!(within(&tracked, lost.clone()), lost);
     }
 
     #[test]
     fn points_that_are_no_matrix_stay() {
-        let [found, mut lost] = matrix(|_, y| y > 1);
+        let [tracked, mut lost] = matrix(|_, y| y > 1);
         lost.truncate(5);
-        assert_eq!(within(&found, lost.clone()), lost);
+        assert_eq!(within(&tracked, lost.clone()), lost);
     }
 }

@@ -124,7 +124,7 @@ mod tests {
     use super::*;
     use crate::markers::read as read_files;
 
-    fn found(rest: &str, frame: &str) -> Result<Vec<[f64; 4]>, Error> {
+    fn markers_of(rest: &str, frame: &str) -> Result<Vec<[f64; 4]>, Error> {
         let folder = tempfile::tempdir().unwrap();
         let [at_rest, moved] = ["rest.csv", "frame_1.csv"].map(|name| folder.path().join(name));
         std::fs::write(&at_rest, rest).unwrap();
@@ -149,13 +149,13 @@ mod tests {
     #[test]
     fn positions_are_matched_by_number_else_by_order() {
         let expected = [[0.0, 0.0, 0.5, 0.25], [10.0, 0.0, 1.0, 0.0]];
-        let by_order = found(
+        let by_order = markers_of(
             "x [mm],y [mm]\n0,0\n10,0\n",
             "x [mm],y [mm]\n0.5,0.25\n11,0\n",
         );
         assert_eq!(by_order.unwrap(), expected);
         let rest = "id,x [mm],y [mm]\n7,0,0\n8,10,0\n9,20,0\n";
-        let by_number = found(rest, "id,x [mm],y [mm]\n8,11,0\n7,0.5,0.25\n");
+        let by_number = markers_of(rest, "id,x [mm],y [mm]\n8,11,0\n7,0.5,0.25\n");
         assert_eq!(by_number.unwrap(), expected);
     }
 
@@ -180,8 +180,8 @@ mod tests {
                 "the column `z` is not known here",
             ),
         ] {
-            let told = found(rest, frame).unwrap_err().to_string();
-            assert!(told.contains(reason), "{told}");
+            let error = markers_of(rest, frame).unwrap_err().to_string();
+            assert!(error.contains(reason), "{error}");
         }
     }
 }

@@ -31,30 +31,30 @@ pub struct MarkerFiles {
 pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, Error> {
     let groups = matrices::pairs(files);
     let several = groups.len() > 1;
-    let mut whole: Option<FileRows> = None;
+    let mut combined: Option<FileRows> = None;
     for (group, number) in groups.iter().zip(frame_numbers(&groups)) {
-        let mut found = match group[..] {
+        let mut file_rows = match group[..] {
             [frame] if settings.rest.is_some() => positions::read(frame, settings)?,
             [u, v] => matrices::read(u, v, settings)?,
             _ if is_table_path(group[0]) => table::read(group[0], settings)?,
             _ => on_mesh::read(group[0], settings)?,
         };
         if several {
-            for row in &mut found.rows {
+            for row in &mut file_rows.rows {
                 row.frame = Some(number);
             }
         }
-        match &mut whole {
-            None => whole = Some(found),
-            Some(whole) => append(whole, found, group[0])?,
+        match &mut combined {
+            None => combined = Some(file_rows),
+            Some(combined) => append(combined, file_rows, group[0])?,
         }
     }
-    let Some(mut whole) = whole else {
+    let Some(mut combined) = combined else {
         return Err(Error::input("no field is given", "name a file"));
     };
-    let mut warnings = std::mem::take(&mut whole.warnings);
-    let (mesh, understood) = (whole.mesh.clone(), whole.understood.clone());
-    let series = whole.gather(&mut warnings);
+    let mut warnings = std::mem::take(&mut combined.warnings);
+    let (mesh, understood) = (combined.mesh.clone(), combined.understood.clone());
+    let series = combined.gather(&mut warnings);
     plausible::check(&series, &mut warnings)?;
     Ok(MarkerFiles {
         series,
@@ -65,16 +65,16 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
 }
 
 /// Adds the frames of one more file, which must be of the same kind.
-fn append(whole: &mut FileRows, found: FileRows, file: &Path) -> Result<(), Error> {
-    let meshes = [&whole.mesh, &found.mesh].map(|mesh| mesh.as_ref().map(|mesh| &mesh.nodes));
+fn append(combined: &mut FileRows, added: FileRows, file: &Path) -> Result<(), Error> {
+    let meshes = [&combined.mesh, &added.mesh].map(|mesh| mesh.as_ref().map(|mesh| &mesh.nodes));
     let fault = match () {
-        () if whole.understood.layout != found.understood.layout => {
+        () if combined.understood.layout != added.understood.layout => {
             "has another layout than the files before it"
         }
         () if meshes[0] != meshes[1] => "has another mesh than the files before it",
         () => {
-            whole.rows.extend(found.rows);
-            whole.warnings.extend(found.warnings);
+            combined.rows.extend(added.rows);
+            combined.warnings.extend(added.warnings);
             return Ok(());
         }
     };

@@ -146,14 +146,14 @@ impl Gathering {
         for (count, what, hint) in counted.into_iter().filter(|(count, ..)| *count > 0) {
             warnings.push(Diagnostic::warning("", format!("{what}: {count}")).hint(hint));
         }
-        let found = self.frames.values().flat_map(|frame| &frame.markers);
-        let found: BTreeMap<usize, [f64; 2]> = found
+        let tracked = self.frames.values().flat_map(|frame| &frame.markers);
+        let tracked: BTreeMap<usize, [f64; 2]> = tracked
             .map(|marker| (marker.number, marker.position))
             .collect();
-        let found: Vec<[f64; 2]> = found.into_values().collect();
+        let tracked: Vec<[f64; 2]> = tracked.into_values().collect();
         let all: Vec<[f64; 2]> = self.lost.into_values().collect();
         let without = all.len();
-        let lost = within(&found, all);
+        let lost = within(&tracked, all);
         if lost.len() < without {
             let message = format!(
                 "points without a displacement in any frame, assumed to lie outside the specimen: {}",

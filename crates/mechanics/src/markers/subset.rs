@@ -40,12 +40,12 @@ impl Subset {
             "DICe" | "DICe, stereo" => of_head("subset size", "step size"),
             "GOM, nodemap" => of_head("facet_size", "facet_distance"),
             "pyALDIC" => {
-                let (file, text) = beside(&parameters_of_pyaldic(path)?)?;
+                let (file, text) = read_text(&parameters_of_pyaldic(path)?)?;
                 let of = |key: &str| json_number(&text, key);
                 Self::new([of("winsize"), of("winstepsize")], file)
             }
             "MatchID" => {
-                let (file, text) = beside(&job_of_matchid(path)?)?;
+                let (file, text) = read_text(&job_of_matchid(path)?)?;
                 let of = |key: &str| number(text.split_once(&format!("<{key}>=<"))?.1);
                 Self::new([of("Subset$size"), of("Step$size")], file)
             }
@@ -86,7 +86,7 @@ fn json_number(text: &str, key: &str) -> Option<f64> {
 }
 
 /// A small file and its text, if it can be read.
-fn beside(path: &Path) -> Option<(String, String)> {
+fn read_text(path: &Path) -> Option<(String, String)> {
     const MOST: u64 = 1 << 20;
     let text = read_bytes(path, MOST).ok()?;
     Some((name_of(path), String::from_utf8_lossy(&text).into_owned()))
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     /// What is found of a table that lies at a path among other files.
-    fn found(files: &[(&str, &str)], layout: &str) -> Option<[f64; 2]> {
+    fn subset_in(files: &[(&str, &str)], layout: &str) -> Option<[f64; 2]> {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in files {
             let path = folder.path().join(name);
@@ -153,26 +153,26 @@ mod tests {
         let aldic = "{\"n_frames\": 1, \"winsize\": 40, \"winstepsize\": 32}";
         let job = "%%% i_Subset\n<Step$size>=<7>\n<Subset$size>=<21>\n";
         let table = "a,b\n1,2\n";
-        assert_eq!(found(&[("a.txt", dice)], "DICe"), Some([27.0, 35.0]));
-        assert_eq!(found(&[("a.txt", gom)], "GOM, nodemap"), Some([19.0, 16.0]));
+        assert_eq!(subset_in(&[("a.txt", dice)], "DICe"), Some([27.0, 35.0]));
+        assert_eq!(subset_in(&[("a.txt", gom)], "GOM, nodemap"), Some([19.0, 16.0]));
         let files = [
             ("foam_csv_2026/1.csv", table),
             ("foam_parameters_2026.json", aldic),
         ];
-        assert_eq!(found(&files, "pyALDIC"), Some([40.0, 32.0]));
+        assert_eq!(subset_in(&files, "pyALDIC"), Some([40.0, 32.0]));
         let files = [("a.csv", table), ("Job.m2inp", job)];
-        assert_eq!(found(&files, "MatchID"), Some([21.0, 7.0]));
+        assert_eq!(subset_in(&files, "MatchID"), Some([21.0, 7.0]));
     }
 
     #[test]
     fn what_is_not_said_or_may_be_anothers_is_not_guessed() {
         let irregular = "***\n*** Subset size: 27\n*** Step size: x -1 y -1 (-1 implies not regular grid)\na,b\n1,2\n";
-        assert_eq!(found(&[("a.txt", irregular)], "DICe"), None);
+        assert_eq!(subset_in(&[("a.txt", irregular)], "DICe"), None);
         let table = ("a.csv", "# subset size: 27\n# step size: 35\na,b\n1,2\n");
-        assert_eq!(found(&[table], "columns"), None);
-        assert_eq!(found(&[table], "pyALDIC"), None);
+        assert_eq!(subset_in(&[table], "columns"), None);
+        assert_eq!(subset_in(&[table], "pyALDIC"), None);
         let job = "<Step$size>=<7><Subset$size>=<21>";
         let files = [table, ("1.m2inp", job), ("2.m2inp", job)];
-        assert_eq!(found(&files, "MatchID"), None);
+        assert_eq!(subset_in(&files, "MatchID"), None);
     }
 }

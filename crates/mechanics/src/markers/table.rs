@@ -239,19 +239,19 @@ impl<'a> Reader<'a> {
             // Where it was at rest nobody knows.
             position = [f64::NAN; 2];
         }
-        let whole = |column: Option<usize>| {
+        let integer = |column: Option<usize>| {
             let value = values[column?];
             (value >= 0.0 && value.fract() == 0.0).then_some(value)
         };
-        if self.frame.is_some() && whole(self.frame).is_none() {
+        if self.frame.is_some() && integer(self.frame).is_none() {
             let hint = "number the frames 1, 2, 3 …";
             return Err(refuse("a frame number is not a whole number", hint));
         }
         let time = self.time.map(|(column, unit)| values[column] * unit);
         Ok(Row {
-            frame: whole(self.frame).map(|frame| frame as usize),
+            frame: integer(self.frame).map(|frame| frame as usize),
             time: time.filter(|time| time.is_finite()),
-            name: whole(self.name).map(|name| name as u64),
+            name: integer(self.name).map(|name| name as u64),
             position,
             displacement,
             standard_deviation: deviation.filter(|deviation| *deviation > 0.0),

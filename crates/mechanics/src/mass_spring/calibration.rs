@@ -73,22 +73,22 @@ fn sections(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
     let mut free: Vec<usize> = (0..pairs.len()).collect();
     loop {
         // The smallest change of Van Gelder's sections that comes nearest to the target.
-        let own = matrix.select_columns(&free);
+        let columns = matrix.select_columns(&free);
         let before = DVector::from_iterator(free.len(), free.iter().map(|i| start[*i]));
-        let missing = &target - &own * &before;
-        let Ok(change) = own.svd(true, true).solve(&missing, 1e-10) else {
+        let missing = &target - &columns * &before;
+        let Ok(change) = columns.svd(true, true).solve(&missing, 1e-10) else {
             return start;
         };
-        let found = before + change;
+        let solution = before + change;
         let mut sections = vec![0.0; pairs.len()];
-        for (index, section) in free.iter().zip(found.iter()) {
+        for (index, section) in free.iter().zip(solution.iter()) {
             sections[*index] = *section;
         }
         let most = sections.iter().copied().fold(0.0, f64::max);
         let count = free.len();
         free.retain(|i| sections[*i] >= -1e-12 * most);
         if free.len() == count {
-            return sections.into_iter().map(|own| own.max(0.0)).collect();
+            return sections.into_iter().map(|section| section.max(0.0)).collect();
         }
     }
 }
@@ -107,10 +107,10 @@ fn van_gelder(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
     let section = |pair: &[usize; 2]| -> f64 {
         let [from, to] = pair.map(|corner| corners[corner]);
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let beside = triangles
+        let adjacent = triangles
             .iter()
             .filter(|(triangle, _)| pair.iter().all(|c| triangle.contains(c)));
-        let shares = beside
+        let shares = adjacent
             .map(|(triangle, share)| share * polygon_area(&triangle.map(|corner| corners[corner])));
         shares.sum::<f64>() / length
     };
@@ -153,9 +153,9 @@ mod tests {
     fn quadrilaterals_have_the_tensor_of_the_sheet() {
         for cells in [[6, 6], [6, 4], [8, 6]] {
             let mesh = Mesh::plate([6.0, 6.0], cells, CellShape::Quad4);
-            let found = tensor(&mesh, 36.0);
-            for (found, expected) in found.iter().zip([9.0 / 8.0, 3.0 / 8.0, 9.0 / 8.0, 0.0]) {
-                assert!((found - expected).abs() < 1e-12, "{cells:?}: {found}");
+            let computed = tensor(&mesh, 36.0);
+            for (computed, expected) in computed.iter().zip([9.0 / 8.0, 3.0 / 8.0, 9.0 / 8.0, 0.0]) {
+                assert!((computed - expected).abs() < 1e-12, "{cells:?}: {computed}");
             }
         }
     }
@@ -165,8 +165,8 @@ mod tests {
         let h = 3.0_f64.sqrt() / 2.0;
         let nodes = vec![[0.0, 0.0], [1.0, 0.0], [0.5, h], [4.0, 0.1]];
         let mesh = Mesh::new(nodes.clone(), [(CellShape::Triangle3, vec![0, 1, 2])]);
-        let found = tensor(&mesh, 0.5 * h);
-        assert!((found[0] - 9.0 / 8.0).abs() < 1e-12 && (found[1] - 3.0 / 8.0).abs() < 1e-12);
+        let computed = tensor(&mesh, 0.5 * h);
+        assert!((computed[0] - 9.0 / 8.0).abs() < 1e-12 && (computed[1] - 3.0 / 8.0).abs() < 1e-12);
         let slender = Mesh::new(nodes, [(CellShape::Triangle3, vec![0, 3, 2])]);
         assert!(
             springs(&slender, &one_law(), 1.0)

@@ -84,7 +84,7 @@ impl Lattice {
     pub fn pose_after(&self, index: usize, u: &[f64], history: &[f64]) -> SpringPose {
         let pose = self.pose(index, u);
         let softened = self.law(index).softening().zip(history.get(index));
-        let response = softened.map(|(own, most)| own.tension(pose.response, *most));
+        let response = softened.map(|(softening, most)| softening.tension(pose.response, *most));
         SpringPose {
             response: response.unwrap_or(pose.response),
             ..pose
@@ -135,10 +135,10 @@ impl Lattice {
         let next = |i: usize| (i + 1) % count;
         let before = |i: usize| (i + count - 1) % count;
         // Places relative to the first corner, so that no digit is lost far from the origin.
-        let (mut own, mut positions) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
+        let (mut reference, mut positions) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
         for (i, axis) in (0..count).flat_map(|i| [(i, 0), (i, 1)]) {
-            own[i][axis] = corners[i][axis] - corners[0][axis];
-            positions[i][axis] = own[i][axis] + u[2 * i + axis] - u[axis];
+            reference[i][axis] = corners[i][axis] - corners[0][axis];
+            positions[i][axis] = reference[i][axis] + u[2 * i + axis] - u[axis];
         }
         let current = polygon_area(&positions[..count]);
         if current.is_nan() || current <= 0.0 {
@@ -147,7 +147,7 @@ impl Lattice {
         if self.area_stiffness == 0.0 {
             return Some(0.0);
         }
-        let rest = polygon_area(&own[..count]);
+        let rest = polygon_area(&reference[..count]);
         let change = current / rest - 1.0;
         let slope: Vec<f64> = (0..count)
             .flat_map(|i| {
@@ -218,8 +218,8 @@ impl Remembering for Lattice {
         }
         history.resize(self.springs.len(), 0.0);
         for (index, most) in history.iter_mut().enumerate() {
-            let own = self.connectivity.values(index, u);
-            *most = most.max(self.pose(index, &own).response.energy);
+            let displacements = self.connectivity.values(index, u);
+            *most = most.max(self.pose(index, &displacements).response.energy);
         }
     }
 

@@ -199,10 +199,10 @@ fn biaxial_stresses_are_those_of_the_sheet() {
     for_each_law(|name, law| {
         for strains in [[0.5, 0.2], [1.0, -0.2], [-0.3, 0.1], [1e-8, 3e-9]] {
             let sheet = stress(law, &gradient([strains[0], 0.0, 0.0, strains[1]]));
-            let found = law.biaxial(strains);
-            for (found, exact) in found.iter().zip([sheet[0], sheet[3]]) {
+            let computed = law.biaxial(strains);
+            for (computed, exact) in computed.iter().zip([sheet[0], sheet[3]]) {
                 let scale = sheet.norm();
-                assert!((found - exact).abs() < 1e-13 * scale, "{name} {strains:?}");
+                assert!((computed - exact).abs() < 1e-13 * scale, "{name} {strains:?}");
             }
         }
     });

@@ -242,11 +242,11 @@ impl<L: BodyLaw> BodySheet<L> {
             0.0
         };
         // The residual of the search for b.
-        let left = w.b * free;
+        let relaxed = w.b * free;
         Derivatives {
-            energy: w.energy - 0.5 * w.b * left,
-            m: w.a - w.ab * left,
-            z: w.z - w.zb * left,
+            energy: w.energy - 0.5 * w.b * relaxed,
+            m: w.a - w.ab * relaxed,
+            z: w.z - w.zb * relaxed,
             mm: w.aa - w.ab * w.ab * free,
             mz: w.az - w.ab * w.zb * free,
             zz: w.zz - w.zb * w.zb * free,

@@ -329,7 +329,7 @@ fn read_fit(section: &Section) -> FitRecord {
 }
 
 /// Advice on a parameter that only other laws have.
-fn of_other_laws(key: &str, own: &str) -> Option<String> {
+fn of_other_laws(key: &str, law_name: &str) -> Option<String> {
     let has = |law: &&Law| {
         let (_, entries) = law.with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);
         entries
@@ -342,7 +342,7 @@ fn of_other_laws(key: &str, own: &str) -> Option<String> {
     (!laws.is_empty()).then(|| {
         let laws = laws.join(", ");
         format!(
-            "a card has one law, and {own} has no {key}: leave it out, or take another law ({laws})"
+            "a card has one law, and {law_name} has no {key}: leave it out, or take another law ({laws})"
         )
     })
 }

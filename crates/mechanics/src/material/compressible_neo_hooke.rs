@@ -2,7 +2,7 @@
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 use super::law::HyperelasticLaw;
-use super::logarithm::logarithm_beyond_first_order;
+use super::logarithm::logarithm_remainder;
 use super::parameters::Parameters;
 use super::sheet::PlaneState;
 use super::volume::{VolumeEnergy, lame_modulus};
@@ -80,8 +80,8 @@ impl<const LOGARITHM: bool> BodyLaw for CompressibleNeoHooke<LOGARITHM> {
 #[inline(always)]
 pub(super) fn chains(mu: f64, at: BodyStretches, [u, du, ddu]: [f64; 3]) -> BodyDerivatives {
     let (change, z, thickness) = (at.area_change, at.shape, at.thickness_change());
-    let area = -logarithm_beyond_first_order(change);
-    let across = 0.5 * thickness * thickness - logarithm_beyond_first_order(thickness);
+    let area = -logarithm_remainder(change);
+    let across = 0.5 * thickness * thickness - logarithm_remainder(thickness);
     // λ₃² − 1
     let square_change = thickness * (2.0 + thickness);
     let ratio = 1.0 + change;

@@ -227,12 +227,12 @@ mod tests {
                 let (law, _) =
                     law.with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal);
                 for stretch in [0.15_f64, 0.3, 0.4, 0.7, 1.3, 2.5] {
-                    let found = Mode::Uniaxial.nominal_stress(&*law, stretch - 1.0);
+                    let computed = Mode::Uniaxial.nominal_stress(&*law, stretch - 1.0);
                     let drawn = stretch.powf(exponent) - stretch.powf(-poisson_ratio * exponent);
                     let exact = 0.2 / (exponent * stretch) * drawn;
                     assert!(
-                        (found - exact).abs() < 1e-9 * exact.abs(),
-                        "α {exponent}, ν {poisson_ratio}, λ {stretch}: {found} {exact}"
+                        (computed - exact).abs() < 1e-9 * exact.abs(),
+                        "α {exponent}, ν {poisson_ratio}, λ {stretch}: {computed} {exact}"
                     );
                 }
             }

@@ -57,7 +57,7 @@ pub fn exponential(z: f64) -> f64 {
 
 /// eᶻ − 1 − z, without cancellation where z is small.
 #[inline(always)]
-pub fn exponential_beyond_first_order(z: f64) -> f64 {
+pub fn exponential_remainder(z: f64) -> f64 {
     let (k, power, r, q) = reduce(z.clamp(-708.0, 709.0));
     // Where k = 0, power = 1 and r = z: both sums are the square's alone.
     let value =
@@ -79,7 +79,7 @@ pub fn exponential_less_one(z: f64) -> f64 {
 #[inline(always)]
 pub fn second_quotient(z: f64) -> f64 {
     let (k, _, _, q) = reduce(z.clamp(-708.0, 709.0));
-    let far = exponential_beyond_first_order(z) / (z * z);
+    let far = exponential_remainder(z) / (z * z);
     if k == 0.0 { q } else { far }
 }
 

@@ -119,8 +119,8 @@ impl Expression {
     /// # Errors
     /// [`NoFormula`], also where a name is none of a variable.
     pub fn parse(text: &str, variables: &[Variable]) -> Result<Self, NoFormula> {
-        let whole = |input: &mut &str| formula(input, variables);
-        let read = (whole, multispace0).map(|(formula, _)| formula).parse(text);
+        let full = |input: &mut &str| formula(input, variables);
+        let read = (full, multispace0).map(|(formula, _)| formula).parse(text);
         read.map_err(|fault| NoFormula {
             after: text[..fault.offset()].chars().count(),
         })
@@ -130,7 +130,7 @@ impl Expression {
     pub fn has(&self, variable: usize) -> bool {
         match self {
             Self::Number(_) => false,
-            Self::Variable(own) => *own == variable,
+            Self::Variable(index) => *index == variable,
             Self::Of(_, value) => value.has(variable),
             Self::Sum(both) | Self::Product(both) | Self::Power(both) | Self::Larger(both) => {
                 both.iter().any(|one| one.has(variable))
@@ -282,12 +282,12 @@ fn named(input: &mut &str, variables: &[Variable]) -> Read<Expression> {
     let known = match (arguments.map(<Box<[_]>>::from), &*name) {
         (None, _) => variables
             .iter()
-            .position(|own| own.0.to_lowercase() == name)
+            .position(|variable| variable.0.to_lowercase() == name)
             .map(|index| {
-                let (rest, beyond) = (variables[index].1, Expression::Variable(index));
+                let (rest, deviation) = (variables[index].1, Expression::Variable(index));
                 match rest {
-                    0.0 => beyond,
-                    rest => Expression::sum(Expression::Number(rest), beyond),
+                    0.0 => deviation,
+                    rest => Expression::sum(Expression::Number(rest), deviation),
                 }
             }),
         (Some(all), "max" | "min") => <Box<[Expression; 2]>>::try_from(all).ok().map(|both| {

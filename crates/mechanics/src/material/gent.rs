@@ -47,11 +47,11 @@ impl InvariantLaw for Gent {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let share = invariants.i1_minus_3 / self.jm;
         // Beyond the limit there is no stress, though the formula gives one.
-        let left = if share < 1.0 { 1.0 - share } else { f64::NAN };
+        let remaining = if share < 1.0 { 1.0 - share } else { f64::NAN };
         EnergyDerivatives {
             energy: -0.5 * self.mu * self.jm * logarithm_of_one_plus(-share),
-            d1: 0.5 * self.mu / left,
-            d11: 0.5 * self.mu / (self.jm * left * left),
+            d1: 0.5 * self.mu / remaining,
+            d11: 0.5 * self.mu / (self.jm * remaining * remaining),
             ..EnergyDerivatives::default()
         }
     }

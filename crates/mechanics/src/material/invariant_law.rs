@@ -28,11 +28,11 @@ pub trait InvariantLaw: Send + Sync + std::fmt::Debug {
 }
 
 impl<L: InvariantLaw> HyperelasticLaw for L {
-    fn stresses(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 4]) -> bool {
+    fn stresses(&self, gradients: [&[f64]; 4], computed: [&mut [f64]; 4]) -> bool {
         Arch::new().dispatch(PointLoop {
             law: self,
             gradients,
-            made,
+            computed,
             kind: PhantomData::<Stress>,
         })
     }
@@ -40,13 +40,13 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
     fn responses(
         &self,
         gradients: [&[f64]; 4],
-        made: [&mut [f64]; COMPONENTS],
+        computed: [&mut [f64]; COMPONENTS],
         _tangents: bool,
     ) -> bool {
         Arch::new().dispatch(PointLoop {
             law: self,
             gradients,
-            made,
+            computed,
             kind: PhantomData::<Response>,
         })
     }
@@ -151,14 +151,14 @@ impl<L: InvariantLaw> IsochoricLaw for L {
 }
 
 /// A result computed from the kinematics and derivatives at a point.
-trait Made<const N: usize> {
+trait Computed<const N: usize> {
     /// The components of the result.
     fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; N];
 }
 
 struct Stress;
 
-impl Made<4> for Stress {
+impl Computed<4> for Stress {
     #[inline(always)]
     fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; 4] {
         kinematics.stress(w).1.into()
@@ -167,7 +167,7 @@ impl Made<4> for Stress {
 
 struct Response;
 
-impl Made<COMPONENTS> for Response {
+impl Computed<COMPONENTS> for Response {
     #[inline(always)]
     fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; COMPONENTS] {
         kinematics.response(w).components()
@@ -179,11 +179,11 @@ impl Made<COMPONENTS> for Response {
 struct PointLoop<'a, L, M, const N: usize> {
     law: &'a L,
     gradients: [&'a [f64]; 4],
-    made: [&'a mut [f64]; N],
+    computed: [&'a mut [f64]; N],
     kind: PhantomData<M>,
 }
 
-impl<L: InvariantLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
+impl<L: InvariantLaw, M: Computed<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
     type Output = bool;
 
     #[inline(always)]
@@ -194,21 +194,21 @@ impl<L: InvariantLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_
             let count = LANES.min(points - first);
             // Local copies, which no store aliases; entries behind the last point are at rest.
             let mut gradients = [[0.0; LANES]; 4];
-            for (own, component) in gradients.iter_mut().zip(&self.gradients) {
-                own[..count].copy_from_slice(&component[first..first + count]);
+            for (lanes, component) in gradients.iter_mut().zip(&self.gradients) {
+                lanes[..count].copy_from_slice(&component[first..first + count]);
             }
             let [h11, h12, h21, h22] = &gradients;
-            let mut found = [[0.0; LANES]; N];
+            let mut block = [[0.0; LANES]; N];
             for lane in 0..LANES {
                 let h = PlaneTensor::new(h11[lane], h12[lane], h21[lane], h22[lane]);
                 let kinematics = Kinematics::unchecked(&h);
-                let made = M::of(&kinematics, &self.law.evaluate(kinematics.invariants));
-                for (component, value) in found.iter_mut().zip(made) {
+                let computed = M::of(&kinematics, &self.law.evaluate(kinematics.invariants));
+                for (component, value) in block.iter_mut().zip(computed) {
                     component[lane] = value;
                 }
                 inverted |= u64::from(!kinematics.is_admissible());
             }
-            store(&mut self.made, &found, first, count);
+            store(&mut self.computed, &block, first, count);
         }
         inverted == 0
     }

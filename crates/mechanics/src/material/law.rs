@@ -193,11 +193,11 @@ pub(super) const LANES: usize = 16;
 #[inline(always)]
 pub(super) fn store<const N: usize>(
     all: &mut [&mut [f64]; N],
-    found: &[[f64; LANES]; N],
+    computed: &[[f64; LANES]; N],
     first: usize,
     count: usize,
 ) {
-    for (all, found) in all.iter_mut().zip(found) {
-        all[first..first + count].copy_from_slice(&found[..count]);
+    for (all, computed) in all.iter_mut().zip(computed) {
+        all[first..first + count].copy_from_slice(&computed[..count]);
     }
 }

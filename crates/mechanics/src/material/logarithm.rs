@@ -45,7 +45,7 @@ fn series(q: f64) -> f64 {
 
 /// ln(1 + y) − y, without cancellation where y is small.
 #[inline(always)]
-pub fn logarithm_beyond_first_order(y: f64) -> f64 {
+pub fn logarithm_remainder(y: f64) -> f64 {
     let s = y / (2.0 + y);
     let near = 2.0 * s * s * s * series(s * s) - y * y / (2.0 + y);
     let far = logarithm_of_one_plus(y) - y;
@@ -84,7 +84,7 @@ mod tests {
             } else {
                 y.ln_1p() - y
             };
-            let error = (logarithm_beyond_first_order(y) / expected - 1.0).abs();
+            let error = (logarithm_remainder(y) / expected - 1.0).abs();
             assert!(error < 4e-15, "{y}: {error:.1e}");
         }
     }

@@ -117,8 +117,8 @@ mod tests {
     fn the_uniaxial_strain_is_found_to_the_last_digits() {
         for x in [1e-9, 1e-6, 1e-3, 0.1, 0.5, 1.0, 3.0, 20.0_f64] {
             let y = x * x * (3.0 + x) / (1.0 + x);
-            let found = uniaxial_strain(y);
-            assert!((found / x - 1.0).abs() < 4e-15, "x = {x}: {found}");
+            let computed = uniaxial_strain(y);
+            assert!((computed / x - 1.0).abs() < 4e-15, "x = {x}: {computed}");
         }
     }
 }

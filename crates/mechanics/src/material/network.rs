@@ -3,7 +3,7 @@
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 use super::compressible_neo_hooke::chains;
 use super::law::HyperelasticLaw;
-use super::logarithm::logarithm_beyond_first_order;
+use super::logarithm::logarithm_remainder;
 use super::parameters::Parameters;
 use super::sheet::PlaneState;
 use crate::document::Bound;
@@ -188,19 +188,19 @@ impl SwollenNetwork {
         let (phi, k) = (self.fraction, self.network.osmotic_modulus);
         let (chi, dry) = (self.network.chi, 1.0 - self.fraction);
         // J₃ − 1 − c, and 1/J₃ − 1 + c
-        let swelling = -logarithm_beyond_first_order(v);
+        let swelling = -logarithm_remainder(v);
         let shrinking = v * v / (1.0 + v) - swelling;
         // ϕ − φ, and ln((1 − ϕ)/(1 − φ)) with its part beyond first order
         let thinner = -phi * v / (1.0 + v);
-        let beyond = logarithm_beyond_first_order(-thinner / dry);
-        let logarithm = beyond - thinner / dry;
+        let remainder = logarithm_remainder(-thinner / dry);
+        let logarithm = remainder - thinner / dry;
         let now = phi + thinner;
-        let change = beyond - thinner * phi / dry + chi * thinner * (phi + now);
+        let change = remainder - thinner * phi / dry + chi * thinner * (phi + now);
         let slope = k * (v * self.mixing + (1.0 + v) * change);
         let curvature =
             k * (1.0 + v) * (self.mixing + change + now * now * (1.0 / (1.0 - now) - 2.0 * chi));
         let energy = k
-            * ((self.mixing - phi - chi * phi * phi) * swelling + dry * beyond + v * logarithm
+            * ((self.mixing - phi - chi * phi * phi) * swelling + dry * remainder + v * logarithm
                 - phi * (1.0 + chi * phi) * shrinking);
         [energy, slope, curvature]
     }
@@ -287,7 +287,7 @@ mod tests {
     fn free_swelling_and_the_swollen_modulus_are_the_closed_forms() {
         let mut tested = 0;
         for (network, fraction) in gels() {
-            let found = network.free_swelling();
+            let swelling = network.free_swelling();
             // Where χ is beyond ½ by much, a second phase may take the place: another root of the same equation.
             let first = network.stress(0.999 * fraction) > 0.0;
             let only = (1..2000).filter(|i| {
@@ -298,8 +298,8 @@ mod tests {
                 continue;
             }
             assert!(
-                (found / fraction - 1.0).abs() < 1e-10,
-                "{network:?}: {found} {fraction}"
+                (swelling / fraction - 1.0).abs() < 1e-10,
+                "{network:?}: {swelling} {fraction}"
             );
             let law = BodySheet::new(SwollenNetwork::new(network), PlaneState::Stress);
             let swollen = network.modulus * (fraction / network.preparation_fraction).cbrt();
@@ -352,9 +352,9 @@ mod tests {
         let thickness = swollen * sheet.thickness_stretch(&state);
         assert!((thickness / low - 1.0).abs() < 1e-10, "{thickness} {low}");
         let stress = sheet.stress(&state).1;
-        let found = sheet.cauchy_stress(&state, &stress)[0];
+        let computed = sheet.cauchy_stress(&state, &stress)[0];
         let expected = modulus * (1.0 - low * low) / low;
-        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        assert!((computed / expected - 1.0).abs() < 1e-9, "{computed} {expected}");
     }
 
     #[test]
@@ -370,17 +370,17 @@ mod tests {
         .map(|law| law.shear_modulus());
         assert!((by_strands / by_modulus - 1.0).abs() < 1e-12);
         let text = samples::card("flory-rehner", &format!("modulus = \"0.02 MPa\"\n{rest}")).text;
-        let told = |from: &str, to: &str| {
+        let fault = |from: &str, to: &str| {
             let text = text.replace(from, to);
             Card::parse("gel", "gel.toml", &text)
                 .unwrap_err()
                 .to_string()
         };
-        assert!(told("preparation_fraction = 0.1\n", "").contains("preparation_fraction"));
+        assert!(fault("preparation_fraction = 0.1\n", "").contains("preparation_fraction"));
         assert!(
-            told("preparation_fraction = 0.1", "preparation_fraction = 1.5").contains("up to 1")
+            fault("preparation_fraction = 0.1", "preparation_fraction = 1.5").contains("up to 1")
         );
-        assert!(told("\"300 K\"", "\"300 mm\"").contains("temperature"));
-        assert!(told("chi = 0.45", "chi = 0.45\nhumidity = 1").contains("humidity"));
+        assert!(fault("\"300 K\"", "\"300 mm\"").contains("temperature"));
+        assert!(fault("chi = 0.45", "chi = 0.45\nhumidity = 1").contains("humidity"));
     }
 }

@@ -155,7 +155,7 @@ impl Powers {
     /// The values of a term, whose order is given once more.
     pub fn of(&self, term: usize, order: f64) -> [f64; 4] {
         match self.terms.get(term) {
-            Some(found) => *found,
+            Some(known) => *known,
             None => chebyshev(order, self.z, self.delta),
         }
     }

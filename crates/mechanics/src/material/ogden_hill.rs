@@ -1,7 +1,7 @@
 //! The law of Ogden and Hill for foams, and Blatz and Ko's.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-use super::exponential::{exponential_beyond_first_order, exponential_less_one, second_quotient};
+use super::exponential::{exponential_remainder, exponential_less_one, second_quotient};
 use super::law::HyperelasticLaw;
 use super::ogden::Powers;
 use super::parameters::Parameters;
@@ -110,21 +110,21 @@ impl BodyLaw for OgdenHill {
 
     /// With T of [`Ogden`](super::Ogden): λ₁^α + λ₂^α = 2 e^(αa/2) T(z).
     fn evaluate(&self, at: BodyStretches<(f64, Powers)>) -> BodyDerivatives {
-        let ((a, powers), whole) = (at.shape, at.volume());
-        let b = whole - a;
+        let ((a, powers), total) = (at.shape, at.volume());
+        let b = total - a;
         let mut sum = BodyDerivatives::default();
         for (number, term) in self.terms.iter().enumerate() {
             let (alpha, beta) = (term.exponent, term.volume_exponent);
             let factor = 2.0 * term.modulus / (alpha * alpha);
             let [t_minus_1, t, dt, ddt] = powers.of(number, 0.5 * alpha);
-            let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * whole];
-            let [grown_beyond, across_beyond] = [grown, across].map(exponential_beyond_first_order);
+            let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * total];
+            let [grown_remainder, across_remainder] = [grown, across].map(exponential_remainder);
             let volume = exponential_less_one(-beta * all);
-            let (growth_less_1, across_less_1) = (grown + grown_beyond, across + across_beyond);
+            let (growth_less_1, across_less_1) = (grown + grown_remainder, across + across_remainder);
             let growth = 1.0 + growth_less_1;
             sum.energy += factor
-                * (2.0 * (growth * t_minus_1 + grown_beyond)
-                    + across_beyond
+                * (2.0 * (growth * t_minus_1 + grown_remainder)
+                    + across_remainder
                     + beta * all * all * second_quotient(-beta * all));
             sum.a += factor * alpha * (growth * t_minus_1 + growth_less_1 - volume);
             sum.b += factor * alpha * (across_less_1 - volume);
@@ -142,12 +142,12 @@ impl BodyLaw for OgdenHill {
 
     /// Σ 2 μ/α (e^(αb) − J₃^(−αβ))
     fn thickness_slope(&self, at: BodyStretches<(f64, Powers)>) -> f64 {
-        let whole = at.volume();
-        let b = whole - at.shape.0;
+        let total = at.volume();
+        let b = total - at.shape.0;
         let slopes = self.terms.iter().map(|term| {
             let (alpha, beta) = (term.exponent, term.volume_exponent);
             let across_less_1 = exponential_less_one(alpha * b);
-            let volume = exponential_less_one(-beta * alpha * whole);
+            let volume = exponential_less_one(-beta * alpha * total);
             2.0 * term.modulus / alpha * (across_less_1 - volume)
         });
         let slope: f64 = slopes.sum();
@@ -177,9 +177,9 @@ mod tests {
                         shape: law.shape(area_change, z),
                         volume_root_change,
                     };
-                    let (own, all) = (law.thickness_slope(at()), law.evaluate(at()));
-                    let scale = 1e-12 * all.bb.abs().max(own.abs());
-                    assert!((own - all.b).abs() <= scale, "{own} {}", all.b);
+                    let (slope, all) = (law.thickness_slope(at()), law.evaluate(at()));
+                    let scale = 1e-12 * all.bb.abs().max(slope.abs());
+                    assert!((slope - all.b).abs() <= scale, "{slope} {}", all.b);
                 }
             }
         }

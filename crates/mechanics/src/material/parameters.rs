@@ -317,10 +317,10 @@ impl<'a> Parameters<'a> {
             _ => standard,
         };
         let unit = dimension.internal_unit();
-        let told = format!("{value} {unit}");
+        let statement = format!("{value} {unit}");
         self.choices
             .borrow_mut()
-            .push((key, told.trim_end().to_owned()));
+            .push((key, statement.trim_end().to_owned()));
         value
     }
 

@@ -79,7 +79,7 @@ impl InvariantLaw for Polynomial {
         let [a, b] = [("c10", self.c10), ("c01", self.c01)];
         let [x, y, z] = [("c20", self.c20), ("c11", self.c11), ("c02", self.c02)];
         let (febio, d) = (code == Code::FeBio, 2.0 / bulk);
-        match [x, y, z].map(|own| own.1) == [0.0; 3] {
+        match [x, y, z].map(|parameter| parameter.1) == [0.0; 3] {
             false if febio => CodeLaw::named("polynomial", [a, b, x, y, z, ("D1", bulk / 2.0)]),
             false => CodeLaw::named("POLYNOMIAL, N=2", [a, b, x, y, z, ("D1", d), ("D2", d)]),
             true if febio => CodeLaw::named(

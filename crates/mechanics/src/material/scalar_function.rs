@@ -166,11 +166,11 @@ impl Table {
 
     fn moment_from_first(&self, x: f64) -> f64 {
         let [first, last] = [self.points[0], self.points[self.points.len() - 1]];
-        let beyond = |[end, value]: [f64; 2]| 0.5 * value * (x * x - end * end);
+        let outside = |[end, value]: [f64; 2]| 0.5 * value * (x * x - end * end);
         if x <= first[0] {
-            beyond(first)
+            outside(first)
         } else if x > last[0] {
-            self.moments[self.points.len() - 1] + beyond(last)
+            self.moments[self.points.len() - 1] + outside(last)
         } else {
             let piece = self.piece(x);
             self.moments[piece - 1] + self.moment(piece, self.points[piece - 1][0], x)

@@ -286,15 +286,15 @@ mod tests {
         let h = f - Matrix2::identity();
         let state = Kinematics::new(&Vector4::new(h.m11, h.m12, h.m21, h.m22)).unwrap();
         let through = 1.0 / (1.4 * 0.8);
-        let found = state.principal_stretches();
-        for (found, expected) in found.into_iter().zip([1.4, 0.8]) {
-            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        let computed = state.principal_stretches();
+        for (computed, expected) in computed.into_iter().zip([1.4, 0.8]) {
+            assert!((computed - expected).abs() < 1e-14, "{computed} {expected}");
         }
         let (_, p) = NeoHooke { c10 }.stress(&state);
         let b = f * f.transpose() - Matrix2::identity() * (through * through);
-        let found = state.kirchhoff_stress(&p);
-        for (found, expected) in found.into_iter().zip([b.m11, b.m12, b.m22]) {
-            assert!((found - 2.0 * c10 * expected).abs() < 1e-15);
+        let computed = state.kirchhoff_stress(&p);
+        for (computed, expected) in computed.into_iter().zip([b.m11, b.m12, b.m22]) {
+            assert!((computed - 2.0 * c10 * expected).abs() < 1e-15);
         }
     }
 }

@@ -98,10 +98,10 @@ impl HyperelasticLaw for SoftenedLaw {
 
     fn statements(&self) -> Vec<(&'static str, String)> {
         let Softening { r, m, beta } = self.softening;
-        let told =
+        let statement =
             format!("r = {r}, m = {m} MPa, β = {beta} (Ogden and Roxburgh, of the whole energy)");
         let mut all = self.virgin.statements();
-        all.push(("softening", told));
+        all.push(("softening", statement));
         all
     }
 

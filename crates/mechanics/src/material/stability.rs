@@ -130,7 +130,7 @@ mod tests {
         let (at, step) = ([0.3, -0.1], 1e-4);
         let [first, second] = at.map(f64::exp_m1);
         let state = Kinematics::new(&Vector4::new(first, 0.0, 0.0, second)).unwrap();
-        let found = tangent(&law, &state).unwrap();
+        let computed = tangent(&law, &state).unwrap();
         for (i, j) in [(0, 0), (0, 1), (1, 1)] {
             let value = |a: f64, b: f64| {
                 let mut strains = at;
@@ -141,8 +141,8 @@ mod tests {
             let mixed = value(1.0, 1.0) - value(1.0, -1.0) - value(-1.0, 1.0) + value(-1.0, -1.0);
             let expected = mixed / (4.0 * step * step);
             assert!(
-                (found[(i, j)] / expected - 1.0).abs() < 1e-5,
-                "{i}{j}: {found} {expected}"
+                (computed[(i, j)] / expected - 1.0).abs() < 1e-5,
+                "{i}{j}: {computed} {expected}"
             );
         }
     }

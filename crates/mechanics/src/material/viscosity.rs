@@ -88,14 +88,14 @@ impl ViscousMaterial {
     /// E′ = E∞ (1 + Σ βᵢ x²/(1 + x²)),   E″ = E∞ Σ βᵢ x/(1 + x²) + 3 η ω,   x = ω τᵢ
     /// ```
     pub fn complex_modulus(&self, modulus: f64, angular_frequency: f64) -> [f64; 2] {
-        let mut found = [modulus, 3.0 * self.shear_viscosity * angular_frequency];
+        let mut complex = [modulus, 3.0 * self.shear_viscosity * angular_frequency];
         for (i, term) in self.relaxation.iter().enumerate() {
             let x = angular_frequency * term.time;
             let part = modulus * self.beta(i) * x / (1.0 + x * x);
-            found[0] += part * x;
-            found[1] += part;
+            complex[0] += part * x;
+            complex[1] += part;
         }
-        found
+        complex
     }
 
     /// βᵢ = gᵢ/(1 − Σ g).

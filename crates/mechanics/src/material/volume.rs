@@ -16,7 +16,7 @@
 //! S. Doll, K. Schweizerhof, J. Appl. Mech. 67, 17 (2000), doi:10.1115/1.321146;
 //! J. C. Simo, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 85, 273 (1991), doi:10.1016/0045-7825(91)90100-K
 
-use super::logarithm::logarithm_beyond_first_order;
+use super::logarithm::logarithm_remainder;
 use super::sheet::PlaneState;
 use crate::document::{Bound, name_of};
 
@@ -78,13 +78,13 @@ impl VolumeEnergy {
             [Self::Quadratic, Self::Logarithmic, Self::SimoTaylor].map(weight);
         let slope_of_logarithm = if LOGARITHM { logarithm } else { 0.0 };
         // J₃ − 1 − ln J₃, and ½ (J₃ − 1)²
-        let beyond = -logarithm_beyond_first_order(change);
+        let remainder = -logarithm_remainder(change);
         let ratio = 1.0 + change;
         let half = 0.5 * change * change;
         [
             quadratic * half
                 + plain * 0.5 * logarithm * logarithm
-                + simo_taylor * 0.5 * (beyond + half),
+                + simo_taylor * 0.5 * (remainder + half),
             quadratic * change * ratio + plain * slope_of_logarithm + simo_taylor * (change + half),
             quadratic * ratio * (ratio + change) + plain + simo_taylor * ratio * ratio,
         ]

@@ -146,8 +146,8 @@ mod tests {
     fn smallest_angle(mesh: &Mesh) -> f64 {
         let angle = |cell: usize, corner: usize| {
             let at = |i: usize| mesh.nodes[mesh.cell(cell)[(corner + i) % 3]];
-            let way = |i: usize| [0, 1].map(|axis| at(i)[axis] - at(0)[axis]);
-            let ([ax, ay], [bx, by]) = (way(1), way(2));
+            let direction = |i: usize| [0, 1].map(|axis| at(i)[axis] - at(0)[axis]);
+            let ([ax, ay], [bx, by]) = (direction(1), direction(2));
             (ax * by - ay * bx).atan2(ax * bx + ay * by)
         };
         let cells = 0..mesh.cell_count();

@@ -196,8 +196,8 @@ mod tests {
             let point = [-radius * angle.cos(), radius * angle.sin()];
             let (cell, local) = mesh.locate(point);
             assert!(mesh.shape(cell).outside(local) < 1e-9, "{point:?}");
-            let (found, exact) = (mesh.displacement_at(&u, point), field(point));
-            assert!((found[0] - exact[0]).hypot(found[1] - exact[1]) < 1e-12);
+            let (interpolated, exact) = (mesh.displacement_at(&u, point), field(point));
+            assert!((interpolated[0] - exact[0]).hypot(interpolated[1] - exact[1]) < 1e-12);
         }
         // A little outside: the nearest cell is used.
         let (cell, local) = mesh.locate([-2.01 * 0.2_f64.cos(), 2.01 * 0.2_f64.sin()]);

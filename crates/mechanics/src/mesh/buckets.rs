@@ -65,16 +65,16 @@ impl Buckets {
         let range = |middle: usize, count: usize| {
             middle.saturating_sub(reach)..=(middle + reach).min(count - 1)
         };
-        let mut found = Vec::new();
+        let mut cells = Vec::new();
         for a in range(i, self.counts[0]) {
             for b in range(j, self.counts[1]) {
                 if a.abs_diff(i).max(b.abs_diff(j)) == reach {
-                    found.extend(&self.cells[a * self.counts[1] + b]);
+                    cells.extend(&self.cells[a * self.counts[1] + b]);
                 }
             }
         }
-        found.sort_unstable();
-        found.dedup();
-        found
+        cells.sort_unstable();
+        cells.dedup();
+        cells
     }
 }

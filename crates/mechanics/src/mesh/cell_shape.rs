@@ -106,14 +106,14 @@ impl CellShape {
 
     /// VTK's number.
     pub fn vtk_number(self) -> u8 {
-        let found = Self::VTK.iter().find(|(_, own)| *own == self);
-        found.expect("a kind of the table").0
+        let entry = Self::VTK.iter().find(|(_, shape)| *shape == self);
+        entry.expect("a kind of the table").0
     }
 
     /// The kind with a number of VTK; `None` where gelbench has no such kind.
     pub fn of_vtk_number(number: u8) -> Option<Self> {
-        let found = Self::VTK.iter().find(|(own, _)| *own == number);
-        found.map(|(_, kind)| *kind)
+        let entry = Self::VTK.iter().find(|(known, _)| *known == number);
+        entry.map(|(_, kind)| *kind)
     }
 
     /// Number of nodes of a cell.

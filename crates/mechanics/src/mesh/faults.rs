@@ -35,15 +35,15 @@ impl Mesh {
 
     /// All faults, each kind once with its number of places and the first of them in mm: errors first, then warnings.
     pub fn faults(&self, allowed: Exemptions) -> Vec<Diagnostic> {
-        let mut found = self.cells_without_sense();
+        let mut diagnostics = self.cells_without_sense();
         let twice = cells::given_twice(self);
-        found.extend(cells::twice_told(self, &twice));
+        diagnostics.extend(cells::duplicate_cells(self, &twice));
         let again: HashSet<usize> = twice.iter().map(|[_, again]| *again).collect();
         let sides = Sides::new(self, &again);
-        found.extend(sides.faults());
-        found.extend(touching::faults(&sides, allowed));
+        diagnostics.extend(sides.faults());
+        diagnostics.extend(touching::faults(&sides, allowed));
         // These three checks may find the same fault from another side.
-        let beyond = if found.is_empty() {
+        let further = if diagnostics.is_empty() {
             vec![
                 parts::hinges(&sides, allowed),
                 touching::overlaps(self),
@@ -52,9 +52,9 @@ impl Mesh {
         } else {
             Vec::new()
         };
-        found.extend(parts::parts(&sides, allowed));
-        found.extend(beyond.into_iter().flatten());
-        found
+        diagnostics.extend(parts::parts(&sides, allowed));
+        diagnostics.extend(further.into_iter().flatten());
+        diagnostics
     }
 }
 

@@ -87,25 +87,25 @@ fn sound(
     let areas: Vec<String> = raw.areas.keys().cloned().collect();
     let mesh = raw.mesh(reading.unit);
     let mesh = mesh.map_err(|reason| unreadable(name, reason))?;
-    let mut told = mesh.faults(reading.allowed);
-    let wrong = told.iter().any(|fault| fault.severity == Severity::Error);
+    let mut faults = mesh.faults(reading.allowed);
+    let wrong = faults.iter().any(|fault| fault.severity == Severity::Error);
     if !wrong {
-        told.extend(lost_groups(&lost, &mesh));
-        let is_named = |side: &str| lost.contains_key(side) || areas.iter().any(|own| own == side);
-        told.extend(doubtful_sides(&mesh, is_named));
+        faults.extend(lost_groups(&lost, &mesh));
+        let is_named = |side: &str| lost.contains_key(side) || areas.iter().any(|area| area == side);
+        faults.extend(doubtful_sides(&mesh, is_named));
         if !reading.allowed.polygons {
-            told.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));
+            faults.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));
         }
     }
-    for fault in &mut told {
+    for fault in &mut faults {
         fault.message = format!("{name}: {}", fault.message);
     }
     if wrong {
-        return Err(told);
+        return Err(faults);
     }
     let degree = mesh.degree();
     let mixed = (0..mesh.cell_count()).any(|cell| mesh.shape(cell).degree() < degree);
-    Ok((if mixed { mesh.quadratic() } else { mesh }, told))
+    Ok((if mixed { mesh.quadratic() } else { mesh }, faults))
 }
 
 fn read(path: &Path) -> Result<Raw, Unreadable> {
@@ -122,7 +122,7 @@ fn read(path: &Path) -> Result<Raw, Unreadable> {
 
 /// Warnings about lines in groups that are not edges of the boundary.
 fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Diagnostic> {
-    let told = |(name, lines): (&String, &Vec<[u64; 2]>)| {
+    let warning_of = |(name, lines): (&String, &Vec<[u64; 2]>)| {
         let lines: BTreeSet<[u64; 2]> = lines.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
         let group = mesh.groups().get(name);
         let kept = group.map_or(0, |group| group.edges.len());
@@ -149,7 +149,7 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
         let hint = "edges of the boundary are sides of only one cell, with its nodes";
         Some(Diagnostic::warning("", message).hint(hint))
     };
-    groups.iter().filter_map(told).collect()
+    groups.iter().filter_map(warning_of).collect()
 }
 
 #[cfg(test)]

@@ -121,7 +121,7 @@ impl Mesh {
 
     /// Displacement interpolated at all nodes of another mesh of the specimen; on a seam, that of the side to which a node belongs.
     pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
-        let positions = self.places_from_own_sides(other);
+        let positions = self.places_by_side_of_seam(other);
         let position = |node: usize| match &positions {
             Some(positions) => positions[node],
             None => self.locate(other.nodes[node]),
@@ -137,7 +137,7 @@ impl Mesh {
         let mut starts = Vec::with_capacity(other.nodes.len() + 1);
         starts.push(0);
         let (mut nodes, mut shares) = (Vec::new(), Vec::new());
-        let positions = self.places_from_own_sides(other);
+        let positions = self.places_by_side_of_seam(other);
         let mut cell = 0;
         for (node, position) in other.nodes.iter().enumerate() {
             let local;
@@ -173,7 +173,7 @@ impl Mesh {
         let map = self.map(cell, derivatives);
         let jacobian = determinant(&map);
         let inverse = [[map[1][1], -map[0][1]], [-map[1][0], map[0][0]]];
-        (inverse.map(|row| row.map(|own| own / jacobian)), jacobian)
+        (inverse.map(|row| row.map(|entry| entry / jacobian)), jacobian)
     }
 
     /// ∂Xᵢ/∂ξⱼ of a cell.
@@ -236,8 +236,8 @@ mod tests {
         let field = |[x, y]: [f64; 2]| [x * x - 2.0 * x * y, 0.5 * y * y + x];
         let u: Vec<f64> = mesh.nodes.iter().flat_map(|node| field(*node)).collect();
         let point = [1.3, 0.7];
-        let (found, exact) = (mesh.displacement_at(&u, point), field(point));
-        assert!((found[0] - exact[0]).abs() < 1e-14 && (found[1] - exact[1]).abs() < 1e-14);
+        let (interpolated, exact) = (mesh.displacement_at(&u, point), field(point));
+        assert!((interpolated[0] - exact[0]).abs() < 1e-14 && (interpolated[1] - exact[1]).abs() < 1e-14);
         let (cell, local) = mesh.locate(point);
         let gradient = mesh.gradient_at(&u, cell, local);
         let expected = [2.0 * 1.3 - 2.0 * 0.7, -2.6, 1.0, 0.7];

@@ -143,16 +143,16 @@ impl Mesh {
     }
 
     /// Whether a point lies inside of a cell, farther from its sides than `margin` in natural coordinates; cells for
-    /// which `own` is true are skipped.
+    /// which `is_excluded` is true are skipped.
     pub(super) fn holds_inside(
         &self,
         point: [f64; 2],
         margin: f64,
-        own: impl Fn(usize) -> bool,
+        is_excluded: impl Fn(usize) -> bool,
     ) -> bool {
         let buckets = self.buckets();
         let around = buckets.around(point).iter();
-        let mut others = around.filter(|cell| !own(**cell) && buckets.is_in_box(**cell, point));
+        let mut others = around.filter(|cell| !is_excluded(**cell) && buckets.is_in_box(**cell, point));
         others.any(|cell| {
             let local = self.natural_coordinates(*cell, point);
             local.is_some_and(|local| self.shape(*cell).depth(local) > margin)
@@ -162,16 +162,16 @@ impl Mesh {
     /// Lower left and upper right corner of a box around a cell, in mm. A curved edge lies within the triangle of its
     /// ends a, b and the point 2 m − ½ (a + b) beyond its middle m.
     pub(super) fn cell_box(&self, cell: usize) -> [[f64; 2]; 2] {
-        let own = self.cell(cell);
+        let nodes = self.cell(cell);
         let edges = self.shape(cell).edges();
-        let beyond = edges.iter().filter_map(|edge| match edge[..] {
+        let control_points = edges.iter().filter_map(|edge| match edge[..] {
             [a, b, m] => {
-                let [a, b, m] = [a, b, m].map(|node| self.nodes[own[node]]);
+                let [a, b, m] = [a, b, m].map(|node| self.nodes[nodes[node]]);
                 Some([0, 1].map(|axis| 2.0 * m[axis] - 0.5 * (a[axis] + b[axis])))
             }
             _ => None,
         });
-        bounding_box(own.iter().map(|node| self.nodes[*node]).chain(beyond))
+        bounding_box(nodes.iter().map(|node| self.nodes[*node]).chain(control_points))
     }
 }
 

@@ -189,8 +189,8 @@ mod tests {
             assert!((mesh.cell_size(0)[0] - 2.0 * first).abs() < 1e-12);
             for cell in 0..mesh.cell_count() {
                 for local in [[-0.9, 0.3], [0.0, 0.0], [0.99, -0.99]] {
-                    let (found, there) = mesh.locate(mesh.position(cell, local));
-                    assert_eq!(found, cell);
+                    let (located, there) = mesh.locate(mesh.position(cell, local));
+                    assert_eq!(located, cell);
                     assert!((0..2).all(|axis| (there[axis] - local[axis]).abs() < 1e-9));
                 }
             }

@@ -114,18 +114,18 @@ pub(super) struct Subdivision<'a> {
     /// The cell of which each one is a piece.
     parents: Vec<usize>,
     /// The nodes half way between two others along a line of a cell.
-    made: HashMap<[usize; 2], usize>,
+    middles: HashMap<[usize; 2], usize>,
 }
 
 impl<'a> Subdivision<'a> {
     /// No cells yet; cuts go through the mesh's own nodes in the middle of edges.
     pub fn new(mesh: &'a Mesh) -> Self {
-        let mut made = HashMap::new();
+        let mut middles = HashMap::new();
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
             for edge in mesh.shape(cell).edges() {
                 if let [a, b, middle] = edge[..] {
-                    made.insert(key(nodes[a], nodes[b]), nodes[middle]);
+                    middles.insert(key(nodes[a], nodes[b]), nodes[middle]);
                 }
             }
         }
@@ -134,7 +134,7 @@ impl<'a> Subdivision<'a> {
             nodes: mesh.nodes.clone(),
             cells: Vec::new(),
             parents: Vec::new(),
-            made,
+            middles,
         }
     }
 
@@ -155,7 +155,7 @@ impl<'a> Subdivision<'a> {
     pub fn middle(&mut self, cell: usize, a: Point, b: Point) -> Point {
         let local = [0, 1].map(|axis| 0.5 * (a.local[axis] + b.local[axis]));
         let (nodes, mesh) = (&mut self.nodes, self.mesh);
-        let node = *self.made.entry(key(a.node, b.node)).or_insert_with(|| {
+        let node = *self.middles.entry(key(a.node, b.node)).or_insert_with(|| {
             nodes.push(mesh.position(cell, local));
             nodes.len() - 1
         });
@@ -166,8 +166,8 @@ impl<'a> Subdivision<'a> {
     pub fn centre(&mut self, cell: usize, corners: &[Point]) -> Point {
         let mean = |axis: usize| corners.iter().map(|point| point.local[axis]).sum::<f64>() / 4.0;
         let local = [mean(0), mean(1)];
-        let own = self.mesh.cell(cell).get(8);
-        let node = match own.filter(|_| local == [0.0; 2]) {
+        let middle_node = self.mesh.cell(cell).get(8);
+        let node = match middle_node.filter(|_| local == [0.0; 2]) {
             Some(node) => *node,
             None => {
                 self.nodes.push(self.mesh.position(cell, local));
@@ -179,12 +179,12 @@ impl<'a> Subdivision<'a> {
 
     /// The node half way between two nodes, if there is one.
     pub fn between(&self, a: usize, b: usize) -> Option<usize> {
-        self.made.get(&key(a, b)).copied()
+        self.middles.get(&key(a, b)).copied()
     }
 
     /// Records which node is half way between two nodes.
     pub fn put_between(&mut self, [a, b]: [usize; 2], middle: usize) {
-        self.made.insert(key(a, b), middle);
+        self.middles.insert(key(a, b), middle);
     }
 
     /// Adds a piece of a cell by its corners, with the other nodes of its kind.
@@ -230,22 +230,22 @@ impl<'a> Subdivision<'a> {
 
     /// The mesh, with the groups of the one that was cut; `edges` makes an edge into those of the new mesh.
     pub fn finish(self, edges: impl Fn(&Self, &[usize]) -> Vec<Vec<usize>>) -> Mesh {
-        let made = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
+        let divided = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
             sides.iter().flat_map(|side| edges(&self, side)).collect()
         };
         let pieces = |cells: &[usize]| -> Vec<usize> {
-            let own = |piece: &usize| cells.binary_search(&self.parents[*piece]).is_ok();
+            let is_within = |piece: &usize| cells.binary_search(&self.parents[*piece]).is_ok();
             if cells.is_empty() {
                 Vec::new()
             } else {
-                (0..self.parents.len()).filter(own).collect()
+                (0..self.parents.len()).filter(is_within).collect()
             }
         };
         let groups = self.mesh.groups().iter().map(|(name, group)| {
             let group = Group {
                 nodes: group.nodes.clone(),
-                edges: made(&group.edges),
-                lines: made(&group.lines),
+                edges: divided(&group.edges),
+                lines: divided(&group.lines),
                 cells: pieces(&group.cells),
             };
             (name, group)

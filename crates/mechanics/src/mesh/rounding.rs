@@ -39,7 +39,7 @@ pub struct Polygon {
     /// Edges that may be chords.
     pub edges: usize,
     /// The largest distance of the curve from an edge, in mm.
-    pub beside: f64,
+    pub sagitta: f64,
     /// The gain in the specimen's area with the curve, in mm².
     pub area: f64,
 }
@@ -52,7 +52,7 @@ impl Polygon {
              them, and the area is wrong by {:.2} %",
             self.group,
             self.edges,
-            self.beside,
+            self.sagitta,
             100.0 * (self.area / mesh.area()).abs()
         );
         let hint = "save the mesh with elements of the second order, whose sides are curved; if a polygon is meant, allow \"polygons\"";
@@ -76,13 +76,13 @@ impl Piece<'_> {
     }
 
     /// The turn along the edge itself.
-    fn own_turn(&self) -> f64 {
+    fn turning(&self) -> f64 {
         angle(self.tangents[0], self.tangents[1])
     }
 
     /// The turn at each end if the edge were that of a circle.
     fn circular(&self) -> f64 {
-        let half = 0.5 * self.own_turn();
+        let half = 0.5 * self.turning();
         2.0 * (0.5 * half.tan()).atan() - half
     }
 
@@ -105,7 +105,7 @@ impl Piece<'_> {
     }
 
     /// The vector from the edge to the curve at s in mm.
-    fn way(&self, [a, b]: [f64; 2], s: f64) -> [f64; 2] {
+    fn offset(&self, [a, b]: [f64; 2], s: f64) -> [f64; 2] {
         let odd = if self.edge.len() == 2 { 1.0 } else { s };
         let height = odd * (1.0 - s * s) * (a + b * s) / self.length();
         [-height * self.chord[1], height * self.chord[0]]
@@ -143,10 +143,10 @@ impl Mesh {
                 _ => &[(a, b, 0.0)],
             };
             for (from, to, s) in positions {
-                let way = piece.way(bump, *s);
+                let offset = piece.offset(bump, *s);
                 if let Some(node) = finer.between(*from, *to) {
-                    for (axis, way) in way.into_iter().enumerate() {
-                        finer.nodes[node][axis] += way;
+                    for (axis, offset) in offset.into_iter().enumerate() {
+                        finer.nodes[node][axis] += offset;
                     }
                 }
             }
@@ -162,26 +162,26 @@ impl Mesh {
             .filter_map(|piece| Some((piece.edge, (piece, piece.bump()?))))
             .collect();
         let of_group = |(name, group): (&String, &super::cells::Group)| {
-            let own = group.edges.iter().filter_map(|edge| bumps.get(&edge[..]));
-            let mut found = Polygon {
+            let bumps_of_group = group.edges.iter().filter_map(|edge| bumps.get(&edge[..]));
+            let mut polygon = Polygon {
                 group: name.clone(),
                 edges: 0,
-                beside: 0.0,
+                sagitta: 0.0,
                 area: 0.0,
             };
-            for (piece, bump) in own {
-                found.edges += 1;
-                found.beside = found.beside.max(bump[0].abs());
-                found.area += piece.area(*bump);
+            for (piece, bump) in bumps_of_group {
+                polygon.edges += 1;
+                polygon.sagitta = polygon.sagitta.max(bump[0].abs());
+                polygon.area += piece.area(*bump);
             }
-            (found.edges > 0).then_some(found)
+            (polygon.edges > 0).then_some(polygon)
         };
-        let found: Vec<Polygon> = self.groups().iter().filter_map(of_group).collect();
+        let polygons: Vec<Polygon> = self.groups().iter().filter_map(of_group).collect();
         let named = |polygon: &&Polygon| polygon.group != "boundary";
-        if found.iter().any(|polygon| named(&polygon)) {
-            found.iter().filter(named).cloned().collect()
+        if polygons.iter().any(|polygon| named(&polygon)) {
+            polygons.iter().filter(named).cloned().collect()
         } else {
-            found
+            polygons
         }
     }
 
@@ -254,7 +254,7 @@ fn neighbours(pieces: &[Piece]) -> Vec<Option<usize>> {
 
 /// The shares of the end of one parabola and of the beginning of the next in the turn between them, if they are one curve.
 fn parabolas(kink: f64, pair: [&Piece; 2]) -> Option<[f64; 2]> {
-    let turns = pair.map(|piece| piece.own_turn().abs());
+    let turns = pair.map(|piece| piece.turning().abs());
     let most = turns[0].max(turns[1]);
     if most < TURNS.start || kink.abs() > SMOOTH * most {
         return None;
@@ -269,27 +269,27 @@ fn chords(
     piece: usize,
     pieces: &[Piece],
     kinks: &[Option<f64>],
-    ways: &[&[Option<usize>]; 2],
+    directions: &[&[Option<usize>]; 2],
 ) -> Option<[f64; 2]> {
     // The turn at the end of an edge per length of the edges beside it.
     let curvature = |piece: usize| {
-        let (kink, after) = (kinks[piece]?, ways[0][piece]?);
+        let (kink, after) = (kinks[piece]?, directions[0][piece]?);
         let curved = TURNS.contains(&kink.abs()) && pieces[after].edge.len() == 2;
         curved.then(|| kink / (pieces[piece].length() + pieces[after].length()))
     };
     let mut alike = 1;
-    for way in ways {
-        let (mut at, mut own) = (piece, curvature(piece)?);
-        while let Some(to) = way[at].filter(|_| alike < ALIKE) {
+    for direction in directions {
+        let (mut at, mut bend) = (piece, curvature(piece)?);
+        while let Some(to) = direction[at].filter(|_| alike < ALIKE) {
             let Some(other) = curvature(to) else { break };
-            if !(1.0 / STEADY..=STEADY).contains(&(other / own)) {
+            if !(1.0 / STEADY..=STEADY).contains(&(other / bend)) {
                 break;
             }
             alike += 1;
-            (at, own) = (to, other);
+            (at, bend) = (to, other);
         }
     }
-    let (kink, after) = (kinks[piece]?, ways[0][piece]?);
+    let (kink, after) = (kinks[piece]?, directions[0][piece]?);
     let lengths = [piece, after].map(|piece| pieces[piece].length());
     let share = kink / (lengths[0] + lengths[1]);
     (alike >= ALIKE).then(|| lengths.map(|length| share * length))
@@ -307,7 +307,7 @@ mod tests {
     };
 
     /// How far the nodes of the inner edge are from the circle.
-    fn beside(mesh: &Mesh) -> f64 {
+    fn radial_deviation(mesh: &Mesh) -> f64 {
         let nodes = mesh.groups()["inside"].nodes.iter();
         let radii = nodes.map(|node| mesh.nodes[*node][0].hypot(mesh.nodes[*node][1]));
         radii.fold(0.0, |most, radius| f64::max(most, (radius - 10.0).abs()))
@@ -317,8 +317,8 @@ mod tests {
     fn edges_of_circles_are_rounded_to_them() {
         for (_, kind) in CellShape::NAMES {
             let mesh = RING.mesh(4, kind);
-            let edges = beside(&mesh.refined());
-            let rounded = beside(&mesh.rounded().expect("arcs"));
+            let edges = radial_deviation(&mesh.refined());
+            let rounded = radial_deviation(&mesh.rounded().expect("arcs"));
             assert!(
                 edges > 1e-5 && rounded < 0.03 * edges,
                 "{kind:?}: {rounded} of {edges}"
@@ -350,9 +350,9 @@ mod tests {
         let angle = std::f64::consts::PI / corners as f64;
         let sagitta = 2.0 * (1.0 - angle.cos());
         assert!(
-            (polygon.beside / sagitta - 1.0).abs() < 0.3,
+            (polygon.sagitta / sagitta - 1.0).abs() < 0.3,
             "{} {sagitta}",
-            polygon.beside
+            polygon.sagitta
         );
         let lacking = 300.0 - 4.0 * std::f64::consts::PI - mesh.area();
         assert!(

@@ -14,17 +14,17 @@ const ROUNDING: f64 = 1e-9;
 
 impl Mesh {
     /// The places of another mesh's nodes, both of the same specimen, where parts of the boundary lie on each other; `None` where none do.
-    pub(super) fn places_from_own_sides(&self, other: &Self) -> Option<Vec<Place>> {
+    pub(super) fn places_by_side_of_seam(&self, other: &Self) -> Option<Vec<Place>> {
         let neighbours = self
             .seams
             .get_or_init(|| self.seamed_neighbours())
             .as_ref()?;
-        let mut own_cell = vec![None; other.nodes.len()];
+        let mut cell_of = vec![None; other.nodes.len()];
         for cell in 0..other.cell_count() {
             other
                 .cell(cell)
                 .iter()
-                .for_each(|node| own_cell[*node] = Some(cell));
+                .for_each(|node| cell_of[*node] = Some(cell));
         }
         let mut on_boundary = vec![false; other.nodes.len()];
         other
@@ -32,9 +32,9 @@ impl Mesh {
             .iter()
             .flatten()
             .for_each(|node| on_boundary[*node] = true);
-        let position = |node: usize| match own_cell[node].filter(|_| on_boundary[node]) {
-            Some(own) => {
-                let (start, _) = self.locate(other.centre(own));
+        let position = |node: usize| match cell_of[node].filter(|_| on_boundary[node]) {
+            Some(cell) => {
+                let (start, _) = self.locate(other.centre(cell));
                 self.walk(neighbours, start, other.nodes[node])
             }
             None => self.locate(other.nodes[node]),
@@ -59,8 +59,8 @@ impl Mesh {
 
     /// Whether a node lies in a cell that is not its own, deeper than `depth` in natural coordinates.
     fn lies_on_others(&self, node: usize, depth: f64) -> bool {
-        let is_own = |cell: usize| self.cell(cell).contains(&node);
-        self.holds_inside(self.nodes[node], depth, is_own)
+        let has_node = |cell: usize| self.cell(cell).contains(&node);
+        self.holds_inside(self.nodes[node], depth, has_node)
     }
 
     /// The place at rest of a node of the boundary that a displacement moves into a cell which is not its own, deeper than `depth` in natural
@@ -73,8 +73,8 @@ impl Mesh {
         let cells = (0..self.cell_count()).map(|cell| (self.shape(cell), self.cell(cell).to_vec()));
         let deformed = Self::new(nodes.collect(), cells);
         let mut boundary = self.boundary().iter().flatten();
-        let found = boundary.find(|node| deformed.lies_on_others(**node, depth));
-        found.map(|node| self.nodes[*node])
+        let overlapping = boundary.find(|node| deformed.lies_on_others(**node, depth));
+        overlapping.map(|node| self.nodes[*node])
     }
 
     /// The cell of a place, reached from another cell across sides that cells share; beside the boundary, the nearest cell on the way.
@@ -106,19 +106,19 @@ impl Mesh {
     fn edges_towards(&self, cell: usize, point: [f64; 2]) -> Vec<usize> {
         let centre = self.centre(cell);
         let edges = self.shape(cell).edges().into_iter().enumerate();
-        let beyond = edges.filter_map(|(number, edge)| {
+        let crossed = edges.filter_map(|(number, edge)| {
             let [a, b] = [edge[0], edge[1]].map(|node| self.nodes[self.cell(cell)[node]]);
             let along = [b[0] - a[0], b[1] - a[1]];
             let side = |position: [f64; 2]| {
                 along[0] * (position[1] - a[1]) - along[1] * (position[0] - a[0])
             };
             // Positive beyond the chord, whichever way the cell is numbered.
-            let beyond = -side(point) * side(centre).signum() / along[0].hypot(along[1]);
-            (beyond > 0.0).then_some((beyond, number))
+            let distance = -side(point) * side(centre).signum() / along[0].hypot(along[1]);
+            (distance > 0.0).then_some((distance, number))
         });
-        let mut beyond: Vec<(f64, usize)> = beyond.collect();
-        beyond.sort_by(|one, other| other.0.total_cmp(&one.0));
-        beyond.into_iter().map(|(_, number)| number).collect()
+        let mut crossed: Vec<(f64, usize)> = crossed.collect();
+        crossed.sort_by(|one, other| other.0.total_cmp(&one.0));
+        crossed.into_iter().map(|(_, number)| number).collect()
     }
 }
 
@@ -147,16 +147,16 @@ mod tests {
             })
             .collect();
         let cells = (0..plate.cell_count()).map(|cell| {
-            let own = plate.cell(cell).iter();
-            let own = own.map(|node| if is_upper(cell) { twin[*node] } else { *node });
-            (plate.shape(cell), own.collect::<Vec<usize>>())
+            let corners = plate.cell(cell).iter();
+            let corners = corners.map(|node| if is_upper(cell) { twin[*node] } else { *node });
+            (plate.shape(cell), corners.collect::<Vec<usize>>())
         });
-        let halves = |(kind, own): (CellShape, Vec<usize>)| match own[..] {
+        let halves = |(kind, corners): (CellShape, Vec<usize>)| match corners[..] {
             [a, b, c, d] if is_split => vec![
                 (CellShape::Triangle3, vec![a, b, c]),
                 (CellShape::Triangle3, vec![a, c, d]),
             ],
-            _ => vec![(kind, own)],
+            _ => vec![(kind, corners)],
         };
         let cells: Vec<_> = cells.flat_map(halves).collect();
         let turned = |[x, y]: [f64; 2]| [700.0 + 0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y];
@@ -183,10 +183,10 @@ mod tests {
             // All nodes of the seam are doubled: two bodies that touch.
             let [coarse, fine] = [[4, 2], [12, 6]].map(|cells| slit(cells, shape, -1.0));
             for (from, to) in [(&coarse, &fine), (&fine, &coarse), (&fine, &fine)] {
-                let found = from.displacement_on(&opened(from), to);
-                assert_eq!(from.interpolation_on(to).apply(&opened(from)), found);
-                for (found, expected) in found.iter().zip(opened(to)) {
-                    assert!((found - expected).abs() < 1e-12, "{shape:?}");
+                let computed = from.displacement_on(&opened(from), to);
+                assert_eq!(from.interpolation_on(to).apply(&opened(from)), computed);
+                for (computed, expected) in computed.iter().zip(opened(to)) {
+                    assert!((computed - expected).abs() < 1e-12, "{shape:?}");
                 }
             }
         }
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn slits_are_seams_and_joined_cells_are_not() {
-        let is_seamed = |mesh: &Mesh| mesh.places_from_own_sides(mesh).is_some();
+        let is_seamed = |mesh: &Mesh| mesh.places_by_side_of_seam(mesh).is_some();
         assert!(is_seamed(&slit([8, 4], (CellShape::Quad9, false), 2.2)));
         assert!(!is_seamed(&slit([8, 4], (CellShape::Quad9, false), 9.0)));
         assert!(!is_seamed(&Mesh::plate(

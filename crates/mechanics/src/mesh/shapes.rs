@@ -85,10 +85,10 @@ impl Shape {
         self.mesh_of([across, 1], halvings, kind)
     }
 
-    fn mesh_of(self, [across, beside]: [usize; 2], halvings: usize, kind: CellShape) -> Mesh {
-        let mut blocks = self.blocks(across, beside);
+    fn mesh_of(self, [across, adjacent]: [usize; 2], halvings: usize, kind: CellShape) -> Mesh {
+        let mut blocks = self.blocks(across, adjacent);
         for block in &mut blocks {
-            block.cells = block.cells.map(|own| own << halvings);
+            block.cells = block.cells.map(|count| count << halvings);
         }
         let mut mesh = mesh_of_blocks(&blocks, kind);
         if let Self::SquareOnRakes(rakes) = self {
@@ -98,12 +98,12 @@ impl Shape {
     }
 
     /// The blocks of its mesh, with at least so many cells beside a hole.
-    fn blocks(self, across: usize, beside: usize) -> Vec<Block<'static>> {
+    fn blocks(self, across: usize, adjacent: usize) -> Vec<Block<'static>> {
         match self {
             Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
                 strip(&self.parts(size[0]), across, move |x| self.half_width(x))
             }
-            Self::StripWithHole { size, radius } => with_hole(size, radius, across, beside),
+            Self::StripWithHole { size, radius } => with_hole(size, radius, across, adjacent),
             Self::SquareOnRakes(rakes) => rakes.blocks(across),
             Self::Cruciform {
                 size,

@@ -108,12 +108,12 @@ pub fn with_hole(
     [length, width]: [f64; 2],
     radius: f64,
     across: usize,
-    beside: usize,
+    adjacent: usize,
 ) -> Vec<Block<'static>> {
     let half = width.min(length) / 2.0;
     let middle = length / 2.0;
     let around = count(across as f64 / 2.0) * 2;
-    let radial = count((half - radius) / width * across as f64 * 1.2).max(beside);
+    let radial = count((half - radius) / width * across as f64 * 1.2).max(adjacent);
     let ends = count((middle - half) / width * across as f64);
     // The side of the square that lies in the direction `quarter` · 90°.
     let spoke = move |quarter: f64, side: [&'static str; 2]| {
@@ -133,11 +133,11 @@ pub fn with_hole(
             sides: ["", outer, "", hole],
         }
     };
-    let whole = |side: &'static str| if middle > half { "" } else { side };
+    let end_side = |side: &'static str| if middle > half { "" } else { side };
     let mut blocks = vec![
-        spoke(0.0, [whole("right"), "hole"]),
+        spoke(0.0, [end_side("right"), "hole"]),
         spoke(1.0, ["top", "hole"]),
-        spoke(2.0, [whole("left"), "hole"]),
+        spoke(2.0, [end_side("left"), "hole"]),
         spoke(3.0, ["bottom", "hole"]),
     ];
     if middle > half {

@@ -108,17 +108,17 @@ impl BoundaryProblem {
     pub fn idle_loads(&self, mesh: &Mesh) -> Result<Vec<&str>, Diagnostic> {
         let held = Constraints::of(mesh, &self.supports)?.held;
         let mut idle = Vec::new();
-        for own in &self.loads {
-            let forces = dead_forces(mesh, own, self.thickness)?;
-            let acts = |unknown: &usize| match own.1 {
+        for load in &self.loads {
+            let forces = dead_forces(mesh, load, self.thickness)?;
+            let acts = |unknown: &usize| match load.1 {
                 Load::Pressure(_) => true,
                 Load::Traction(_) | Load::Force(_) => forces[*unknown] != 0.0,
             };
-            let nodes = mesh.groups()[&own.0].nodes.iter();
+            let nodes = mesh.groups()[&load.0].nodes.iter();
             let unknowns = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
             let mut loaded = unknowns.filter(acts).peekable();
             if loaded.peek().is_some() && loaded.all(|unknown| held.contains_key(&unknown)) {
-                idle.push(&*own.0);
+                idle.push(&*load.0);
             }
         }
         Ok(idle)
@@ -132,8 +132,8 @@ impl BoundaryProblem {
         agreeing(&self.supports, mesh)?;
         let mut by = BTreeMap::new();
         for (number, support) in self.supports.iter().enumerate().rev() {
-            let own = Constraints::of(mesh, std::slice::from_ref(support))?;
-            by.extend(own.held.into_keys().map(|unknown| (unknown, number)));
+            let constraints = Constraints::of(mesh, std::slice::from_ref(support))?;
+            by.extend(constraints.held.into_keys().map(|unknown| (unknown, number)));
         }
         Ok(by)
     }

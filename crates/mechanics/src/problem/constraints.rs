@@ -136,18 +136,18 @@ impl Holder {
     /// The nodes of a group at which the support holds the group itself along an axis, rather than another part that
     /// ends there; `is_supported` states whether the group has a support of its own.
     fn on(&self, mesh: &Mesh, group: &Group, is_supported: bool, axis: usize) -> BTreeSet<usize> {
-        let own = &self.hold.nodes[axis];
+        let held_nodes = &self.hold.nodes[axis];
         if is_supported && self.has_parts != group.has_parts() {
             // A point with a support of its own is not part of the edge around it.
             return BTreeSet::new();
         }
         if !self.has_parts || !group.has_parts() {
             let nodes = group.nodes.iter().copied();
-            return nodes.filter(|node| own.contains(node)).collect();
+            return nodes.filter(|node| held_nodes.contains(node)).collect();
         }
         let sides = group.edges.iter().chain(&group.lines).map(Vec::as_slice);
         let parts = sides.chain(group.cells.iter().map(|cell| mesh.cell(*cell)));
-        let held = parts.filter(|part| part.iter().all(|node| own.contains(node)));
+        let held = parts.filter(|part| part.iter().all(|node| held_nodes.contains(node)));
         held.flatten().copied().collect()
     }
 }
@@ -307,14 +307,14 @@ impl Constraints {
     /// alone belong to that edge; where supports of both edges hold the node, the part of each edge follows from its tractions beside the
     /// corner, and the rest is shared. The forces of groups that meet in corners therefore add up to those of all supports.
     pub fn parts_on(&self, mesh: &Mesh, group: &Group, axis: usize) -> Vec<Part> {
-        let holds: Vec<&Hold> = self.holders.iter().map(|own| &own.hold).collect();
+        let holds: Vec<&Hold> = self.holders.iter().map(|holder| &holder.hold).collect();
         let parts = reaction_parts(mesh, &holds, axis);
         let nodes: BTreeSet<usize> = group.nodes.iter().copied().collect();
         let is_supported = self.holders.iter().any(|holder| holder.nodes == nodes);
         let on_group = |(holder, parts): (&Holder, Vec<Part>)| {
-            let own = holder.on(mesh, group, is_supported, axis);
+            let held_nodes = holder.on(mesh, group, is_supported, axis);
             let parts = parts.into_iter();
-            parts.filter(move |part| own.contains(&part.at))
+            parts.filter(move |part| held_nodes.contains(&part.at))
         };
         self.holders.iter().zip(parts).flat_map(on_group).collect()
     }

@@ -33,10 +33,10 @@ pub fn contradictions(
     let rounding = 1e-12 * (high[0] - low[0]).hypot(high[1] - low[1]);
     let mut demands: BTreeMap<usize, Vec<(usize, Demand)>> = BTreeMap::new();
     for (number, support) in supports.iter().enumerate() {
-        let own = Constraints::each(mesh, std::slice::from_ref(support))?;
+        let constraints = Constraints::each(mesh, std::slice::from_ref(support))?;
         let Constraints {
             held, ties, forces, ..
-        } = own;
+        } = constraints;
         let held = held.into_iter();
         let held = held.map(|(unknown, motion)| (unknown, Demand::Motion(motion)));
         let tied = ties
@@ -46,21 +46,21 @@ pub fn contradictions(
             demands.entry(unknown).or_default().push((number, demand));
         }
     }
-    let mut found: BTreeMap<(usize, usize, Conflict), Vec<usize>> = BTreeMap::new();
+    let mut conflicts: BTreeMap<(usize, usize, Conflict), Vec<usize>> = BTreeMap::new();
     for (unknown, demands) in &demands {
         for (position, (later, demand)) in demands.iter().enumerate() {
             for (earlier, other) in &demands[..position] {
                 if let Some(conflict) = conflict(*other, *demand, rounding) {
                     let pair = (*earlier, *later, conflict);
-                    found.entry(pair).or_default().push(*unknown);
+                    conflicts.entry(pair).or_default().push(*unknown);
                 }
             }
         }
     }
-    let told = found
+    let diagnostics = conflicts
         .into_iter()
         .map(|(pair, unknowns)| tell(supports, mesh, pair, &unknowns));
-    Ok(told.collect())
+    Ok(diagnostics.collect())
 }
 
 /// The effects of all supports on the unknowns of a mesh.
@@ -156,12 +156,12 @@ mod tests {
     use super::*;
     use crate::mesh::CellShape;
 
-    fn told(supports: &[(&str, Support)]) -> Vec<String> {
+    fn messages_of(supports: &[(&str, Support)]) -> Vec<String> {
         let (mesh, problem) = (strip(CellShape::Quad4), problem(supports, &[]));
-        let found = contradictions(&problem.supports, &mesh).unwrap();
+        let faults = contradictions(&problem.supports, &mesh).unwrap();
         let refused = problem.held_by(&mesh).err().map(|fault| fault.message);
-        assert_eq!(refused, found.first().map(|first| first.message.clone()));
-        found.into_iter().map(|fault| fault.message).collect()
+        assert_eq!(refused, faults.first().map(|first| first.message.clone()));
+        faults.into_iter().map(|fault| fault.message).collect()
     }
 
     fn moved(x: Option<f64>, y: Option<f64>) -> Support {
@@ -170,14 +170,14 @@ mod tests {
 
     #[test]
     fn different_motions_of_one_unknown_are_told_with_both_supports_and_the_place() {
-        let found = told(&[("left", CLAMP), ("left", moved(Some(5.0), None))]);
+        let messages = messages_of(&[("left", CLAMP), ("left", moved(Some(5.0), None))]);
         assert_eq!(
-            found,
+            messages,
             [
                 "support 1 on the group `left` (a clamp) and support 2 on the group `left` (x = 5 mm) contradict each other at node 0 (0.0, -5.0) mm along x and at 4 more nodes"
             ]
         );
-        let corner = told(&[("top", moved(None, Some(1.0))), ("left", CLAMP)]);
+        let corner = messages_of(&[("top", moved(None, Some(1.0))), ("left", CLAMP)]);
         assert_eq!(corner.len(), 1);
         assert!(corner[0].ends_with("(0.0, 5.0) mm along y"), "{corner:?}");
         let turn = Support::Rotation {
@@ -185,7 +185,7 @@ mod tests {
             angle: 2.0 * PI,
         };
         // A full turn ends where it began, but moves on the way.
-        assert_eq!(told(&[("left", CLAMP), ("left", turn)]).len(), 1);
+        assert_eq!(messages_of(&[("left", CLAMP), ("left", turn)]).len(), 1);
         let grip = Support::Grip([Drive::Force(1.0), Drive::Displacement(0.0)]);
         for (supports, words) in [
             (
@@ -194,15 +194,15 @@ mod tests {
             ),
             ([("left", grip), ("top", grip)], "with another grip"),
         ] {
-            let found = told(&supports);
-            assert!(found.iter().any(|text| text.contains(words)), "{found:?}");
+            let messages = messages_of(&supports);
+            assert!(messages.iter().any(|text| text.contains(words)), "{messages:?}");
         }
         let three = [
             ("left", CLAMP),
             ("top", moved(None, Some(1.0))),
             ("right", moved(Some(2.0), Some(0.0))),
         ];
-        assert_eq!(told(&three).len(), 2);
+        assert_eq!(messages_of(&three).len(), 2);
     }
 
     #[test]
@@ -222,7 +222,7 @@ mod tests {
             ],
             vec![("left", CLAMP), ("top", stretch), ("right", right)],
         ] {
-            assert_eq!(told(&supports), Vec::<String>::new());
+            assert_eq!(messages_of(&supports), Vec::<String>::new());
         }
     }
 }

@@ -29,14 +29,14 @@ impl Hold {
     /// The edges of a mesh's boundary between some nodes.
     pub fn sides(mesh: &Mesh, nodes: &BTreeSet<usize>) -> Vec<Vec<usize>> {
         let sides = mesh.boundary().iter();
-        let own = sides.filter(|side| side.iter().all(|node| nodes.contains(node)));
-        own.cloned().collect()
+        let held = sides.filter(|side| side.iter().all(|node| nodes.contains(node)));
+        held.cloned().collect()
     }
 
     /// The next node of the edges beside a node, and q over its reaction; `None` where there are no such edges, or one on both sides.
-    fn beside(&self, mesh: &Mesh, corner: usize) -> Option<(usize, f64)> {
-        let mut beside = self.sides.iter().filter(|side| side.contains(&corner));
-        let (side, None) = (beside.next()?, beside.next()) else {
+    fn adjacent(&self, mesh: &Mesh, corner: usize) -> Option<(usize, f64)> {
+        let mut adjacent = self.sides.iter().filter(|side| side.contains(&corner));
+        let (side, None) = (adjacent.next()?, adjacent.next()) else {
             return None;
         };
         // The two end nodes come first, then the middle one.
@@ -47,8 +47,8 @@ impl Hold {
         };
         let over = |node: usize| -> f64 {
             let lengths = self.sides.iter().flat_map(|side| edge_lengths(mesh, side));
-            let own = lengths.filter(|(own, _)| *own == node);
-            own.map(|(_, length)| length).sum()
+            let at_node = lengths.filter(|(end, _)| *end == node);
+            at_node.map(|(_, length)| length).sum()
         };
         Some((next, over(corner) / over(next)))
     }
@@ -96,13 +96,13 @@ pub struct SharedRest {
 pub fn shared_rests(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<SharedRest> {
     let mut rests = Vec::new();
     for (at, meeting) in meetings(mesh, holds, axis) {
-        let own = meeting
-            .beside
+        let shared = meeting
+            .adjacent
             .iter()
             .map(|(_, next, factor)| (*next, -factor));
         if meeting.lowest.len() > 1 {
             rests.push(SharedRest {
-                factors: [(at, 1.0)].into_iter().chain(own).collect(),
+                factors: [(at, 1.0)].into_iter().chain(shared).collect(),
                 bodies: meeting.lowest,
             });
         }
@@ -113,11 +113,11 @@ pub fn shared_rests(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<SharedRest
 /// The parts of the force of each body along one axis.
 pub fn reaction_parts(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<Vec<Part>> {
     let mut all: Vec<Vec<Part>> = vec![Vec::new(); holds.len()];
-    for (at, Meeting { lowest, beside }) in meetings(mesh, holds, axis) {
+    for (at, Meeting { lowest, adjacent }) in meetings(mesh, holds, axis) {
         let share = 1.0 / lowest.len() as f64;
         let mut add = |body: usize, of: usize, factor: f64| all[body].push(Part { at, of, factor });
         lowest.iter().for_each(|body| add(*body, at, share));
-        for (body, next, factor) in beside {
+        for (body, next, factor) in adjacent {
             add(body, next, factor);
             lowest
                 .iter()
@@ -132,7 +132,7 @@ struct Meeting {
     /// The bodies of the lowest rank, which get the rest.
     lowest: Vec<usize>,
     /// Where there are several: the bodies whose tractions beside the node are known, each with the next node and q over its reaction.
-    beside: Vec<(usize, usize, f64)>,
+    adjacent: Vec<(usize, usize, f64)>,
 }
 
 /// Every node that is held along an axis, with the bodies that hold it.
@@ -149,13 +149,13 @@ fn meetings(mesh: &Mesh, holds: &[&Hold], axis: usize) -> BTreeMap<usize, Meetin
         let lowest = bodies.iter().copied();
         let lowest = lowest.filter(|body| Some(holds[*body].rank) == rank);
         let several = bodies.iter().filter(|_| bodies.len() > 1);
-        let beside = several.filter_map(|body| {
-            let (next, factor) = holds[*body].beside(mesh, *at)?;
+        let adjacent = several.filter_map(|body| {
+            let (next, factor) = holds[*body].adjacent(mesh, *at)?;
             is_alone(&next).then_some((*body, next, factor))
         });
         let meeting = Meeting {
             lowest: lowest.collect(),
-            beside: beside.collect(),
+            adjacent: adjacent.collect(),
         };
         (*at, meeting)
     };

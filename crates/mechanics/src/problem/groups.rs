@@ -44,10 +44,10 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
         [_, _, false] => along(&group.lines),
         _ => group.nodes.iter().map(|node| (*node, 1.0)).collect(),
     };
-    let whole: f64 = measures.iter().map(|(_, measure)| measure).sum();
+    let total: f64 = measures.iter().map(|(_, measure)| measure).sum();
     let shares = measures.into_iter();
     shares
-        .map(|(node, measure)| (node, measure / whole))
+        .map(|(node, measure)| (node, measure / total))
         .collect()
 }
 

@@ -69,7 +69,7 @@ impl Model<'_> {
         settings: NewtonSettings,
     ) -> Result<Vec<State>, SolveFault> {
         let groups = fields.par_chunks(self.in_turn(fields.len()));
-        let found = groups.map(|group| {
+        let solved = groups.map(|group| {
             let (potential, held) = (self.potential(group[0].0, &[]), self.held());
             let mut newton = Newton::with_solver(&*potential, &held, self.linear_solver())?;
             newton.shifts = false;
@@ -80,8 +80,8 @@ impl Model<'_> {
             };
             group.iter().map(near).collect::<Result<Vec<State>, _>>()
         });
-        let found: Result<Vec<Vec<State>>, SolveFault> = found.collect();
-        Ok(found?.into_iter().flatten().collect())
+        let solved: Result<Vec<Vec<State>>, SolveFault> = solved.collect();
+        Ok(solved?.into_iter().flatten().collect())
     }
 
     /// Checks that an equilibrium at a stage is stable.

@@ -34,9 +34,9 @@ impl Loads {
             forces: vec![0.0; 2 * mesh.nodes.len()],
             ..Self::default()
         };
-        for own in loads {
-            let forces = dead_forces(mesh, own, thickness)?;
-            if let (name, Load::Pressure(pressure)) = own {
+        for load in loads {
+            let forces = dead_forces(mesh, load, thickness)?;
+            if let (name, Load::Pressure(pressure)) = load {
                 let group = named("load", mesh, name)?;
                 sum.pressures.add(mesh, group, pressure * thickness);
             }
@@ -69,8 +69,8 @@ impl Loads {
 
     /// The dead force on an unknown and the pull of a grip there, in N.
     fn force(&self, unknown: usize) -> f64 {
-        let own = self.pulls.iter().filter(|(pulled, _)| *pulled == unknown);
-        self.forces[unknown] + own.map(|(_, force)| force).sum::<f64>()
+        let pulls = self.pulls.iter().filter(|(pulled, _)| *pulled == unknown);
+        self.forces[unknown] + pulls.map(|(_, force)| force).sum::<f64>()
     }
 
     /// Adds the forces on rigid grips, and finds where pressures end; all loads must have been added before.

@@ -284,18 +284,18 @@ impl Loading for Model<'_> {
 
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
         // The state at rest cannot be scaled.
-        let previous = previous.filter(|own| own.factor != 0.0);
+        let previous = previous.filter(|state| state.factor != 0.0);
         let near = |factor: f64| {
             let mut known = self.near.iter();
             known.find(|(at, _)| *at == factor).map(|(_, field)| field)
         };
         let known = near(factor).and_then(|field| {
             let mut guess = field.clone();
-            if let Some(own) = previous {
+            if let Some(state) = previous {
                 // From a state on the way, at which nothing is known, no guess has led to the end.
-                let before = near(own.factor)?;
-                let ratio = factor / own.factor;
-                add_scaled(&mut guess, ratio, &own.displacement);
+                let before = near(state.factor)?;
+                let ratio = factor / state.factor;
+                add_scaled(&mut guess, ratio, &state.displacement);
                 add_scaled(&mut guess, -ratio, before);
             }
             Some(guess)
@@ -316,7 +316,7 @@ impl Loading for Model<'_> {
             return f64::INFINITY;
         }
         let held = self.constraints.held.values();
-        let most = held.fold(0.0, |most: f64, own| most.max(own.angle().abs()));
+        let most = held.fold(0.0, |most: f64, motion| most.max(motion.angle().abs()));
         LONGEST_TURN / most
     }
 

@@ -27,20 +27,20 @@ const MOST: usize = 8;
 /// The parts of a mesh that can move without strain, each reported with its motion.
 pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
     let bodies = Bodies::of(mesh);
-    let mut found = Vec::new();
+    let mut diagnostics = Vec::new();
     for group in bodies.groups(constraints) {
         let motions = bodies.free(&group, constraints);
         for (position, body) in group.iter().enumerate() {
-            let own = motions.rows(3 * position, 3).into_owned();
-            if let Some(motion) = bodies.describe(&own) {
-                found.push(bodies.tell(*body, &motion));
+            let body_motions = motions.rows(3 * position, 3).into_owned();
+            if let Some(motion) = bodies.describe(&body_motions) {
+                diagnostics.push(bodies.tell(*body, &motion));
             }
         }
     }
-    let more = found.len().saturating_sub(MOST);
-    found.truncate(MOST);
+    let more = diagnostics.len().saturating_sub(MOST);
+    diagnostics.truncate(MOST);
     if more > 0 {
-        found.push(
+        diagnostics.push(
             Diagnostic::error(
                 "support",
                 format!("{more} more parts can move without strain"),
@@ -48,7 +48,7 @@ pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
             .hint("look for seams of doubled nodes in the mesh"),
         );
     }
-    found
+    diagnostics
 }
 
 /// The rigid bodies of a mesh.
@@ -102,14 +102,14 @@ impl<'a> Bodies<'a> {
             return (0..bodies).map(|body| vec![body]).collect();
         }
         let mut parts = Parts::new(bodies);
-        for own in &self.of_node {
-            own.windows(2).for_each(|pair| parts.join(pair[0], pair[1]));
+        for members in &self.of_node {
+            members.windows(2).for_each(|pair| parts.join(pair[0], pair[1]));
         }
         for (unknown, tie) in &constraints.ties {
-            let [own, others] =
+            let [tied, others] =
                 [*unknown, tie.master].map(|unknown| self.of_node[unknown / 2].first());
-            if let (Some(own), Some(other)) = (own, others) {
-                parts.join(*own, *other);
+            if let (Some(tied), Some(other)) = (tied, others) {
+                parts.join(*tied, *other);
             }
         }
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -140,8 +140,8 @@ impl<'a> Bodies<'a> {
                 .for_each(|body| impose(row(*unknown, body)));
         }
         for (unknown, tie) in &constraints.ties {
-            if let (Some(own), Some(other)) = (first(*unknown), first(tie.master)) {
-                impose(row(*unknown, own) - tie.share * row(tie.master, other));
+            if let (Some(tied), Some(other)) = (first(*unknown), first(tie.master)) {
+                impose(row(*unknown, tied) - tie.share * row(tie.master, other));
             }
         }
         for (node, bodies) in self.of_node.iter().enumerate() {
@@ -229,10 +229,10 @@ impl<'a> Bodies<'a> {
                 self.mesh.describe_cell(self.cells[body])
             ),
         };
-        let own = |nodes: &[usize]| nodes.iter().any(|node| self.of_node[*node].contains(&body));
+        let is_on_body = |nodes: &[usize]| nodes.iter().any(|node| self.of_node[*node].contains(&body));
         let groups = self.mesh.groups().iter();
         let names = groups
-            .filter(|(_, group)| own(&group.nodes))
+            .filter(|(_, group)| is_on_body(&group.nodes))
             .map(|(name, _)| format!("`{name}`"));
         let names: Vec<_> = names.collect();
         let hint = if names.is_empty() {

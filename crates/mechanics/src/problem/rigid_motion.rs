@@ -15,12 +15,12 @@ impl RigidMotion {
     /// The motion that brings points nearest to others in weighted least squares, and the middle of the points, about
     /// which it turns; each pair has a weight, an initial and a final place.
     pub fn nearest(pairs: &[(f64, [f64; 2], [f64; 2])]) -> ([f64; 2], Self) {
-        let whole: f64 = pairs.iter().map(|(weight, ..)| weight).sum();
+        let total: f64 = pairs.iter().map(|(weight, ..)| weight).sum();
         let (mut rest, mut end) = ([0.0; 2], [0.0; 2]);
         for (weight, from, to) in pairs {
             for axis in 0..2 {
-                rest[axis] += weight / whole * from[axis];
-                end[axis] += weight / whole * to[axis];
+                rest[axis] += weight / total * from[axis];
+                end[axis] += weight / total * to[axis];
             }
         }
         let (mut cosine, mut sine) = (0.0, 0.0);

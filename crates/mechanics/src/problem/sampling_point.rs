@@ -111,9 +111,9 @@ impl<'a> SamplingPoint<'a> {
         let tangent = self.by_natural(tangent);
         let size = 2 * self.derivatives.len();
         for (node, rows) in stiffness.chunks_exact_mut(2 * size).enumerate() {
-            let own = self.derivatives[node];
-            let x = tangent.map(|column| own[0] * column[0] + own[1] * column[1]);
-            let y = tangent.map(|column| own[0] * column[2] + own[1] * column[3]);
+            let row_derivative = self.derivatives[node];
+            let x = tangent.map(|column| row_derivative[0] * column[0] + row_derivative[1] * column[1]);
+            let y = tangent.map(|column| row_derivative[0] * column[2] + row_derivative[1] * column[3]);
             let (along_x, along_y) = rows.split_at_mut(size);
             let pairs = along_x
                 .as_chunks_mut()

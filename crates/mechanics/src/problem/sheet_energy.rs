@@ -67,8 +67,8 @@ impl SheetEnergy {
         self.points.extend(points);
         let end = u32::try_from(self.points.len());
         self.point_starts.push(end.expect("fewer than 2³² points"));
-        let own = &self.tables[usize::from(table)];
-        let sizes = [own.nodes(), own.points().len()];
+        let derivative_table = &self.tables[usize::from(table)];
+        let sizes = [derivative_table.nodes(), derivative_table.points().len()];
         assert_eq!([nodes.len(), self.points.len() - before], sizes);
     }
 
@@ -78,7 +78,7 @@ impl SheetEnergy {
         let mut kinds: Vec<(CellShape, u8, DerivativeTable, Vec<f64>)> = Vec::new();
         for cell in 0..mesh.cell_count() {
             let shape = mesh.shape(cell);
-            let known = kinds.iter().position(|(own, ..)| *own == shape);
+            let known = kinds.iter().position(|(other, ..)| *other == shape);
             let kind = known.unwrap_or_else(|| {
                 let table = DerivativeTable::of_shape(shape);
                 let rule = shape.quadrature().into_iter();
@@ -185,19 +185,19 @@ impl Remembering for SheetEnergy {
     ) -> Evaluated {
         let law = self.laws.of(element);
         let softening = law.softening().filter(|_| !history.is_empty());
-        let softening = softening.map(|own| (own, &history[self.points_of(element)]));
+        let softening = softening.map(|softening| (softening, &history[self.points_of(element)]));
         let mut energy = 0.0;
         for (index, point) in self.cell_points(element).enumerate() {
             let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
             let (density, stress) = match &mut local.stiffness {
                 None => {
                     let virgin = law.stress(&kinematics);
-                    softening.map_or(virgin, |(own, most)| own.stress(virgin, most[index]))
+                    softening.map_or(virgin, |(softening, most)| softening.stress(virgin, most[index]))
                 }
                 Some(stiffness) => {
                     let virgin = law.response(&kinematics);
                     let response =
-                        softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
+                        softening.map_or(virgin, |(softening, most)| softening.response(virgin, most[index]));
                     point.add_stiffness(response.tangent.as_slice(), stiffness);
                     (response.energy, response.first_piola_kirchhoff_stress)
                 }
@@ -220,11 +220,11 @@ impl Remembering for SheetEnergy {
         }
         history.resize(self.points.len(), 0.0);
         for element in 0..self.elements() {
-            let own = self.connectivity.values(element, u);
+            let cell_displacement = self.connectivity.values(element, u);
             let law = self.laws.of(element);
             let points = &mut history[self.points_of(element)];
             for (most, point) in points.iter_mut().zip(self.cell_points(element)) {
-                if let Ok(kinematics) = point.kinematics(&own) {
+                if let Ok(kinematics) = point.kinematics(&cell_displacement) {
                     *most = most.max(law.stress(&kinematics).0);
                 }
             }
@@ -237,7 +237,7 @@ impl Remembering for SheetEnergy {
         let parts = softening.flat_map(|(cell, softening)| {
             let history = history.get(self.points_of(cell)).unwrap_or_default();
             let points = self.cell_points(cell).zip(history);
-            points.map(move |(own, most)| own.volume() * softening.dissipated(*most))
+            points.map(move |(point, most)| point.volume() * softening.dissipated(*most))
         });
         parts.sum()
     }
@@ -269,9 +269,9 @@ mod tests {
         let field = |[x, y]: &[f64; 2]| [h[0] * x + h[1] * y, h[2] * x + h[3] * y];
         let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
         let mut residual = vec![0.0; u.len()];
-        let found = crate::solve::Assembly::residual(&energy, &u, &mut residual).unwrap();
+        let computed = crate::solve::Assembly::residual(&energy, &u, &mut residual).unwrap();
         let (density, stress) = law.stress(&Kinematics::new(&h).unwrap());
-        assert!((found / (2.0 * 12.0 * density) - 1.0).abs() < 1e-13);
+        assert!((computed / (2.0 * 12.0 * density) - 1.0).abs() < 1e-13);
         // The right side of 3 × 2 mm² carries the first column of P.
         let right = (0..mesh.nodes.len()).filter(|node| mesh.nodes[*node][0] == 4.0);
         let force = right.fold([0.0; 2], |[x, y], node| {
@@ -289,8 +289,8 @@ mod tests {
         let law = |c01| Arc::new(MooneyRivlin { c10: 0.307, c01 });
         let mesh = mesh();
         let rest = vec![0.0; 2 * mesh.nodes.len()];
-        let told = |c01| SheetEnergy::of_mesh(law(c01), &mesh, 2.0).instability(0, &rest[..18]);
-        assert_eq!(told(-0.359).as_deref(), Some("I₁ = 3.00"));
-        assert_eq!(told(0.1), None);
+        let instability = |c01| SheetEnergy::of_mesh(law(c01), &mesh, 2.0).instability(0, &rest[..18]);
+        assert_eq!(instability(-0.359).as_deref(), Some("I₁ = 3.00"));
+        assert_eq!(instability(0.1), None);
     }
 }

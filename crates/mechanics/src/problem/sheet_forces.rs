@@ -32,8 +32,8 @@ impl SheetEnergy {
         self.in_blocks(u, tangents, |points, cells| {
             let mut position = 0;
             for cell in cells {
-                let own = (position..).zip(self.cell_points(cell));
-                let terms = own.map(|(index, point)| point.volume() * points.responses[0][index]);
+                let indexed = (position..).zip(self.cell_points(cell));
+                let terms = indexed.map(|(index, point)| point.volume() * points.responses[0][index]);
                 energy += terms.sum::<f64>();
                 points.add_forces(self, cell, position, forces);
                 if let Some(take) = &mut take {
@@ -117,12 +117,12 @@ impl Points {
         for component in &mut self.responses {
             component.resize(count, 0.0);
         }
-        let gradients = self.gradients.each_ref().map(|own| &own[..]);
-        let responses = self.responses.each_mut().map(|own| &mut own[..]);
+        let gradients = self.gradients.each_ref().map(|component| &component[..]);
+        let responses = self.responses.each_mut().map(|component| &mut component[..]);
         let positive = law.responses(gradients, responses, tangents);
         let evaluated = if tangents { COMPONENTS } else { 5 };
         let mut values = self.responses[..evaluated].iter().flatten();
-        positive && values.all(|own| own.is_finite())
+        positive && values.all(|value| value.is_finite())
     }
 
     /// Adds the forces of a cell whose points begin at a place.
@@ -137,7 +137,7 @@ impl Points {
         self.cell.clear();
         self.cell.resize(unknowns.len(), 0.0);
         for (index, point) in (position..).zip(energy.cell_points(cell)) {
-            let stress = [1, 2, 3, 4].map(|own| self.responses[own][index]);
+            let stress = [1, 2, 3, 4].map(|component| self.responses[component][index]);
             point.add_force(&stress.into(), &mut self.cell);
         }
         for (unknown, force) in unknowns.iter().zip(&self.cell) {
@@ -164,7 +164,7 @@ impl Points {
     /// ∂P/∂F at a point, column by column.
     fn tangent(&self, point: usize) -> [f64; 16] {
         const LOWER: [usize; 16] = [0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9];
-        LOWER.map(|own| self.responses[5 + own][point])
+        LOWER.map(|component| self.responses[5 + component][point])
     }
 }
 
@@ -215,24 +215,24 @@ mod tests {
                 let potential = model.potential(1.0, &[]);
                 let mut with_energy = vec![0.0; u.len()];
                 let mut lower = Vec::new();
-                let mut take = |element: usize, own: &[f64]| lower.push((element, own.to_vec()));
+                let mut take = |element: usize, stiffness: &[f64]| lower.push((element, stiffness.to_vec()));
                 let take = Some(&mut take as &mut dyn FnMut(usize, &[f64]));
                 let energy = evaluate_by_elements(&*potential, &u, &mut with_energy, take).unwrap();
                 let (mut together, mut position) = (vec![0.0; u.len()], 0);
-                let mut take = |element: usize, own: &[f64]| {
+                let mut take = |element: usize, stiffness: &[f64]| {
                     let (other_element, other) = &lower[position];
                     assert_eq!(element, *other_element);
                     let size = other.len().isqrt();
                     for row in 0..size {
                         for entry in row * size..=row * size + row {
-                            let far = (own[entry] - other[entry]).abs();
+                            let far = (stiffness[entry] - other[entry]).abs();
                             assert!(far < 1e-13, "{kind:?}, {element}, {entry}: {far}");
                         }
                     }
                     position += 1;
                 };
-                let found = potential.evaluate(&u, &mut together, Some(&mut take));
-                assert!((found.unwrap() / energy - 1.0).abs() < 1e-13);
+                let evaluated = potential.evaluate(&u, &mut together, Some(&mut take));
+                assert!((evaluated.unwrap() / energy - 1.0).abs() < 1e-13);
                 assert_eq!(position, lower.len());
                 for (unknown, other) in with_energy.iter().enumerate() {
                     let far = (together[unknown] - other).abs();

@@ -85,8 +85,8 @@ fn supports_and_loads_balance_in_every_kind_of_problem() {
                     *centre = [centre[0] + by[0], centre[1] + by[1]];
                 }
             }
-            let found = solved(&problem, &moved(strip(shape), 0.0, by), &["left", "right"]);
-            let balance = found.balance;
+            let solution = solved(&problem, &moved(strip(shape), 0.0, by), &["left", "right"]);
+            let balance = solution.balance;
             assert!(balance.largest_force > 1e-3, "case {number}");
             assert!(
                 balance.relative() < 1e-9,
@@ -155,10 +155,10 @@ fn a_ring_s_supports_carry_the_pressure_on_its_bore() {
             let pressure = 0.03;
             let ends = [("start", Support::Roller), ("end", Support::Roller)];
             let problem = problem(&ends, &[("inside", Load::Pressure(pressure))]);
-            let found = solved(&problem, &mesh, &["start", "end"]);
-            assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
+            let solution = solved(&problem, &mesh, &["start", "end"]);
+            assert!(solution.balance.relative() < 1e-9, "{:?}", solution.balance);
             let at = |node: usize, axis: usize| {
-                mesh.nodes[node][axis] + found.state.displacement[2 * node + axis] - 500.0
+                mesh.nodes[node][axis] + solution.state.displacement[2 * node + axis] - 500.0
             };
             let bore = mesh.groups()["inside"]
                 .nodes
@@ -173,7 +173,7 @@ fn a_ring_s_supports_carry_the_pressure_on_its_bore() {
             let bore = bore.fold(0.0, f64::max);
             assert!(bore > 11.0, "{bore}");
             // Each line carries the pressure on the projection of the bore along it.
-            let forces = found.reactions.iter().map(|force| force[0].hypot(force[1]));
+            let forces = solution.reactions.iter().map(|force| force[0].hypot(force[1]));
             for (force, radius) in forces.zip(corners) {
                 let exact = pressure * 2.0 * radius;
                 assert!((force / exact - 1.0).abs() < 1e-10, "{force} {exact}");
@@ -250,11 +250,11 @@ fn linear_and_radial_displacements_are_those_of_the_place() {
         let mut mesh = strip(shape);
         mesh.name_boundary("boundary", |_| true);
         let problem = problem(&[("boundary", Support::LinearDisplacement(fields))], &[]);
-        let found = solved(&problem, &mesh, &[]);
+        let solution = solved(&problem, &mesh, &[]);
         for (position, u) in mesh
             .nodes
             .iter()
-            .zip(found.state.displacement.chunks_exact(2))
+            .zip(solution.state.displacement.chunks_exact(2))
         {
             for (u, field) in u.iter().zip(fields) {
                 assert!(
@@ -263,7 +263,7 @@ fn linear_and_radial_displacements_are_those_of_the_place() {
                 );
             }
         }
-        assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
+        assert!(solution.balance.relative() < 1e-9, "{:?}", solution.balance);
     }
     let radii = [10.0, 20.0];
     let mesh = Shape::RingSector { radii, angle: 1.0 }.mesh(4, CellShape::Quad9);
@@ -271,10 +271,10 @@ fn linear_and_radial_displacements_are_those_of_the_place() {
         centre: [0.0; 2],
         displacement: 2.0,
     };
-    let found = solved(&problem(&[("inside", radial)], &[]), &mesh, &[]);
+    let solution = solved(&problem(&[("inside", radial)], &[]), &mesh, &[]);
     for node in &mesh.groups()["inside"].nodes {
         let [x, y] = mesh.nodes[*node];
-        let u = &found.state.displacement[2 * node..2 * node + 2];
+        let u = &solution.state.displacement[2 * node..2 * node + 2];
         assert!(
             (u[0] - 0.2 * x).abs() < 1e-12 && (u[1] - 0.2 * y).abs() < 1e-12,
             "{u:?}"

@@ -25,14 +25,14 @@ impl<'a> TiedPotential<'a> {
         connectivity.reserve_as(potential.connectivity());
         let mut tied = BTreeMap::new();
         for element in 0..potential.elements() {
-            let own = potential.element_unknowns(element);
-            let own = own.iter().map(|unknown| *unknown as usize);
-            if !own.clone().any(|unknown| ties.contains_key(&unknown)) {
-                connectivity.push(own);
+            let element_unknowns = potential.element_unknowns(element);
+            let element_unknowns = element_unknowns.iter().map(|unknown| *unknown as usize);
+            if !element_unknowns.clone().any(|unknown| ties.contains_key(&unknown)) {
+                connectivity.push(element_unknowns);
                 continue;
             }
             let (mut unknowns, mut positions) = (Vec::new(), Vec::new());
-            for unknown in own {
+            for unknown in element_unknowns {
                 let (unknown, share) = followed(ties, unknown);
                 let known = unknowns.iter().position(|known| *known == unknown);
                 positions.push((known.unwrap_or(unknowns.len()), share));
@@ -82,8 +82,8 @@ impl TiedPotential<'_> {
         for (unknown, tie) in self.ties {
             untied[tie.master] += tie.share * std::mem::take(&mut untied[*unknown]);
         }
-        for (force, own) in forces.iter_mut().zip(untied) {
-            *force += own;
+        for (force, contribution) in forces.iter_mut().zip(untied) {
+            *force += contribution;
         }
         Ok(energy)
     }
@@ -91,10 +91,10 @@ impl TiedPotential<'_> {
 
 /// Adds Tᵀ K T of an element, whose unknowns have these positions among its remaining ones; elements may fill the lower triangle alone.
 fn fold(positions: &[(usize, f64)], stiffness: &[f64], folded: &mut [f64]) {
-    let (own, size) = (positions.len(), folded.len().isqrt());
+    let (count, size) = (positions.len(), folded.len().isqrt());
     for (row, (to_row, of_row)) in positions.iter().enumerate() {
         for (column, (to_column, of_column)) in positions.iter().enumerate() {
-            let value = stiffness[row.max(column) * own + row.min(column)];
+            let value = stiffness[row.max(column) * count + row.min(column)];
             folded[to_row * size + to_column] += of_row * of_column * value;
         }
     }
@@ -106,8 +106,8 @@ impl Potential for TiedPotential<'_> {
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        let own = self.potential.skew_couplings().into_iter();
-        own.map(|coupling| {
+        let couplings = self.potential.skew_couplings().into_iter();
+        couplings.map(|coupling| {
             let (row, of_row) = followed(self.ties, coupling.row);
             let (column, of_column) = followed(self.ties, coupling.column);
             SkewCoupling {
@@ -123,9 +123,9 @@ impl Potential for TiedPotential<'_> {
         let Some(positions) = self.positions.get(&element) else {
             return self.potential.evaluate_element(element, u, local);
         };
-        let own = positions.len();
-        let mut residual = vec![0.0; own];
-        let mut matrix = vec![0.0; local.stiffness.as_ref().map_or(0, |_| own * own)];
+        let count = positions.len();
+        let mut residual = vec![0.0; count];
+        let mut matrix = vec![0.0; local.stiffness.as_ref().map_or(0, |_| count * count)];
         let inner = Local {
             residual: &mut residual,
             stiffness: local.stiffness.is_some().then_some(&mut matrix[..]),

@@ -39,7 +39,7 @@ impl BoundaryProblem {
         {
             return Ok(None);
         }
-        let found = if self.supports.iter().all(|(_, support)| support.rests()) {
+        let diagnostic = if self.supports.iter().all(|(_, support)| support.rests()) {
             Diagnostic::warning(
                 "support",
                 "no support moves and no load acts: the sheet stays at rest",
@@ -51,7 +51,7 @@ impl BoundaryProblem {
             )
         };
         let hint = "hold one more group, such as the opposite side with kind = \"clamp\", move the supports apart, or give a group a [[load]]";
-        Ok(Some(found.hint(hint)))
+        Ok(Some(diagnostic.hint(hint)))
     }
 }
 

@@ -120,18 +120,18 @@ impl Assembly {
         motion: &[f64],
         forces: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let mut own = ElementTerms::default();
+        let mut terms = ElementTerms::default();
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
             if (unknowns.iter()).all(|unknown| motion[*unknown as usize] == 0.0) {
                 continue;
             }
             let size = unknowns.len();
-            own.evaluate(potential, element, u, true)?;
+            terms.evaluate(potential, element, u, true)?;
             for row in 0..size {
                 for column in 0..size {
-                    let stiffness = own.stiffness[row.max(column) * size + row.min(column)];
-                    let [row, column] = [row, column].map(|own| unknowns[own] as usize);
+                    let stiffness = terms.stiffness[row.max(column) * size + row.min(column)];
+                    let [row, column] = [row, column].map(|index| unknowns[index] as usize);
                     forces[row] += stiffness * motion[column];
                 }
             }
@@ -154,11 +154,11 @@ impl Assembly {
         stiffness.clear();
         let (pattern, scatter) = self.sparse();
         stiffness.resize(pattern.entries(), 0.0);
-        let mut take = |element: usize, own: &[f64]| {
+        let mut take = |element: usize, lower: &[f64]| {
             let size = potential.element_unknowns(element).len();
             let mut entries = scatter.of(element).iter();
             for row in 0..size {
-                let values = &own[row * size..=row * size + row];
+                let values = &lower[row * size..=row * size + row];
                 for (value, entry) in values.iter().zip(&mut entries) {
                     if *entry != NOWHERE {
                         stiffness[*entry as usize] += value;

@@ -79,7 +79,7 @@ impl<'a> Sum<'a> {
     /// The part to which an element belongs, and its number there.
     fn part(&self, element: usize) -> (&dyn Potential, usize) {
         match element.checked_sub(self.first.elements()) {
-            Some(own) => (&*self.second, own),
+            Some(index) => (&*self.second, index),
             None => (&*self.first, element),
         }
     }
@@ -91,8 +91,8 @@ impl Potential for Sum<'_> {
     }
 
     fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
-        let (part, own) = self.part(element);
-        let energy = part.evaluate_element(own, u, local);
+        let (part, index) = self.part(element);
+        let energy = part.evaluate_element(index, u, local);
         energy.map_err(|_| Inadmissible { element })
     }
 
@@ -104,10 +104,10 @@ impl Potential for Sum<'_> {
                 (first, self.second.evaluate(u, forces, None))
             }
             Some(take) => {
-                let mut own = |element, stiffness: &[f64]| take(element, stiffness);
-                let first = self.first.evaluate(u, forces, Some(&mut own))?;
-                let mut own = |element, stiffness: &[f64]| take(before + element, stiffness);
-                (first, self.second.evaluate(u, forces, Some(&mut own)))
+                let mut forward = |element, stiffness: &[f64]| take(element, stiffness);
+                let first = self.first.evaluate(u, forces, Some(&mut forward))?;
+                let mut forward = |element, stiffness: &[f64]| take(before + element, stiffness);
+                (first, self.second.evaluate(u, forces, Some(&mut forward)))
             }
         };
         let of_second = |fault: Inadmissible| Inadmissible {
@@ -123,8 +123,8 @@ impl Potential for Sum<'_> {
     }
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        let (part, own) = self.part(element);
-        part.instability(own, u)
+        let (part, index) = self.part(element);
+        part.instability(index, u)
     }
 }
 
@@ -137,15 +137,15 @@ pub struct DeadForces {
 impl DeadForces {
     /// Forces in N on some of so many unknowns.
     pub fn new(unknowns: usize, forces: impl IntoIterator<Item = (usize, f64)>) -> Self {
-        let mut own = Self {
+        let mut point_forces = Self {
             connectivity: Connectivity::new(unknowns),
             forces: Vec::new(),
         };
         for (unknown, force) in forces {
-            own.connectivity.push([unknown]);
-            own.forces.push(force);
+            point_forces.connectivity.push([unknown]);
+            point_forces.forces.push(force);
         }
-        own
+        point_forces
     }
 }
 

@@ -8,7 +8,7 @@ pub struct Connectivity {
     unknowns: usize,
     /// Elements that others may have too, followed by elements of this sum alone.
     common: Arc<Elements>,
-    own: Elements,
+    added: Elements,
     /// The places of the nodes, with two unknowns each, if known.
     nodes: Arc<[[f64; 2]]>,
 }
@@ -34,7 +34,7 @@ impl Elements {
     }
 
     fn of(&self, element: usize) -> &[u32] {
-        let [start, end] = [element, element + 1].map(|own| self.starts[own] as usize);
+        let [start, end] = [element, element + 1].map(|index| self.starts[index] as usize);
         &self.unknowns[start..end]
     }
 }
@@ -49,7 +49,7 @@ impl Connectivity {
         Self {
             unknowns,
             common: Arc::new(Elements::none()),
-            own: Elements::none(),
+            added: Elements::none(),
             nodes: Arc::new([]),
         }
     }
@@ -86,20 +86,20 @@ impl Connectivity {
     #[must_use]
     pub fn shared(mut self) -> Self {
         assert_eq!(self.common.count(), 0, "shared before");
-        self.own.unknowns.shrink_to_fit();
-        self.own.starts.shrink_to_fit();
+        self.added.unknowns.shrink_to_fit();
+        self.added.starts.shrink_to_fit();
         Self {
-            common: Arc::new(self.own),
-            own: Elements::none(),
+            common: Arc::new(self.added),
+            added: Elements::none(),
             ..self
         }
     }
 
     /// Reserves memory for the elements of another list.
     pub fn reserve_as(&mut self, other: &Self) {
-        let unknowns = other.common.unknowns.len() + other.own.unknowns.len();
-        self.own.unknowns.reserve_exact(unknowns);
-        self.own.starts.reserve_exact(other.elements());
+        let unknowns = other.common.unknowns.len() + other.added.unknowns.len();
+        self.added.unknowns.reserve_exact(unknowns);
+        self.added.starts.reserve_exact(other.elements());
     }
 
     /// Appends an element that depends on some unknowns.
@@ -107,11 +107,11 @@ impl Connectivity {
     /// # Panics
     /// When all elements together have 2³² unknowns or more.
     pub fn push(&mut self, unknowns: impl IntoIterator<Item = usize>) {
-        let own = &mut self.own;
-        own.unknowns
-            .extend(unknowns.into_iter().map(|own| own as u32));
-        let end = u32::try_from(own.unknowns.len());
-        own.starts.push(end.expect("fewer than 2³² unknowns"));
+        let added = &mut self.added;
+        added.unknowns
+            .extend(unknowns.into_iter().map(|unknown| unknown as u32));
+        let end = u32::try_from(added.unknowns.len());
+        added.starts.push(end.expect("fewer than 2³² unknowns"));
     }
 
     /// Appends an element that depends on the displacements of some nodes: unknowns 2 n and 2 n + 1 of node n.
@@ -122,7 +122,7 @@ impl Connectivity {
     /// Appends the elements of another list.
     pub fn append(&mut self, other: &Self) {
         for element in 0..other.elements() {
-            self.push(other.of(element).iter().map(|own| *own as usize));
+            self.push(other.of(element).iter().map(|unknown| *unknown as usize));
         }
     }
 
@@ -133,14 +133,14 @@ impl Connectivity {
 
     /// Number of elements.
     pub fn elements(&self) -> usize {
-        self.common.count() + self.own.count()
+        self.common.count() + self.added.count()
     }
 
     /// The unknowns that an element depends on.
     pub fn of(&self, element: usize) -> &[u32] {
         match element.checked_sub(self.common.count()) {
             None => self.common.of(element),
-            Some(own) => self.own.of(own),
+            Some(index) => self.added.of(index),
         }
     }
 

@@ -203,8 +203,8 @@ mod tests {
             assert!(lower > 0 && !rest[lower..].iter().any(below));
             for column in rest {
                 let rows = pattern.column(*column).iter();
-                let beyond = rows.filter(|row| positions[**row][0] != first);
-                beyond.for_each(|row| assert_eq!(below(row), below(column)));
+                let off_cut = rows.filter(|row| positions[**row][0] != first);
+                off_cut.for_each(|row| assert_eq!(below(row), below(column)));
             }
         }
     }

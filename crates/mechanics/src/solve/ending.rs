@@ -45,14 +45,14 @@ pub fn diagnose(
     };
     let rest = vec![0.0; potential.unknowns()];
     let last = previous.map_or(&rest, |state| &state.displacement);
-    if let Some(found) = previous.is_none().then(|| unstable(last)).flatten() {
-        return found;
+    if let Some(instability) = previous.is_none().then(|| unstable(last)).flatten() {
+        return instability;
     }
     let Some(u) = critical(newton, &*potential, previous, &fault) else {
         return fault;
     };
-    if let Some(found) = unstable(last).or_else(|| unstable(&u)) {
-        return found;
+    if let Some(instability) = unstable(last).or_else(|| unstable(&u)) {
+        return instability;
     }
     if newton.tangent.has_skew_part() {
         // Modes of its symmetric part alone are not modes of the body.
@@ -110,8 +110,8 @@ fn critical(
 /// The first element that is unstable by itself, and its state.
 fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, String)> {
     (0..potential.elements()).find_map(|element| {
-        let own = potential.connectivity().values(element, u);
-        Some((element, potential.instability(element, &own)?))
+        let values = potential.connectivity().values(element, u);
+        Some((element, potential.instability(element, &values)?))
     })
 }
 

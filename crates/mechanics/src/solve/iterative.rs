@@ -35,14 +35,14 @@ pub struct Iterative {
     matrix: NodalMatrix,
     cycle: Option<Box<Hierarchy>>,
     /// Whether the cycle was made for the values taken last, or for others, or is to be made.
-    made: Made,
+    built: Built,
     /// Iterations per digit with a cycle made for the tangent itself.
     pace: f64,
 }
 
 /// The values for which a cycle was made.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Made {
+enum Built {
     ForThese,
     ForOthers,
     Not,
@@ -75,12 +75,12 @@ impl Iterative {
         let couplings = potential.skew_couplings();
         let mut skew = couplings
             .iter()
-            .map(|own| free(own.row) && free(own.column));
+            .map(|coupling| free(coupling.row) && free(coupling.column));
         (!skew.any(|couples| couples)).then(|| Self {
             matrix: NodalMatrix::new(&nodes, assembly.free(), potential),
             nodes,
             cycle: None,
-            made: Made::Not,
+            built: Built::Not,
             pace: f64::INFINITY,
         })
     }
@@ -95,8 +95,8 @@ impl Iterative {
     ) -> Evaluated {
         let energy = self.matrix.linearise(potential, u, residual);
         // Aggregation is costly, and also serves for tangents near its own.
-        if self.made == Made::ForThese {
-            self.made = Made::ForOthers;
+        if self.built == Built::ForThese {
+            self.built = Built::ForOthers;
         }
         energy
     }
@@ -122,10 +122,10 @@ impl Iterative {
                 self.judge(solution.iterations, solution.reduction);
                 return Ok(self.nodes.gather(&solution.x));
             }
-            if self.made == Made::ForThese {
+            if self.built == Built::ForThese {
                 return Err(solution.err().unwrap_or(FactorFault::NotPositiveDefinite));
             }
-            self.made = Made::Not;
+            self.built = Built::Not;
         }
     }
 
@@ -136,15 +136,15 @@ impl Iterative {
         reduction: f64,
         most: usize,
     ) -> Result<Solution, FactorFault> {
-        if self.made == Made::Not {
+        if self.built == Built::Not {
             self.cycle = None;
         }
         let cycle = match &mut self.cycle {
             Some(cycle) => cycle,
             None => {
                 // Also where there is none: another attempt would end alike.
-                self.made = Made::ForThese;
-                let hierarchy = Hierarchy::new(&self.matrix.whole(), &self.nodes.motions())?;
+                self.built = Built::ForThese;
+                let hierarchy = Hierarchy::new(&self.matrix.full(), &self.nodes.motions())?;
                 self.cycle.insert(Box::new(hierarchy))
             }
         };
@@ -158,10 +158,10 @@ impl Iterative {
         }
         let digits = -reduction.max(1e-16).log10();
         let pace = (iterations as f64 - 1.0) / digits.max(1.0);
-        if self.made == Made::ForThese {
+        if self.built == Built::ForThese {
             self.pace = pace;
         } else if pace > STALE * self.pace {
-            self.made = Made::Not;
+            self.built = Built::Not;
         }
     }
 

@@ -24,7 +24,7 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
     let length = norm(&now);
     now.iter_mut().for_each(|x| *x /= length);
     let mut last = vec![0.0; size];
-    let (mut diagonal, mut beside, mut beta) = (Vec::new(), Vec::new(), 0.0);
+    let (mut diagonal, mut off_diagonal, mut beta) = (Vec::new(), Vec::new(), 0.0);
     for _ in 0..STEPS.min(size) {
         let mut next = apply(&now);
         add_scaled(&mut next, -beta, &last);
@@ -32,7 +32,7 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
         add_scaled(&mut next, -alpha, &now);
         diagonal.push(alpha);
         beta = norm(&next);
-        beside.push(beta);
+        off_diagonal.push(beta);
         if beta <= 1e-12 * alpha.abs() {
             break;
         }
@@ -45,7 +45,7 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
     }
     let tridiagonal = DMatrix::from_fn(count, count, |i, j| match i.abs_diff(j) {
         0 => diagonal[i],
-        1 => beside[i.min(j)],
+        1 => off_diagonal[i.min(j)],
         _ => 0.0,
     });
     if tridiagonal.iter().any(|entry| !entry.is_finite()) {
@@ -53,7 +53,7 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
     }
     let eigen = SymmetricEigen::new(tridiagonal);
     let bounds = (0..count).map(|i| {
-        eigen.eigenvalues[i].abs() + beside[count - 1] * eigen.eigenvectors[(count - 1, i)].abs()
+        eigen.eigenvalues[i].abs() + off_diagonal[count - 1] * eigen.eigenvectors[(count - 1, i)].abs()
     });
     bounds.fold(0.0, f64::max)
 }

@@ -133,7 +133,7 @@ pub fn compliance(
 }
 
 /// An equilibrium at the end of a step.
-struct Found {
+struct StepEnd {
     state: State,
     /// Whether it is farther from its first guess than the guess is from the state before: the body has snapped to another branch.
     is_far: bool,
@@ -185,7 +185,7 @@ impl<'a> Path<'a> {
             let rest = factor - start;
             // A remainder hardly longer than a step is taken with it.
             let step = self.step.min(self.loading.longest_step(factor));
-            let aim = if rest.abs() <= 1.001 * step {
+            let target = if rest.abs() <= 1.001 * step {
                 factor
             } else {
                 start + step.copysign(rest)
@@ -193,17 +193,17 @@ impl<'a> Path<'a> {
             let least = if self.is_guess() {
                 SHORTEST_GUESS * (factor - begin).abs()
             } else {
-                SHORTEST * aim.abs()
+                SHORTEST * target.abs()
             };
-            let shortest = 0.5 * (aim - start).abs() <= at_rest.max(least);
+            let shortest = 0.5 * (target - start).abs() <= at_rest.max(least);
             // A step that would be halved after a shift anyway is given up at the shift.
             self.newton.shifts = shortest || self.is_rough();
-            let found = match self.solve_at(previous, aim, &history) {
-                Ok(found) if found.is_sure || shortest => found,
+            let solution = match self.solve_at(previous, target, &history) {
+                Ok(solution) if solution.is_sure || shortest => solution,
                 Err(fault) if shortest && self.is_guess() => return Err((fault, last)),
                 Err(fault) if shortest => {
                     let stage = Stage {
-                        factor: aim,
+                        factor: target,
                         history: &history,
                     };
                     let newton = &mut self.newton;
@@ -211,14 +211,14 @@ impl<'a> Path<'a> {
                     return Err((fault, last));
                 }
                 _ => {
-                    self.step = 0.5 * (aim - start).abs();
+                    self.step = 0.5 * (target - start).abs();
                     halved = true;
                     continue;
                 }
             };
             load_steps += 1;
-            snaps += usize::from(found.is_far);
-            let mut state = found.state;
+            snaps += usize::from(solution.is_far);
+            let mut state = solution.state;
             state.load_steps = load_steps;
             state.convergence.snaps = snaps;
             let log = &state.convergence;
@@ -227,10 +227,10 @@ impl<'a> Path<'a> {
                 self.step *= 2.0;
             }
             halved = false;
-            if aim == factor {
+            if target == factor {
                 return Ok(state);
             }
-            on_the_way(aim);
+            on_the_way(target);
             last = Some(Box::new(state));
         }
     }
@@ -250,7 +250,7 @@ impl<'a> Path<'a> {
         previous: Option<&State>,
         factor: f64,
         history: &[f64],
-    ) -> Result<Found, SolveFault> {
+    ) -> Result<StepEnd, SolveFault> {
         let potential = self.loading.potential(factor, history);
         let mut guess = match self.loading.guess(factor, previous) {
             Some(guess) => guess,
@@ -265,14 +265,14 @@ impl<'a> Path<'a> {
             self.settings,
         )?;
         self.loading.impose(factor, &mut guess);
-        let beyond = norm(&difference(&state.displacement, &guess));
+        let correction = norm(&difference(&state.displacement, &guess));
         let step = match previous {
             Some(previous) => norm(&difference(&guess, &previous.displacement)),
             None => norm(&guess),
         };
         let rough = self.is_rough();
-        let is_far = !rough && beyond > step;
-        Ok(Found {
+        let is_far = !rough && correction > step;
+        Ok(StepEnd {
             is_far,
             is_sure: rough || !is_far && state.convergence.shifted_steps == 0,
             state,

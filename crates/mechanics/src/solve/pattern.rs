@@ -72,16 +72,16 @@ impl SymmetricPattern {
 
     /// The rows that have entries in some columns, ascending, these columns among them.
     pub fn around(&self, columns: &[usize]) -> Vec<usize> {
-        let mut is_own = vec![false; self.size()];
-        columns.iter().for_each(|column| is_own[*column] = true);
-        let mut found = is_own.clone();
+        let mut is_given = vec![false; self.size()];
+        columns.iter().for_each(|column| is_given[*column] = true);
+        let mut reached = is_given.clone();
         for column in 0..self.size() {
             for row in self.column(column) {
-                found[*row] |= is_own[column];
-                found[column] |= is_own[*row];
+                reached[*row] |= is_given[column];
+                reached[column] |= is_given[*row];
             }
         }
-        (0..self.size()).filter(|row| found[*row]).collect()
+        (0..self.size()).filter(|row| reached[*row]).collect()
     }
 
     /// The mean size of the diagonal entries of the matrix with these `values`.

@@ -124,16 +124,16 @@ pub fn evaluate_by_elements<P: Potential + ?Sized>(
     forces: &mut [f64],
     mut take: Take<'_>,
 ) -> Evaluated {
-    let mut own = ElementTerms::default();
+    let mut terms = ElementTerms::default();
     let mut energy = 0.0;
     for element in 0..potential.elements() {
-        energy += own.evaluate(potential, element, u, take.is_some())?;
+        energy += terms.evaluate(potential, element, u, take.is_some())?;
         let unknowns = potential.element_unknowns(element);
-        for (unknown, force) in unknowns.iter().zip(&own.residual) {
+        for (unknown, force) in unknowns.iter().zip(&terms.residual) {
             forces[*unknown as usize] += force;
         }
         if let Some(take) = &mut take {
-            take(element, &own.stiffness);
+            take(element, &terms.stiffness);
         }
     }
     Ok(energy)

@@ -24,7 +24,7 @@ impl Scatter {
     pub fn new(elements: &Connectivity) -> (SymmetricPattern, Self) {
         let free = elements.unknowns();
         let around = Around::of(elements);
-        let mut own = Self {
+        let mut scatter = Self {
             positions: Vec::new(),
             starts: vec![0],
         };
@@ -32,9 +32,9 @@ impl Scatter {
         for element in 0..elements.elements() {
             let unknowns = elements.of(element).len();
             size += unknowns * (unknowns + 1) / 2;
-            own.starts.push(size);
+            scatter.starts.push(size);
         }
-        own.positions = vec![NOWHERE; size];
+        scatter.positions = vec![NOWHERE; size];
         let (mut starts, mut rows) = (vec![0], Vec::new());
         // The column in which a row was seen last, and where it is stored there.
         let mut seen = vec![(NOWHERE, NOWHERE); free];
@@ -44,8 +44,8 @@ impl Scatter {
             seen[column as usize].0 = column;
             for (element, _) in around.of_unknown(column) {
                 for row in elements.of(*element as usize) {
-                    let beyond = *row != NOWHERE && *row > column;
-                    if beyond && seen[*row as usize].0 != column {
+                    let is_below = *row != NOWHERE && *row > column;
+                    if is_below && seen[*row as usize].0 != column {
                         seen[*row as usize].0 = column;
                         rows.push(*row as usize);
                     }
@@ -56,13 +56,13 @@ impl Scatter {
                 seen[*row].1 = position;
             }
             for (element, local) in around.of_unknown(column) {
-                let [element, local] = [*element, *local].map(|own| own as usize);
-                own.put(elements.of(element), element, column, local, &seen);
+                let [element, local] = [*element, *local].map(|index| index as usize);
+                scatter.put(elements.of(element), element, column, local, &seen);
             }
             starts.push(rows.len());
         }
         assert!(rows.len() < NOWHERE as usize, "fewer than 2³² entries");
-        (SymmetricPattern::of_columns(starts, rows), own)
+        (SymmetricPattern::of_columns(starts, rows), scatter)
     }
 
     /// Records the positions of one local column of an element, below the diagonal of the whole.
@@ -97,12 +97,12 @@ struct Around {
 
 impl Around {
     fn of(elements: &Connectivity) -> Self {
-        let own = |element: usize| {
+        let free_unknowns = |element: usize| {
             let unknowns = elements.of(element).iter().enumerate();
             unknowns.filter(|(_, unknown)| **unknown != NOWHERE)
         };
         let all = (0..elements.elements()).flat_map(|element| {
-            own(element)
+            free_unknowns(element)
                 .map(move |(local, unknown)| (*unknown as usize, (element as u32, local as u32)))
         });
         let (starts, elements) = grouped(elements.unknowns(), all);

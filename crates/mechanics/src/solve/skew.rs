@@ -35,14 +35,14 @@ pub struct SkewPart {
 impl SkewPart {
     /// The skew part from couplings between free unknowns, given by their positions.
     pub fn new(all: &[SkewCoupling]) -> Self {
-        let ends = all.iter().flat_map(|own| [own.row, own.column]);
+        let ends = all.iter().flat_map(|coupling| [coupling.row, coupling.column]);
         let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
         let mut couplings = DMatrix::zeros(coupled.len(), coupled.len());
-        for own in all {
+        for coupling in all {
             let position = |unknown| coupled.binary_search(&unknown).expect("coupled");
-            let (row, column) = (position(own.row), position(own.column));
-            couplings[(row, column)] += own.stiffness;
-            couplings[(column, row)] -= own.stiffness;
+            let (row, column) = (position(coupling.row), position(coupling.column));
+            couplings[(row, column)] += coupling.stiffness;
+            couplings[(column, row)] -= coupling.stiffness;
         }
         Self {
             coupled,
@@ -79,17 +79,17 @@ impl SkewPart {
     }
 
     /// D.
-    fn beyond(&self) -> DMatrix<f64> {
-        let mut beyond = self.couplings.clone();
-        (0..self.coupled.len()).for_each(|i| beyond[(i, i)] -= self.brace);
-        beyond
+    fn remainder(&self) -> DMatrix<f64> {
+        let mut remainder = self.couplings.clone();
+        (0..self.coupled.len()).for_each(|i| remainder[(i, i)] -= self.brace);
+        remainder
     }
 
     /// 1 + D G.
     fn system(&self) -> DMatrix<f64> {
         let count = self.coupled.len();
         let flexibility = DMatrix::from_fn(count, count, |i, k| self.columns[k][self.coupled[i]]);
-        DMatrix::identity(count, count) + self.beyond() * flexibility
+        DMatrix::identity(count, count) + self.remainder() * flexibility
     }
 
     /// Whether det (K + S) is positive, as it is at rest and until stability is lost; the columns must be known.
@@ -101,7 +101,7 @@ impl SkewPart {
     pub fn complete(&self, mut x: Vec<f64>) -> Option<Vec<f64>> {
         let there = self.coupled.iter().map(|unknown| x[*unknown]);
         let there = DVector::from_iterator(self.coupled.len(), there);
-        let parts = self.system().lu().solve(&(self.beyond() * there))?;
+        let parts = self.system().lu().solve(&(self.remainder() * there))?;
         for (part, column) in parts.iter().zip(&self.columns) {
             for (x, column) in x.iter_mut().zip(column) {
                 *x -= part * column;

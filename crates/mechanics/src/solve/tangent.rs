@@ -106,15 +106,15 @@ impl Tangent {
             return Ok(Vec::new());
         };
         if !self.skew.is_none() {
-            return residuals.iter().map(|own| self.change(own)).collect();
+            return residuals.iter().map(|residual| self.change(residual)).collect();
         }
         if residuals.len() > WORTH_FACTOR {
             self.replace_by_factor()?;
         }
         let mut changes = vec![self.change(first)?];
         if !self.factorised {
-            for own in others {
-                changes.push(self.change(own)?);
+            for residual in others {
+                changes.push(self.change(residual)?);
             }
             return Ok(changes);
         }
@@ -346,9 +346,9 @@ fn add_product(
     forces: &mut [f64],
 ) -> Result<(), Inadmissible> {
     Assembly::add_product(potential, u, motion, forces)?;
-    for own in potential.skew_couplings() {
-        forces[own.row] += sign * own.stiffness * motion[own.column];
-        forces[own.column] -= sign * own.stiffness * motion[own.row];
+    for coupling in potential.skew_couplings() {
+        forces[coupling.row] += sign * coupling.stiffness * motion[coupling.column];
+        forces[coupling.column] -= sign * coupling.stiffness * motion[coupling.row];
     }
     Ok(())
 }

@@ -32,19 +32,19 @@ fn marker(number: usize, position: [f64; 2], displacement: [f64; 2]) -> Marker {
     }
 }
 
-fn near(found: &[Marker], expected: &[Marker]) {
-    assert_eq!(found.len(), expected.len(), "{found:?}");
-    for (found, expected) in found.iter().zip(expected) {
-        assert_eq!(found.number, expected.number);
+fn near(markers: &[Marker], expected: &[Marker]) {
+    assert_eq!(markers.len(), expected.len(), "{markers:?}");
+    for (marker, expected) in markers.iter().zip(expected) {
+        assert_eq!(marker.number, expected.number);
         for axis in 0..2 {
             assert!(
-                (found.position[axis] - expected.position[axis]).abs() < 1e-12,
-                "{found:?}"
+                (marker.position[axis] - expected.position[axis]).abs() < 1e-12,
+                "{marker:?}"
             );
-            let miss = found.displacement[axis] - expected.displacement[axis];
-            assert!(miss.abs() < 1e-12, "{found:?}");
+            let miss = marker.displacement[axis] - expected.displacement[axis];
+            assert!(miss.abs() < 1e-12, "{marker:?}");
         }
-        match (found.standard_deviation, expected.standard_deviation) {
+        match (marker.standard_deviation, expected.standard_deviation) {
             (Some(a), Some(b)) => assert!((a - b).abs() < 1e-12),
             (a, b) => assert_eq!(a, b),
         }
@@ -55,8 +55,8 @@ fn near(found: &[Marker], expected: &[Marker]) {
 fn columns_are_read_with_units_frames_and_holes() {
     let text = "frame,x [cm],y [mm],ux [um],uy_mm,standard deviation [mm],time [s]\n\
                 1,1,2,500,0.25,0.1,0.5\n1,2,2,NaN,0.25,0.1,0.5\n3,1,2,1000,0.5,,1.5\n3,2,2,-1000,,,1.5\n";
-    let found = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
-    let [first, second] = &found.series.frames[..] else {
+    let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
+    let [first, second] = &measured.series.frames[..] else {
         panic!("two frames");
     };
     assert_eq!((first.number, first.time), (1, Some(0.5)));
@@ -67,16 +67,16 @@ fn columns_are_read_with_units_frames_and_holes() {
     };
     near(&first.markers, &[with]);
     near(&second.markers, &[marker(0, [10.0, 2.0], [1.0, 0.5])]);
-    let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
+    let warnings: Vec<_> = measured.warnings.iter().map(ToString::to_string).collect();
     let expected = [
         "in different units, cm and mm",
         "points without a displacement: 2",
         "frames are missing: 2",
     ];
-    for (told, expected) in told.iter().zip(expected) {
-        assert!(told.contains(expected), "{told}");
+    for (warning, expected) in warnings.iter().zip(expected) {
+        assert!(warning.contains(expected), "{warning}");
     }
-    assert_eq!(told.len(), expected.len(), "{told:?}");
+    assert_eq!(warnings.len(), expected.len(), "{warnings:?}");
 }
 
 /// The first lines of a file among DICe's regression tests, shortened, and one point that was lost.
@@ -89,37 +89,37 @@ SUBSET_ID,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,SIGMA,GAMMA,BE
 
 #[test]
 fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
-    let found = read_texts(&[("DICe_solution_07.txt", DICE)], &unit(0.5)).unwrap();
-    assert_eq!(found.understood.layout, "DICe");
+    let measured = read_texts(&[("DICe_solution_07.txt", DICE)], &unit(0.5)).unwrap();
+    assert_eq!(measured.understood.layout, "DICe");
     let with = |deviation, marker| Marker {
         standard_deviation: Some(deviation),
         ..marker
     };
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[
             with(0.01, marker(0, [30.5, -485.5], [-0.031436, 0.394485])),
             with(0.015, marker(2, [30.5, -450.5], [-0.036928, 0.42921])),
         ],
     );
-    let told = read_texts(&[("a.txt", DICE)], &ReadSettings::default()).unwrap_err();
-    assert!(told.to_string().contains("is in pixels"), "{told}");
+    let error = read_texts(&[("a.txt", DICE)], &ReadSettings::default()).unwrap_err();
+    assert!(error.to_string().contains("is in pixels"), "{error}");
 }
 
 #[test]
 fn early_versions_of_dice_say_match_and_stereo_has_its_own_columns() {
     let early = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH\n1,2,3,4,0,0\n2,2,3,4,0,-1\n";
-    let found = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
+    let measured = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[marker(0, [1.0, -2.0], [3.0, -4.0])],
     );
     let stereo = "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
                   MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA\n61,971,5,7,1,1,0.5,0.25,0.02\n";
-    let found = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
-    assert_eq!(found.understood.layout, "DICe, stereo");
+    let measured = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
+    assert_eq!(measured.understood.layout, "DICe, stereo");
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[marker(0, [5.0, 7.0], [0.5, 0.25])],
     );
 }
@@ -140,27 +140,27 @@ fn points_that_vic_and_dice_did_not_find_are_lost() {
         ),
     ] {
         let text = format!("{head}\n{rows}");
-        let found = read_texts(&[("a.csv", &text)], &unit(1.0)).unwrap();
-        assert_eq!(found.understood.layout, layout);
+        let measured = read_texts(&[("a.csv", &text)], &unit(1.0)).unwrap();
+        assert_eq!(measured.understood.layout, layout);
         near(
-            &found.series.frames[0].markers,
+            &measured.series.frames[0].markers,
             &[marker(0, [1.0, 2.0], [3.0, 4.0])],
         );
-        assert_eq!(found.series.lost, [[2.0, 2.0]]);
+        assert_eq!(measured.series.lost, [[2.0, 2.0]]);
     }
 }
 
 #[test]
 fn a_unit_that_nobody_knows_is_said_by_the_user() {
     let text = "x（毫米）,y（毫米）,ux（毫米）,uy（毫米）\n1,2,3,4\n5,2,3,4\n";
-    let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
+    let error = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
     assert!(
-        told.to_string().contains("`毫米` is not a unit of length"),
-        "{told}"
+        error.to_string().contains("`毫米` is not a unit of length"),
+        "{error}"
     );
-    let found = read_texts(&[("a.csv", text)], &unit(2.0)).unwrap();
+    let measured = read_texts(&[("a.csv", text)], &unit(2.0)).unwrap();
     near(
-        &found.series.frames[0].markers[..1],
+        &measured.series.frames[0].markers[..1],
         &[marker(0, [2.0, 4.0], [6.0, 8.0])],
     );
 }
@@ -172,20 +172,20 @@ fn tables_that_only_look_like_those_of_a_program_are_read_as_they_are() {
         "X [mm],Y [mm],Ux [mm],Uy [mm],exx,sigma [mm]",
     ] {
         let text = format!("{head}\n1,2,3,4,0,0.5\n");
-        let found = read_texts(&[("a.csv", &text)], &ReadSettings::default()).unwrap();
-        assert_eq!(found.understood.layout, "columns");
-        let first = found.series.frames[0].markers[0];
+        let measured = read_texts(&[("a.csv", &text)], &ReadSettings::default()).unwrap();
+        assert_eq!(measured.understood.layout, "columns");
+        let first = measured.series.frames[0].markers[0];
         assert_eq!(
             (first.position, first.standard_deviation),
             ([1.0, 2.0], Some(0.5))
         );
     }
     let text = "x [mm],y [mm],displacement_x [mm],displacement_y [mm]\n1,2,3,4\n";
-    let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
+    let error = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
     assert!(
-        told.to_string()
+        error.to_string()
             .contains("--columns x=NAME,y=NAME,ux=NAME,uy=NAME"),
-        "{told}"
+        "{error}"
     );
 }
 
@@ -193,10 +193,10 @@ fn tables_that_only_look_like_those_of_a_program_are_read_as_they_are() {
 fn mudic_gives_places_in_the_frame() {
     let text = "id,x,y,ux,uy,true_strain_xx,true_strain_yy,true_strain_xy,eng_strain_xx,eng_strain_yy,eng_strain_xy\n\
                 0,110.0,52.0,10.0,2.0,0,0,0,0,0,0\n1,130.0,52.0,nan,2.0,0,0,0,0,0,0\n";
-    let found = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();
-    assert_eq!(found.understood.layout, "muDIC");
+    let measured = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();
+    assert_eq!(measured.understood.layout, "muDIC");
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[marker(0, [10.0, -5.0], [1.0, -0.2])],
     );
 }
@@ -209,20 +209,20 @@ fn ncorr_keeps_matrices() {
         ..unit(2.0)
     };
     let files = [("frame_2_v.csv", v), ("frame_2_u.csv", u)];
-    let found = read_texts(&files, &reading).unwrap();
-    assert_eq!(found.understood.layout, "Ncorr");
+    let measured = read_texts(&files, &reading).unwrap();
+    assert_eq!(measured.understood.layout, "Ncorr");
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[
             marker(0, [0.5, 0.0], [2.0, 2.0]),
             marker(1, [1.0, 0.0], [4.0, 4.0]),
             marker(2, [0.5, -0.5], [6.0, 0.0]),
         ],
     );
-    let told = read_texts(&files, &unit(1.0)).unwrap_err().to_string();
-    assert!(told.contains("--grid"), "{told}");
-    let told = read_texts(&[("1_u.csv", u), ("1_v.csv", "1,2\n")], &reading).unwrap_err();
-    assert!(told.to_string().contains("has 2 × 3 entries"), "{told}");
+    let error = read_texts(&files, &unit(1.0)).unwrap_err().to_string();
+    assert!(error.contains("--grid"), "{error}");
+    let error = read_texts(&[("1_u.csv", u), ("1_v.csv", "1,2\n")], &reading).unwrap_err();
+    assert!(error.to_string().contains("has 2 × 3 entries"), "{error}");
 }
 
 #[test]
@@ -234,8 +234,8 @@ fn files_are_frames_by_the_numbers_of_their_names() {
         ("a_10.csv", text),
         ("a_13.csv", text),
     ];
-    let found = read_texts(&files, &ReadSettings::default()).unwrap();
-    let numbers: Vec<_> = found
+    let measured = read_texts(&files, &ReadSettings::default()).unwrap();
+    let numbers: Vec<_> = measured
         .series
         .frames
         .iter()
@@ -243,11 +243,11 @@ fn files_are_frames_by_the_numbers_of_their_names() {
         .collect();
     assert_eq!(numbers, [9, 10, 11, 13]);
     assert!(
-        found.warnings[0]
+        measured.warnings[0]
             .to_string()
             .contains("frames are missing: 12")
     );
-    assert_eq!(found.series.positions(), [[0.0, 0.0], [1.0, 0.0]]);
+    assert_eq!(measured.series.positions(), [[0.0, 0.0], [1.0, 0.0]]);
 }
 
 #[test]
@@ -311,9 +311,9 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
             "deviation is negative",
         ),
     ] {
-        let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
-        assert!(told.to_string().contains(reason), "{text:?}: {told}");
-        assert!(told.to_string().contains('('), "a remedy: {told}");
+        let error = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
+        assert!(error.to_string().contains(reason), "{text:?}: {error}");
+        assert!(error.to_string().contains('('), "a remedy: {error}");
     }
 }
 
@@ -324,28 +324,28 @@ fn columns_are_passed_over_by_wish_and_harmless_ones_without() {
         ignored_columns: vec!["temperature".into(), "uz".into()],
         ..ReadSettings::default()
     };
-    let found = read_texts(&[("a.csv", text)], &reading).unwrap();
-    assert_eq!(found.series.frames[0].markers.len(), 2);
+    let measured = read_texts(&[("a.csv", text)], &reading).unwrap();
+    assert_eq!(measured.series.frames[0].markers.len(), 2);
 }
 
 #[test]
 fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0.01,0.02,0.001,0\n0.03,0.02,0.001,0\n";
-    let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
+    let measured = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[
             marker(0, [10.0, 20.0], [1.0, 0.0]),
             marker(1, [30.0, 20.0], [1.0, 0.0]),
         ],
     );
-    let told = found.warnings[0].to_string();
-    assert!(told.contains("states mm, --unit states 1000 mm"), "{told}");
+    let warning = measured.warnings[0].to_string();
+    assert!(warning.contains("states mm, --unit states 1000 mm"), "{warning}");
     // Of different units each stands.
     let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
-    let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
+    let measured = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
     assert_eq!(
-        found.series.frames[0].markers[1],
+        measured.series.frames[0].markers[1],
         marker(1, [30.0, 20.0], [1.0, 0.0])
     );
 }
@@ -353,9 +353,9 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
 #[test]
 fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0,0,1,2\n0,0,1,2\n0,0,1,2.5\n9,0,1,2\n9,9,,\n";
-    let found = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
+    let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
     near(
-        &found.series.frames[0].markers,
+        &measured.series.frames[0].markers,
         &[
             marker(0, [0.0, 0.0], [1.0, 2.0]),
             marker(0, [0.0, 0.0], [1.0, 2.5]),
@@ -363,20 +363,20 @@ fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
         ],
     );
     assert_eq!(
-        found.series.positions(),
+        measured.series.positions(),
         [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]
     );
-    let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
+    let warnings: Vec<_> = measured.warnings.iter().map(ToString::to_string).collect();
     assert!(
-        told[1].contains("duplicate rows") && told[1].contains(": 1"),
-        "{told:?}"
+        warnings[1].contains("duplicate rows") && warnings[1].contains(": 1"),
+        "{warnings:?}"
     );
     assert!(
-        told[2].contains("measured again at the same position"),
-        "{told:?}"
+        warnings[2].contains("measured again at the same position"),
+        "{warnings:?}"
     );
     // What is found in one frame is not lost.
     let text = "frame,x [mm],y [mm],ux [mm],uy [mm]\n1,0,0,1,2\n1,9,0,1,2\n2,0,0,,\n2,9,0,1,2\n";
-    let found = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
-    assert!(found.series.lost.is_empty());
+    let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
+    assert!(measured.series.lost.is_empty());
 }

@@ -92,17 +92,17 @@ fn fung_has_its_closed_form_stresses() {
     let law = turned("fung", FUNG, 0.0);
     let [e1, e2]: [f64; 2] = [0.5 * (1.2_f64.powi(2) - 1.0), 0.5 * (1.1_f64.powi(2) - 1.0)];
     let growth = 0.02 * (9.0 * e1 * e1 + 5.0 * e2 * e2 + 6.0 * e1 * e2).exp();
-    let found = law.biaxial([0.2, 0.1]);
+    let computed = law.biaxial([0.2, 0.1]);
     let expected = [1.2 * (9.0 * e1 + 3.0 * e2), 1.1 * (3.0 * e1 + 5.0 * e2)];
-    for (found, expected) in found.iter().zip(expected) {
-        assert!((found / (growth * expected) - 1.0).abs() < 1e-14);
+    for (computed, expected) in computed.iter().zip(expected) {
+        assert!((computed / (growth * expected) - 1.0).abs() < 1e-14);
     }
     let amount: f64 = 0.3;
     let across = 0.5 * amount * amount;
     let growth = 0.02 * (5.0 * across * across + 4.0 * amount * amount).exp();
     let expected = growth * (4.0 * amount + amount * 5.0 * across);
-    let found = curve::simple_shear(&*law, amount);
-    assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
+    let computed = curve::simple_shear(&*law, amount);
+    assert!((computed / expected - 1.0).abs() < 1e-14, "{computed} {expected}");
 }
 
 #[test]
@@ -188,10 +188,10 @@ fn fibres_of_lee_and_sacks_carry_in_tension_only() {
 fn holzapfel_and_ogdens_law_has_its_limits() {
     let of = |a: [&str; 3], angle: &str| {
         let [f, s, fs] = a;
-        let own = format!(
+        let parameters = format!(
             "a_f = \"{f} MPa\"\na_s = \"{s} MPa\"\na_fs = \"{fs} MPa\"\nangle = \"{angle} deg\""
         );
-        sample("holzapfel-ogden", &format!("{HOLZAPFEL_OGDEN}{own}"))
+        sample("holzapfel-ogden", &format!("{HOLZAPFEL_OGDEN}{parameters}"))
     };
     let matrix = of(["0", "0", "0"], "35");
     assert!(matrix.is_isotropic());
@@ -199,20 +199,20 @@ fn holzapfel_and_ogdens_law_has_its_limits() {
     // f and s exchanged: equal b where both have one.
     let text = |text: &str| text.replace("b_s = 0.3", "b_s = 0.2");
     let pair = |f: &str, s: &str, angle: f64| {
-        let own = format!("a_f = \"{f} MPa\"\na_s = \"{s} MPa\"\na_fs = \"0.01 MPa\"\nangle = ");
+        let parameters = format!("a_f = \"{f} MPa\"\na_s = \"{s} MPa\"\na_fs = \"0.01 MPa\"\nangle = ");
         turned(
             "holzapfel-ogden",
-            &format!("{}{own}", text(HOLZAPFEL_OGDEN)),
+            &format!("{}{parameters}", text(HOLZAPFEL_OGDEN)),
             angle,
         )
     };
     assert_same(&*pair("0.03", "0.01", 15.0), &*pair("0.01", "0.03", 105.0));
     // Two perpendicular families of Holzapfel, Gasser and Ogden's law in a matrix that is nearly neo-Hooke's.
-    let own = "a_f = \"0.03 MPa\"\na_s = \"0.03 MPa\"\na_fs = \"0 MPa\"\nangle = ";
+    let parameters = "a_f = \"0.03 MPa\"\na_s = \"0.03 MPa\"\na_fs = \"0 MPa\"\nangle = ";
     let soft = text(HOLZAPFEL_OGDEN).replace("b = 0.3", "b = 1e-14");
     let two = "mu = \"0.02 MPa\"\nk1 = \"0.03 MPa\"\nk2 = 0.2\nkappa = 0\nangle = \"45 deg\"\nfamilies = \"two\"";
     assert_same(
-        &*turned("holzapfel-ogden", &format!("{soft}{own}"), 45.0),
+        &*turned("holzapfel-ogden", &format!("{soft}{parameters}"), 45.0),
         &*sample("holzapfel-gasser-ogden", two),
     );
 }

@@ -10,14 +10,14 @@ use textbook::{Principal, textbook};
 
 /// All laws of bodies that change their volume, in plane stress and in plane strain.
 pub(super) fn sheets() -> NamedLaws {
-    let own = samples::changing_volume().into_iter().flat_map(|card| {
+    let compressible = samples::changing_volume().into_iter().flat_map(|card| {
         let strain = card.law.in_plane_strain().expect("a law of volume change");
         let named = |law: Arc<dyn HyperelasticLaw>| {
             (format!("{} in {:?}", card.name, law.plane_state()), law)
         };
         [named(Arc::clone(&card.law)), named(strain)]
     });
-    split_sheets().into_iter().chain(own).collect()
+    split_sheets().into_iter().chain(compressible).collect()
 }
 
 /// All laws that keep their volume and are isotropic, with all resistances to a change of it.
@@ -32,8 +32,8 @@ fn split_sheets() -> NamedLaws {
                 plane,
             };
             let sheet = Arc::clone(&law).with_volume(volume)?;
-            let told = format!("{name} in {plane:?}, ν = {poisson_ratio}, {energy:?}");
-            Some((told, sheet))
+            let label = format!("{name} in {plane:?}, ν = {poisson_ratio}, {energy:?}");
+            Some((label, sheet))
         };
         [
             (PlaneState::Stress, 0.3, VolumeEnergy::Quadratic),
@@ -86,26 +86,26 @@ fn stress_and_thickness_of_the_usual_tests_are_the_textbooks() {
                 for strain in [-0.2, -1e-3, 0.05, 0.4] {
                     let expected = stretches(&principal, mode, law.plane_state(), 1.0 + strain);
                     let stress = principal(expected)[0];
-                    let found = mode.nominal_stress(&*law, strain);
-                    let told = format!("{name} {:?} {mode:?} {strain}", law.plane_state());
+                    let computed = mode.nominal_stress(&*law, strain);
+                    let context = format!("{name} {:?} {mode:?} {strain}", law.plane_state());
                     assert!(
-                        (found / stress - 1.0).abs() < 1e-9,
-                        "{told}: {found} {stress}"
+                        (computed / stress - 1.0).abs() < 1e-9,
+                        "{context}: {computed} {stress}"
                     );
                     let state = mode.gradient(&*law, strain).unwrap();
                     let thickness = law.thickness_stretch(&Kinematics::new(&state).unwrap());
                     assert!(
                         (thickness - expected[2]).abs() < 1e-12,
-                        "{told}: {thickness}"
+                        "{context}: {thickness}"
                     );
                     let pressed = principal(expected)[2] / (expected[0] * expected[1]);
-                    let found = law.thickness_stress(&Kinematics::new(&state).unwrap());
-                    let own = if law.is_objective() {
+                    let computed = law.thickness_stress(&Kinematics::new(&state).unwrap());
+                    let thickness_stress = if law.is_objective() {
                         pressed
                     } else {
                         principal(expected)[2]
                     };
-                    assert!((found - own).abs() < 1e-12, "{told}: {found} {own}");
+                    assert!((computed - thickness_stress).abs() < 1e-12, "{context}: {computed} {thickness_stress}");
                 }
             }
         }
@@ -133,10 +133,10 @@ fn simple_shear_is_the_textbooks() {
                 let w = principal([first, 1.0 / first, third]);
                 let slope = first * first / (1.0 + first * first);
                 let expected = slope * (w[0] - w[1] / (first * first));
-                let found = curve::simple_shear(&*law, amount);
+                let computed = curve::simple_shear(&*law, amount);
                 assert!(
-                    (found / expected - 1.0).abs() < 1e-10,
-                    "{name}: {found} {expected}"
+                    (computed / expected - 1.0).abs() < 1e-10,
+                    "{name}: {computed} {expected}"
                 );
             }
         }
@@ -150,10 +150,10 @@ fn simple_shear_is_the_textbooks() {
 /// ```
 #[test]
 fn laws_with_closed_forms_have_them() {
-    let near = |found: f64, expected: f64, told: &str| {
+    let near = |computed: f64, expected: f64, label: &str| {
         assert!(
-            (found / expected - 1.0).abs() < 1e-11,
-            "{told}: {found} {expected}"
+            (computed / expected - 1.0).abs() < 1e-11,
+            "{label}: {computed} {expected}"
         );
     };
     let of = |law: &str, parameters: &str| samples::card(law, parameters).law;
@@ -296,10 +296,10 @@ fn the_incompressible_limit_is_the_law_that_keeps_its_volume() {
         ] {
             let [near, nearer, exact] =
                 [&near, &nearer, &exact].map(|law| stress(&**law, &gradient(h)));
-            let off = |found: &PlaneTensor| (found - exact).norm() / exact.norm();
-            let own = 1.0 - 2.0 * 0.4999;
+            let off = |computed: &PlaneTensor| (computed - exact).norm() / exact.norm();
+            let compressibility = 1.0 - 2.0 * 0.4999;
             assert!(
-                off(&nearer) < 2.5 * own,
+                off(&nearer) < 2.5 * compressibility,
                 "{name} {h:?}: {:.1e}",
                 off(&nearer)
             );

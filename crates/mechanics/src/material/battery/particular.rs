@@ -105,12 +105,12 @@ fn closed_form(law: &dyn InvariantLaw, mode: Option<Mode>, x: f64) -> f64 {
 fn the_sheet_reproduces_the_closed_form_curves() {
     for x in [-0.3, -0.05, 0.3, 1.0, 1.5] {
         for mode in [Some(Mode::Planar), Some(Mode::Equibiaxial), None] {
-            let found = match mode {
+            let computed = match mode {
                 Some(mode) => mode.nominal_stress(&Synthetic, x),
                 None => curve::simple_shear(&Synthetic, x),
             };
             let expected = closed_form(&Synthetic, mode, x);
-            assert!((found / expected - 1.0).abs() < 1e-13, "{mode:?} at {x}");
+            assert!((computed / expected - 1.0).abs() < 1e-13, "{mode:?} at {x}");
         }
     }
 }
@@ -135,10 +135,10 @@ fn ogden_has_the_energy_of_its_principal_stretches() {
                 2.0 * mu / (alpha * alpha) * (sum - 3.0)
             })
             .sum();
-        let found = law.stress(&Kinematics::new(&gradient(h)).unwrap()).0;
+        let computed = law.stress(&Kinematics::new(&gradient(h)).unwrap()).0;
         assert!(
-            (found - expected).abs() < 1e-14 + 1e-9 * expected,
-            "{h:?}: {found} {expected}"
+            (computed - expected).abs() < 1e-14 + 1e-9 * expected,
+            "{h:?}: {computed} {expected}"
         );
     }
 }

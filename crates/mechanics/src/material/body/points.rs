@@ -11,28 +11,28 @@ use crate::material::sheet::{COMPONENTS, Kinematics, PlaneTensor};
 
 impl<L: BodyLaw> BodySheet<L> {
     /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
-    pub(super) fn stresses_at(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 4]) -> bool {
-        self.each::<Stress, 4>(gradients, made)
+    pub(super) fn stresses_at(&self, gradients: [&[f64]; 4], computed: [&mut [f64]; 4]) -> bool {
+        self.each::<Stress, 4>(gradients, computed)
     }
 
     /// As [`HyperelasticLaw::responses`](crate::material::HyperelasticLaw::responses).
     pub(super) fn responses_at(
         &self,
         gradients: [&[f64]; 4],
-        made: [&mut [f64]; COMPONENTS],
+        computed: [&mut [f64]; COMPONENTS],
     ) -> bool {
-        self.each::<Response, COMPONENTS>(gradients, made)
+        self.each::<Response, COMPONENTS>(gradients, computed)
     }
 
-    fn each<M: Made<N>, const N: usize>(
+    fn each<M: Computed<N>, const N: usize>(
         &self,
         gradients: [&[f64]; 4],
-        made: [&mut [f64]; N],
+        computed: [&mut [f64]; N],
     ) -> bool {
         with_avx2(PointLoop {
             sheet: self,
             gradients,
-            made,
+            computed,
             kind: PhantomData::<M>,
         })
     }
@@ -67,8 +67,8 @@ impl<S: Copy> Lanes<S> {
         count: usize,
     ) -> Self {
         let mut gradients = [[0.0; LANES]; 4];
-        for (own, component) in gradients.iter_mut().zip(all) {
-            own[..count].copy_from_slice(&component[first..first + count]);
+        for (lanes, component) in gradients.iter_mut().zip(all) {
+            lanes[..count].copy_from_slice(&component[first..first + count]);
         }
         let [mut area_change, mut z] = [[0.0; LANES]; 2];
         let mut inverted = 0_u64;
@@ -115,14 +115,14 @@ impl<S: Copy> Lanes<S> {
 }
 
 /// A result computed from the measures and derivatives at a point.
-trait Made<const N: usize> {
+trait Computed<const N: usize> {
     /// The components of the result.
     fn of(measures: &Measures, w: &Derivatives) -> [f64; N];
 }
 
 struct Stress;
 
-impl Made<4> for Stress {
+impl Computed<4> for Stress {
     #[inline(always)]
     fn of(measures: &Measures, w: &Derivatives) -> [f64; 4] {
         measures.stress(w).into()
@@ -131,7 +131,7 @@ impl Made<4> for Stress {
 
 struct Response;
 
-impl Made<COMPONENTS> for Response {
+impl Computed<COMPONENTS> for Response {
     #[inline(always)]
     fn of(measures: &Measures, w: &Derivatives) -> [f64; COMPONENTS] {
         measures.response(w).components()
@@ -145,11 +145,11 @@ impl Made<COMPONENTS> for Response {
 struct PointLoop<'a, L, M, const N: usize> {
     sheet: &'a BodySheet<L>,
     gradients: [&'a [f64]; 4],
-    made: [&'a mut [f64]; N],
+    computed: [&'a mut [f64]; N],
     kind: PhantomData<M>,
 }
 
-impl<L: BodyLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
+impl<L: BodyLaw, M: Computed<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
     type Output = bool;
 
     #[inline(always)]
@@ -163,14 +163,14 @@ impl<L: BodyLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, 
             if !lanes.admissible {
                 return false;
             }
-            let mut found = [[0.0; LANES]; N];
+            let mut block = [[0.0; LANES]; N];
             for lane in 0..LANES {
                 let (measures, w) = lanes.point(sheet, lane);
-                for (component, value) in found.iter_mut().zip(M::of(&measures, &w)) {
+                for (component, value) in block.iter_mut().zip(M::of(&measures, &w)) {
                     component[lane] = value;
                 }
             }
-            store(&mut self.made, &found, first, count);
+            store(&mut self.computed, &block, first, count);
         }
         true
     }

@@ -48,7 +48,7 @@ impl<L: BodyLaw> BodySheet<L> {
         }
         let mut open = [1_u64; N];
         for _ in 0..MOST_STEPS {
-            let mut left = 0;
+            let mut unconverged = 0;
             for lane in 0..N {
                 let w = self.evaluated(area_change[lane], shapes[lane], root[lane]);
                 let step = w.b / w.bb.abs();
@@ -58,9 +58,9 @@ impl<L: BodyLaw> BodySheet<L> {
                 let next = root[lane] - (1.0 + root[lane]) * (step.clamp(-1.0, 1.0) / 3.0);
                 root[lane] = if open[lane] == 1 { next } else { root[lane] };
                 open[lane] &= u64::from(!last);
-                left |= open[lane];
+                unconverged |= open[lane];
             }
-            if left == 0 {
+            if unconverged == 0 {
                 return root;
             }
         }
@@ -218,7 +218,7 @@ mod tests {
             for frequency in [0.0, 0.3, 2.0, 9.0] {
                 let function = |x: f64| 0.1 + (frequency * x.ln_1p()).sin();
                 let seen = RefCell::new(Vec::new());
-                let found = rising(
+                let bracket = rising(
                     position,
                     |x| {
                         seen.borrow_mut().push(x);
@@ -230,7 +230,7 @@ mod tests {
                 let all =
                     pieces.filter(|[low, high]| function(*low) < 0.0 && function(*high) >= 0.0);
                 let off = |[low, high]: &[f64; 2]| (0.5 * (low + high) - number).abs();
-                assert_eq!(found, all.min_by(|a, b| off(a).total_cmp(&off(b))));
+                assert_eq!(bracket, all.min_by(|a, b| off(a).total_cmp(&off(b))));
                 let mut seen = seen.into_inner();
                 let looks = seen.len();
                 seen.sort_unstable_by(f64::total_cmp);

@@ -7,15 +7,15 @@ impl Card {
     /// The values that a fit finds, by its keys: parameters of the law, terms of the Prony series, softening.
     pub fn fitted_values(&self) -> Vec<(String, f64)> {
         let of_law = self.parameters.iter();
-        let of_law = of_law.map(|own| (own.key.to_owned(), own.value));
+        let of_law = of_law.map(|parameter| (parameter.key.to_owned(), parameter.value));
         let terms = (1..).zip(&self.viscosity.relaxation);
-        let terms = terms.flat_map(|(term, own)| {
-            let of_term = [("share", own.share), ("time", own.time)];
+        let terms = terms.flat_map(|(term, relaxation)| {
+            let of_term = [("share", relaxation.share), ("time", relaxation.time)];
             of_term.map(|(key, value)| (format!("relaxation.{term}.{key}"), value))
         });
         let softening = self.law.softening().into_iter();
-        let softening = softening.flat_map(|own| {
-            let keys = [("r", own.r), ("m", own.m), ("beta", own.beta)];
+        let softening = softening.flat_map(|ogden_roxburgh| {
+            let keys = [("r", ogden_roxburgh.r), ("m", ogden_roxburgh.m), ("beta", ogden_roxburgh.beta)];
             keys.map(|(key, value)| (format!("softening.{key}"), value))
         });
         of_law.chain(terms).chain(softening).collect()

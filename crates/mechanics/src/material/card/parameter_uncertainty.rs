@@ -101,9 +101,9 @@ mod tests {
             .map(|(key, list)| format!("{key} = {list}\n"));
         let text = Card::load("pva-10-yeoh", Path::new(".")).unwrap().text + &lines.concat();
         let read = |text: &str| Card::parse("own", "own.toml", text);
-        let found = read(&text).unwrap().fit.unwrap().uncertainty.unwrap();
-        assert_eq!(found.keys, recorded.keys);
-        assert!((found.covariance - recorded.covariance).amax() < 1e-5);
+        let restored = read(&text).unwrap().fit.unwrap().uncertainty.unwrap();
+        assert_eq!(restored.keys, recorded.keys);
+        assert!((restored.covariance - recorded.covariance).amax() < 1e-5);
         let short = text.replace("correlations = [0.5", "correlations = [");
         assert!(short != text && read(&short).is_err());
     }

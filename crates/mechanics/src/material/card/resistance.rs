@@ -45,13 +45,13 @@ impl Card {
             energy: energy.unwrap_or_default(),
             plane: PlaneState::Stress,
         };
-        let own = self.law.bulk_modulus().is_some();
+        let compressible = self.law.bulk_modulus().is_some();
         match Arc::clone(&self.law).with_volume(volume) {
             Some(law) => {
                 let isochoric = std::mem::replace(&mut self.law, law);
                 (self.isochoric, self.volume) = (Some(isochoric), Some(volume));
             }
-            None if own => section.fault(
+            None if compressible => section.fault(
                 bulk,
                 &format!("the law `{}` is compressible by itself", self.law_name),
                 "leave out `[volume]`: the law's parameters determine its change of volume",
@@ -95,9 +95,9 @@ impl Card {
         let [low, high] = self.stretch_range;
         let stretches = (0..=POINTS).map(|i| low + (high - low) * f64::from(i) / f64::from(POINTS));
         let changes = stretches.filter_map(|stretch| {
-            let [own, kept] = [&with_volume, isochoric]
+            let [changed, kept] = [&with_volume, isochoric]
                 .map(|law| Mode::Uniaxial.nominal_stress(&**law, stretch - 1.0));
-            let change = own / kept - 1.0;
+            let change = changed / kept - 1.0;
             change.is_finite().then_some([stretch, change])
         });
         changes.max_by(|a, b| a[1].abs().total_cmp(&b[1].abs()))

@@ -62,16 +62,16 @@ fn all_faults_of_a_card_are_told_at_once() {
     let Err(Error::Input(faults)) = Card::parse("x", "x.toml", &text) else {
         panic!("accepted")
     };
-    let told: Vec<_> = faults.iter().map(ToString::to_string).collect();
-    assert_eq!(told.len(), 3, "{told:#?}");
+    let messages: Vec<_> = faults.iter().map(ToString::to_string).collect();
+    assert_eq!(messages.len(), 3, "{messages:#?}");
     assert!(
-        told.iter().any(|line| line.contains("has no unit")),
-        "{told:#?}"
+        messages.iter().any(|line| line.contains("has no unit")),
+        "{messages:#?}"
     );
     assert!(
-        told.iter()
+        messages.iter()
             .any(|line| line.contains("did you mean `exponent`")),
-        "{told:#?}"
+        "{messages:#?}"
     );
 }
 
@@ -96,9 +96,9 @@ fn an_unknown_card_is_answered_with_the_nearest_name() {
 
 #[test]
 fn a_sheet_is_told_as_its_card_and_plane_state_make_it() {
-    let told = |law, parameters| samples::card(law, parameters).describe_sheet();
+    let description = |law, parameters| samples::card(law, parameters).describe_sheet();
     assert_eq!(
-        told("neo-hooke", "c10 = \"0.05 MPa\""),
+        description("neo-hooke", "c10 = \"0.05 MPa\""),
         "an incompressible material in plane stress"
     );
     let card = samples::card(
@@ -111,9 +111,9 @@ fn a_sheet_is_told_as_its_card_and_plane_state_make_it() {
         "a compressible material (bulk modulus κ = 0.2167 MPa) in plane strain"
     );
     let gel = "modulus = \"0.02 MPa\"\nchi = 0.45\npreparation_fraction = 0.1\nchains = \"affine\"";
-    assert!(told("flory-rehner", gel).starts_with("a gel "));
+    assert!(description("flory-rehner", gel).starts_with("a gel "));
     let softens = "c10 = \"0.05 MPa\"\n[softening]\nr = 2\nm = \"10 kPa\"\nbeta = 0.1\n";
-    assert!(told("neo-hooke", softens).ends_with("plane stress, with Mullins softening"));
+    assert!(description("neo-hooke", softens).ends_with("plane stress, with Mullins softening"));
 }
 
 /// A number in a hint would be that of another material.

@@ -156,10 +156,10 @@ fn meaning(code: Code, law: &str, name: &str) -> Result<Meaning, Error> {
     // `mu_1` and `C10` are `mu1` and `c10`.
     let plain = name.to_lowercase();
     let short = plain.replace('_', "");
-    let found = names
+    let matched = names
         .iter()
         .find(|(known, _)| *known == plain || *known == short);
-    found.map(|(_, meaning)| *meaning).ok_or_else(|| {
+    matched.map(|(_, meaning)| *meaning).ok_or_else(|| {
         let code = code.name();
         let all: Vec<&str> = names.iter().map(|(known, _)| *known).collect();
         let coupled = match (law, &*plain) {

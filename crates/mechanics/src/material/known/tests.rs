@@ -63,12 +63,12 @@ fn check_tangent(card: &Card, young: f64, ratio: f64) {
         ((1, 1), shear),
         ((1, 2), shear),
     ] {
-        let found = tangent[position];
+        let computed = tangent[position];
         let context = format!(
-            "{}, ν = {ratio}, {position:?}: {found} {expected}",
+            "{}, ν = {ratio}, {position:?}: {computed} {expected}",
             card.text
         );
-        assert!((found - expected).abs() < 1e-10 * young, "{context}");
+        assert!((computed - expected).abs() < 1e-10 * young, "{context}");
     }
 }
 
@@ -216,10 +216,10 @@ fn parameters_by_the_names_of_another_code_are_those_of_its_export() {
         };
         for (key, text) in &stated {
             let plain = |name: &str| name.to_lowercase();
-            let found = parameters.iter().find(|(own, _)| plain(own) == plain(key));
+            let value = parameters.iter().find(|(symbol, _)| plain(symbol) == plain(key));
             let number: f64 = text.split(' ').next().unwrap().parse().unwrap();
-            let (_, found) = found.unwrap_or_else(|| panic!("{name} {key}: {parameters:?}"));
-            assert!((found - number).abs() < 1e-15, "{name} {key}: {found}");
+            let (_, value) = value.unwrap_or_else(|| panic!("{name} {key}: {parameters:?}"));
+            assert!((value - number).abs() < 1e-15, "{name} {key}: {value}");
         }
     }
     let stated = parameters(&[("C10", "0.1 MPa"), ("D1", "0 1/MPa")]);
@@ -242,7 +242,7 @@ fn what_is_missing_or_contradicts_is_told_with_a_remedy() {
         known.parameters = parameters(stated);
         refused(&known)
     };
-    for (found, expected) in [
+    for (message, expected) in [
         (young("gent", &[]), "needs jm too"),
         (young("mooney-rivlin", &[]), "does not determine c10, c01"),
         (
@@ -260,7 +260,7 @@ fn what_is_missing_or_contradicts_is_told_with_a_remedy() {
         (young("marlow-table", &[]), "materials fit"),
         (refused(&law("gent")), "add --parameter jm=…"),
     ] {
-        assert!(found.contains(expected), "{expected}: {found}");
+        assert!(message.contains(expected), "{expected}: {message}");
     }
     let stated = parameters(&[("C10", "0.1 MPa"), ("D1", "0.4")]);
     let fault = law("neo-hooke")

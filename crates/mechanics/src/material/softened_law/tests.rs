@@ -61,10 +61,10 @@ fn the_usual_tests_unload_as_the_formula_of_ogden_and_roxburgh_says() {
                 let [energy, stress] = neo_hooke(c10, mode, stretch);
                 let x = (most - energy).max(0.0) / (softening.m + softening.beta * most);
                 let expected = stress * (1.0 - erf(x) / softening.r);
-                let found = mode.nominal_stress(&law, stretch - 1.0);
+                let computed = mode.nominal_stress(&law, stretch - 1.0);
                 assert!(
-                    (found / expected - 1.0).abs() < 1e-12,
-                    "{name} {stretch}: {found} {expected}"
+                    (computed / expected - 1.0).abs() < 1e-12,
+                    "{name} {stretch}: {computed} {expected}"
                 );
             }
         }
@@ -129,9 +129,9 @@ fn stress_and_tangent_are_derivatives_of_the_energy() {
                 },
                 largest_energy: energy / share,
             };
-            let own = law.response(&at(h));
+            let response = law.response(&at(h));
             let (_, alone) = law.stress(&at(h));
-            assert!((alone - own.first_piola_kirchhoff_stress).norm() < 1e-14 * alone.norm());
+            assert!((alone - response.first_piola_kirchhoff_stress).norm() < 1e-14 * alone.norm());
             for component in 0..4 {
                 let moved = |step: f64| {
                     let mut h = h;
@@ -145,14 +145,14 @@ fn stress_and_tangent_are_derivatives_of_the_energy() {
                 // Richardson's extrapolation of two steps.
                 let ((e1, p1), (e2, p2)) = (slope(2e-4), slope(1e-4));
                 let (by_energy, column) = ((4.0 * e2 - e1) / 3.0, (4.0 * p2 - p1) / 3.0);
-                let stress = own.first_piola_kirchhoff_stress;
+                let stress = response.first_piola_kirchhoff_stress;
                 let error = (by_energy - stress[component]).abs() / stress.norm();
                 assert!(error < 1e-7, "{virgin:?} {softening:?}: {error:.1e}");
-                let tangent = own.tangent.column(component);
-                let error = (column - tangent).norm() / own.tangent.norm();
+                let tangent = response.tangent.column(component);
+                let error = (column - tangent).norm() / response.tangent.norm();
                 assert!(error < 1e-7, "{virgin:?} {softening:?}: {error:.1e}");
             }
-            assert!((own.tangent - own.tangent.transpose()).norm() < 1e-12 * own.tangent.norm());
+            assert!((response.tangent - response.tangent.transpose()).norm() < 1e-12 * response.tangent.norm());
         }
     }
 }
@@ -200,13 +200,13 @@ fn a_card_says_how_its_material_softens() {
     assert_eq!(alone.unwrap().m, 0.0);
     let [first, soft] = [&plain, &card].map(|card| card.law.tension([1.0, 0.0], 0.3));
     assert_eq!(first, soft);
-    for (text, told) in [
+    for (text, message) in [
         ("r = 0.9\nm = \"1 kPa\"", "greater than 1"),
         ("r = 2\nm = \"0 kPa\"", "both be zero"),
         ("r = 2\nm = 0.1", "unit"),
         ("r = 2\nm = \"1 kPa\"\nbetta = 0.1", "did you mean `beta`"),
     ] {
         let fault = with(text).unwrap_err();
-        assert!(fault.contains(told), "{fault}");
+        assert!(fault.contains(message), "{fault}");
     }
 }

@@ -60,8 +60,8 @@ pub fn given_twice(mesh: &Mesh) -> Vec<[usize; 2]> {
     let mut twice = Vec::new();
     for cell in 0..mesh.cell_count() {
         let mut corners = [usize::MAX; 4];
-        let own = &mesh.cell(cell)[..mesh.shape(cell).corners()];
-        corners[..own.len()].copy_from_slice(own);
+        let nodes = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+        corners[..nodes.len()].copy_from_slice(nodes);
         corners.sort_unstable();
         let first = *known.entry(corners).or_insert(cell);
         if first != cell {
@@ -72,7 +72,7 @@ pub fn given_twice(mesh: &Mesh) -> Vec<[usize; 2]> {
 }
 
 /// The fault of cells given twice.
-pub fn twice_told(mesh: &Mesh, twice: &[[usize; 2]]) -> Option<Diagnostic> {
+pub fn duplicate_cells(mesh: &Mesh, twice: &[[usize; 2]]) -> Option<Diagnostic> {
     Finding::of(twice.iter().map(|[_, again]| mesh.centre(*again))).error(
         ["cell is given twice", "cells are given twice"],
         "write each cell once; in Gmsh a surface must belong to one physical group only, and must not be saved twice (Coherence)",

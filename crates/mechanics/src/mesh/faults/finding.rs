@@ -61,11 +61,11 @@ impl Finding {
     }
 
     pub fn of(positions: impl IntoIterator<Item = [f64; 2]>) -> Self {
-        let mut found = Self::default();
+        let mut finding = Self::default();
         positions
             .into_iter()
-            .for_each(|position| found.add(position));
-        found
+            .for_each(|position| finding.add(position));
+        finding
     }
 
     /// `3 cells have no area, near (1, 2), (2, 2) and (3, 2) mm`, as an error; `None` where nothing was found.
@@ -85,11 +85,11 @@ impl Finding {
             .iter()
             .map(|position| at(*position))
             .collect();
-        let beyond = match self.count - self.positions.len() {
+        let others = match self.count - self.positions.len() {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        format!("{} mm{beyond}", positions.join(", "))
+        format!("{} mm{others}", positions.join(", "))
     }
 }
 

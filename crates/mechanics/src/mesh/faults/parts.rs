@@ -31,9 +31,9 @@ pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
         return None;
     }
     parts.sort_by_key(|(cells, _)| std::cmp::Reverse(*cells));
-    let told =
+    let label =
         |(cells, position): &(usize, [f64; 2])| format!("{cells} cells near {} mm", at(*position));
-    let shown: Vec<String> = parts.iter().take(Finding::SHOWN).map(told).collect();
+    let shown: Vec<String> = parts.iter().take(Finding::SHOWN).map(label).collect();
     let more = match parts.len().saturating_sub(Finding::SHOWN) {
         0 => String::new(),
         more => format!(" and {more} more"),

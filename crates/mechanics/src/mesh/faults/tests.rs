@@ -22,16 +22,16 @@ fn mesh(nodes: Vec<[f64; 2]>, cells: Vec<Vec<usize>>) -> Mesh {
     Mesh::new(nodes, cells.into_iter().map(|nodes| (shape(&nodes), nodes)))
 }
 
-fn told(mesh: &Mesh, allowed: Exemptions) -> Vec<String> {
+fn messages_of(mesh: &Mesh, allowed: Exemptions) -> Vec<String> {
     let faults = mesh.faults(allowed).into_iter();
     faults.map(|fault| fault.message).collect()
 }
 
-fn assert_told(mesh: &Mesh, expected: &[&str]) {
-    let found = told(mesh, Exemptions::default());
-    assert_eq!(found.len(), expected.len(), "{found:?}");
-    for (found, expected) in found.iter().zip(expected) {
-        assert!(found.contains(expected), "{found}");
+fn assert_messages(mesh: &Mesh, expected: &[&str]) {
+    let messages = messages_of(mesh, Exemptions::default());
+    assert_eq!(messages.len(), expected.len(), "{messages:?}");
+    for (message, expected) in messages.iter().zip(expected) {
+        assert!(message.contains(expected), "{message}");
     }
 }
 
@@ -45,7 +45,7 @@ const ALL: Exemptions = Exemptions {
 #[test]
 fn sound_meshes_have_no_faults() {
     let (nodes, cells) = strip();
-    assert_told(&mesh(nodes, cells), &[]);
+    assert_messages(&mesh(nodes, cells), &[]);
     for shape in [
         Shape::StripWithHole {
             size: [30.0, 10.0],
@@ -62,10 +62,10 @@ fn sound_meshes_have_no_faults() {
         },
     ] {
         for (_, kind) in CellShape::NAMES {
-            assert_told(&shape.mesh(6, kind), &[]);
+            assert_messages(&shape.mesh(6, kind), &[]);
         }
     }
-    assert_told(&Mesh::plate([9.0, 3.0], [90, 30], CellShape::Quad9), &[]);
+    assert_messages(&Mesh::plate([9.0, 3.0], [90, 30], CellShape::Quad9), &[]);
 }
 
 #[test]
@@ -73,22 +73,22 @@ fn cells_without_area_or_inside_out_are_found() {
     let (mut nodes, cells) = strip();
     nodes[14] = [3.0, 0.5];
     let folded = mesh(nodes.clone(), cells.clone());
-    assert_told(
+    assert_messages(
         &folded,
         &["one cell is turned inside out, in part at least, near (3.25"],
     );
     let (nodes, mut cells) = strip();
     cells.push(vec![0, 1, 2]);
-    let found = told(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
+    let messages = messages_of(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
     assert!(
-        found[0].starts_with("one cell has no area, near (0, 1) mm"),
-        "{found:?}"
+        messages[0].starts_with("one cell has no area, near (0, 1) mm"),
+        "{messages:?}"
     );
     // Corners that do not follow each other.
     cells.pop();
     cells[7] = vec![10, 13, 11, 14];
-    let found = told(&mesh(nodes, cells), Exemptions::default());
-    assert!(found[0].contains("turned inside out"), "{found:?}");
+    let messages = messages_of(&mesh(nodes, cells), Exemptions::default());
+    assert!(messages[0].contains("turned inside out"), "{messages:?}");
 }
 
 #[test]
@@ -97,8 +97,8 @@ fn a_side_that_is_curved_too_far_turns_its_cell_inside_out() {
     let middles = |bend: f64| [[1.0, bend], [1.0, 1.0], [0.0, 1.0]];
     for (bend, faults) in [(0.4, 0), (-0.9, 0), (0.6, 1)] {
         let nodes = corners.into_iter().chain(middles(bend)).collect();
-        let found = told(&mesh(nodes, vec![(0..6).collect()]), ALL);
-        assert_eq!(found.len(), faults, "{bend}: {found:?}");
+        let messages = messages_of(&mesh(nodes, vec![(0..6).collect()]), ALL);
+        assert_eq!(messages.len(), faults, "{bend}: {messages:?}");
     }
 }
 
@@ -106,21 +106,21 @@ fn a_side_that_is_curved_too_far_turns_its_cell_inside_out() {
 fn cells_given_twice_and_cells_on_each_other_are_found() {
     let (nodes, mut cells) = strip();
     cells.push(vec![4, 1, 0, 3]);
-    assert_told(
+    assert_messages(
         &mesh(nodes.clone(), cells.clone()),
         &["one cell is given twice, near (0.5, 0.5) mm"],
     );
     cells.pop();
     cells.push(vec![9, 12, 10]);
-    assert_told(&mesh(nodes, cells), &["overlap: two on the same side"]);
+    assert_messages(&mesh(nodes, cells), &["overlap: two on the same side"]);
     // A part laid over another one, with nodes of its own.
     let (mut nodes, mut cells) = strip();
     nodes.extend([[1.2, 0.3], [1.9, 0.3], [1.9, 0.9]]);
     cells.push(vec![15, 16, 17]);
-    let found = told(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
-    assert!(found[0].contains("2 parts are not attached"), "{found:?}");
-    let found = told(&mesh(nodes, cells), ALL);
-    assert!(found[0].contains("covered by two cells"), "{found:?}");
+    let messages = messages_of(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
+    assert!(messages[0].contains("2 parts are not attached"), "{messages:?}");
+    let messages = messages_of(&mesh(nodes, cells), ALL);
+    assert!(messages[0].contains("covered by two cells"), "{messages:?}");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn hanging_nodes_are_found_on_straight_and_curved_sides() {
     nodes.extend([[3.0, 0.5], [4.0, 0.5]]);
     cells[6] = vec![9, 12, 16, 15];
     cells.push(vec![15, 16, 13, 10]);
-    assert_told(
+    assert_messages(
         &mesh(nodes, cells),
         &["one node hangs on a cell's side without being its node, near (3, 0.5) mm"],
     );
@@ -144,11 +144,11 @@ fn hanging_nodes_are_found_on_straight_and_curved_sides() {
         [0.0, 1.0],
         [2.0, 2.0],
     ];
-    let found = told(
+    let messages = messages_of(
         &mesh(nodes, vec![(0..6).collect(), vec![1, 6, 4], vec![4, 6, 2]]),
         Exemptions::default(),
     );
-    assert!(found[0].contains("one node hangs"), "{found:?}");
+    assert!(messages[0].contains("one node hangs"), "{messages:?}");
 }
 
 #[test]
@@ -156,22 +156,22 @@ fn seams_of_doubled_nodes_are_found_unless_they_are_allowed() {
     let (mut nodes, mut cells) = strip();
     // The right half gets nodes of its own at X = 2, but for the one in the middle.
     nodes.extend([[2.0, 0.0], [2.0, 2.0]]);
-    let own = |node: &usize| match node {
+    let twin = |node: &usize| match node {
         6 => 15,
         8 => 16,
         other => *other,
     };
     for cell in &mut cells[4..] {
-        *cell = cell.iter().map(own).collect();
+        *cell = cell.iter().map(twin).collect();
     }
     let split = mesh(nodes, cells);
-    assert_told(&split, &["2 sides lie on another cell's"]);
+    assert_messages(&split, &["2 sides lie on another cell's"]);
     let seams = Exemptions {
         seams: true,
         hinges: true,
         ..Exemptions::default()
     };
-    assert_eq!(told(&split, seams), Vec::<String>::new());
+    assert_eq!(messages_of(&split, seams), Vec::<String>::new());
 }
 
 #[test]
@@ -189,12 +189,12 @@ fn banks_of_a_slit_need_not_have_nodes_at_the_same_places() {
         [0.0, 2.0],
     ];
     let cells = |end: usize| vec![vec![0, 1, 2, 3], vec![3, 4, 7, 8], vec![4, end, 6, 7]];
-    let found = told(&mesh(nodes.clone(), cells(2)), ALL);
-    assert!(found[0].contains("one node hangs"), "{found:?}");
+    let messages = messages_of(&mesh(nodes.clone(), cells(2)), ALL);
+    assert!(messages[0].contains("one node hangs"), "{messages:?}");
     let mut apart = nodes;
     apart.push([0.0, 1.0]);
     let cells = vec![vec![0, 1, 2, 3], vec![9, 4, 7, 8], vec![4, 5, 6, 7]];
-    assert_eq!(told(&mesh(apart, cells), ALL), Vec::<String>::new());
+    assert_eq!(messages_of(&mesh(apart, cells), ALL), Vec::<String>::new());
 }
 
 #[test]
@@ -202,14 +202,14 @@ fn unattached_parts_and_hinges_are_found() {
     let (mut nodes, mut cells) = strip();
     nodes.extend([[6.0, 0.0], [7.0, 0.0], [7.0, 1.0]]);
     cells.push(vec![15, 16, 17]);
-    assert_told(
+    assert_messages(
         &mesh(nodes, cells),
         &["2 parts are not attached to each other: 8 cells near (0.5, 0.5) mm, 1 cells near"],
     );
     let (mut nodes, mut cells) = strip();
     nodes.extend([[5.0, 2.0], [5.0, 3.0]]);
     cells.push(vec![14, 15, 16]);
-    assert_told(
+    assert_messages(
         &mesh(nodes, cells),
         &["one node alone joins cells on both sides of it: a hinge, near (4, 2) mm"],
     );
@@ -218,12 +218,12 @@ fn unattached_parts_and_hinges_are_found() {
 #[test]
 fn bad_shapes_are_warnings() {
     let nodes = vec![[0.0, 0.0], [1.0, 0.0], [0.5, 0.02]];
-    let found = mesh(nodes, vec![vec![0, 1, 2]]).faults(Exemptions::default());
-    assert_eq!(found.len(), 1);
-    assert_eq!(found[0].severity, crate::error::Severity::Warning);
+    let faults = mesh(nodes, vec![vec![0, 1, 2]]).faults(Exemptions::default());
+    assert_eq!(faults.len(), 1);
+    assert_eq!(faults[0].severity, crate::error::Severity::Warning);
     assert!(
-        found[0].message.contains("bad shape"),
+        faults[0].message.contains("bad shape"),
         "{}",
-        found[0].message
+        faults[0].message
     );
 }

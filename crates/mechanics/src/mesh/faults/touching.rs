@@ -35,12 +35,12 @@ pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
     // A node that hangs on both sides of a seam, or on a side whose own node is at its place, is doubled.
     let doubled: BTreeSet<usize> = doubled.into_iter().flatten().collect();
     let hanging: BTreeSet<usize> = hanging.into_iter().map(|(node, _)| node).collect();
-    let mut found = Vec::new();
+    let mut diagnostics = Vec::new();
     if !allowed.seams {
-        found.extend(seam.or_else(|| boundary.doubled_alone(&doubled)));
+        diagnostics.extend(seam.or_else(|| boundary.doubled_alone(&doubled)));
     }
     let positions = hanging.iter().map(|node| sides.mesh.nodes[*node]);
-    found.extend(Finding::of(positions).error(
+    diagnostics.extend(Finding::of(positions).error(
         [
             "node hangs on a cell's side without being its node",
             "nodes hang on a cell's side without being its nodes",
@@ -48,7 +48,7 @@ pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
         "cells must meet side to side: divide the larger cell through the node, or join the parts before meshing \
          (BooleanFragments or Coherence in Gmsh)",
     ));
-    found
+    diagnostics
 }
 
 /// The part of the boundary at a node.
@@ -85,8 +85,8 @@ impl<'a> Boundary<'a> {
         let boxes = boundary.all.iter().map(|side| boundary.around(*side));
         let boxes: Vec<_> = boxes.collect();
         if !boxes.is_empty() {
-            let whole = bounding_box(boxes.iter().flatten().copied());
-            boundary.buckets = Buckets::new(whole, boxes);
+            let extent = bounding_box(boxes.iter().flatten().copied());
+            boundary.buckets = Buckets::new(extent, boxes);
         }
         boundary
     }
@@ -129,14 +129,14 @@ impl<'a> Boundary<'a> {
             .iter()
             .map(|side| self.all[*side]);
         let touch = |side: Side| {
-            let own: Vec<usize> = side.ends().into_iter().chain(side.middle).collect();
-            if own.contains(&node) {
+            let nodes: Vec<usize> = side.ends().into_iter().chain(side.middle).collect();
+            if nodes.contains(&node) {
                 return None;
             }
             let near = NEAR * self.length(side).min(self.shortest[&node]);
             let is_near =
                 |other: [f64; 2]| (other[0] - position[0]).hypot(other[1] - position[1]) <= near;
-            if let Some(other) = own.into_iter().find(|other| is_near(self.node(*other))) {
+            if let Some(other) = nodes.into_iter().find(|other| is_near(self.node(*other))) {
                 return Some((side, Contact::Node(other)));
             }
             let foot = self.foot(side, position)?;
@@ -179,8 +179,8 @@ impl<'a> Boundary<'a> {
     fn is_neighbour(&self, node: usize, side: Side) -> bool {
         let ends = side.ends();
         let leads = |other: &Side| {
-            let own = other.ends();
-            own.contains(&node) && own.iter().any(|end| ends.contains(end))
+            let other_ends = other.ends();
+            other_ends.contains(&node) && other_ends.iter().any(|end| ends.contains(end))
         };
         side.middle == Some(node) || self.all.iter().any(leads)
     }
@@ -227,16 +227,16 @@ const SEAM: &str = "join them with merge_nodes = \"1e-6 mm\" in [specimen] (--me
 pub fn overlaps(mesh: &Mesh) -> Option<Diagnostic> {
     let corners = (0..mesh.nodes.len()).map(|node| mesh.nodes[node]);
     let centres = (0..mesh.cell_count()).map(|cell| mesh.position(cell, mesh.shape(cell).centre()));
-    let mut found = Finding::default();
+    let mut covered = Finding::default();
     for (index, position) in corners.chain(centres).enumerate() {
-        let own = index.checked_sub(mesh.nodes.len());
+        let centre_cell = index.checked_sub(mesh.nodes.len());
         if mesh.holds_inside(position, INSIDE, |cell| {
-            own == Some(cell) || (own.is_none() && mesh.cell(cell).contains(&index))
+            centre_cell == Some(cell) || (centre_cell.is_none() && mesh.cell(cell).contains(&index))
         }) {
-            found.add(position);
+            covered.add(position);
         }
     }
-    found.error(
+    covered.error(
         [
             "place is covered by two cells, which overlap",
             "places are covered by two cells, which overlap",

@@ -44,7 +44,7 @@ pub fn read(text: &str) -> Result<Raw, Unreadable> {
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with("**"));
     while let Some((number, line)) = lines.next() {
         let read = if line.trim_start().starts_with('*') {
-            keyword(line).map(|found| block = found)
+            keyword(line).map(|next_block| block = next_block)
         } else {
             let mut data = line.trim().to_owned();
             // An element continues below a comma at the end of a line.
@@ -176,7 +176,7 @@ impl Input {
                 fields.len()
             ));
         };
-        let number = whole(number)?;
+        let number = integer(number)?;
         let z = rest.first().copied().unwrap_or("0");
         let position = [coordinate(x)?, coordinate(y)?, coordinate(z)?];
         if self.raw.positions.insert(number, position).is_some() {
@@ -198,7 +198,7 @@ impl Input {
     ) -> Result<(), String> {
         let numbers = fields
             .iter()
-            .map(|field| whole(field))
+            .map(|field| integer(field))
             .collect::<Result<Vec<u64>, _>>()?;
         let [number, nodes @ ..] = &numbers[..] else {
             return Err("an element without its number".to_owned());
@@ -254,13 +254,13 @@ fn members(fields: &[&str], is_range: bool) -> Result<Vec<Member>, String> {
     const LONGEST: u64 = 10_000_000;
     if !is_range {
         let member = |field: &&str| {
-            whole(field).map_or_else(|_| Member::Set((*field).to_owned()), Member::Number)
+            integer(field).map_or_else(|_| Member::Set((*field).to_owned()), Member::Number)
         };
         return Ok(fields.iter().map(member).collect());
     }
     let numbers = fields
         .iter()
-        .map(|field| whole(field))
+        .map(|field| integer(field))
         .collect::<Result<Vec<u64>, _>>()?;
     let (first, last, step) = match numbers[..] {
         [first, last] => (first, last, 1),
@@ -299,7 +299,7 @@ fn resolved(sets: &[(String, Vec<Member>)]) -> Result<Vec<(String, Vec<u64>)>, U
     Ok(all)
 }
 
-fn whole(field: &str) -> Result<u64, String> {
+fn integer(field: &str) -> Result<u64, String> {
     field
         .parse()
         .map_err(|_| format!("\"{field}\" where a whole number should be"))
@@ -358,8 +358,8 @@ mod tests {
             ("*NSET, NSET=a\nb\n", "neither a number nor a set"),
             ("*INCLUDE, INPUT=mesh.inp\n", "*INCLUDE names another file"),
         ] {
-            let told = read(text).err().unwrap().to_string();
-            assert!(told.contains(reason), "{told}");
+            let error = read(text).err().unwrap().to_string();
+            assert!(error.contains(reason), "{error}");
         }
     }
 }

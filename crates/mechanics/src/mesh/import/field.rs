@@ -165,7 +165,7 @@ fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSe
 
 /// The files of a collection as the steps of one series; they must have one mesh.
 fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, Unreadable> {
-    let mut whole: Option<ImportedSeries> = None;
+    let mut combined: Option<ImportedSeries> = None;
     for (time, file) in pvd::read(&read_text(path)?)? {
         let name = file.clone();
         let file = path.parent().unwrap_or(Path::new("")).join(file);
@@ -180,9 +180,9 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
         for step in &mut part.steps {
             step.time = Some(time);
         }
-        match &mut whole {
-            None => whole = Some(part),
-            Some(whole) if whole.mesh.nodes == part.mesh.nodes => whole.steps.extend(part.steps),
+        match &mut combined {
+            None => combined = Some(part),
+            Some(combined) if combined.mesh.nodes == part.mesh.nodes => combined.steps.extend(part.steps),
             Some(_) => {
                 return Err(
                     format!("names {name}, which has another mesh than the first file").into(),
@@ -190,7 +190,7 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
             }
         }
     }
-    whole.ok_or_else(|| "names no files".into())
+    combined.ok_or_else(|| "names no files".into())
 }
 
 fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSeries, Unreadable> {
@@ -200,8 +200,8 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
         let (mut displacement, mut hole) = (Vec::new(), None);
         for node in &used {
             let values = field.get(node).copied();
-            let whole = values.filter(|values| values.iter().all(|value| value.is_finite()));
-            if whole.is_none() {
+            let finite = values.filter(|values| values.iter().all(|value| value.is_finite()));
+            if finite.is_none() {
                 hole.get_or_insert(match values {
                     None => format!("has no displacement of the node {node}"),
                     Some(_) => {
@@ -209,7 +209,7 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
                     }
                 });
             }
-            displacement.extend(whole.map_or([f64::NAN; 2], |u| u.map(|u| unit_of_values * u)));
+            displacement.extend(finite.map_or([f64::NAN; 2], |u| u.map(|u| unit_of_values * u)));
         }
         ImportedStep {
             time: *time,
@@ -242,7 +242,7 @@ fn choose<T>(
         let plain = name.to_lowercase();
         plain == "u" || plain.starts_with("disp") || plain.starts_with("u_")
     };
-    let found = match wanted {
+    let chosen = match wanted {
         Some(wanted) => names.iter().position(|name| name == wanted),
         None if names.len() == 1 => Some(0),
         None => {
@@ -253,7 +253,7 @@ fn choose<T>(
                 .map(|[position]| position)
         }
     };
-    let position = found.ok_or_else(|| {
+    let position = chosen.ok_or_else(|| {
         let what = wanted.map_or("array that is surely the displacement".to_owned(), |name| {
             format!("array `{name}` of vectors")
         });

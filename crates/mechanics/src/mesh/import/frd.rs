@@ -128,11 +128,11 @@ impl Reader {
                 self.element = Some((kind.parse().map_err(|_| fault("kind"))?, Vec::new()));
             }
             (Block::Elements, ["-2", ..]) => {
-                let (_, own) = self.element.as_mut().ok_or_else(|| fault("element"))?;
+                let (_, nodes) = self.element.as_mut().ok_or_else(|| fault("element"))?;
                 let fields = line.as_bytes().get(3..).unwrap_or_default();
                 for field in fields.chunks(self.width) {
                     let field = std::str::from_utf8(field).unwrap_or_default().trim();
-                    own.push(field.parse().map_err(|_| fault("number of a node"))?);
+                    nodes.push(field.parse().map_err(|_| fault("number of a node"))?);
                 }
             }
             _ => {}
@@ -194,11 +194,11 @@ fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Unrea
         .into());
     }
     // The middles of the lower face follow the corners of both faces.
-    let (corners, own) = (shape.corners(), shape.nodes());
-    let solid = *count > own;
+    let (corners, shape_nodes) = (shape.corners(), shape.nodes());
+    let solid = *count > shape_nodes;
     let mut cell = nodes[..corners].to_vec();
     let middles = if solid { 2 * corners } else { corners };
-    cell.extend(&nodes[middles..middles + own - corners]);
+    cell.extend(&nodes[middles..middles + shape_nodes - corners]);
     raw.cells.push((*shape, cell));
     Ok(solid)
 }

@@ -65,7 +65,7 @@ fn numbers(nodes: &[usize]) -> Vec<u64> {
 
 fn by_name<T, U>(groups: &BTreeMap<String, T>, of: impl Fn(&T) -> U) -> BTreeMap<String, U> {
     let groups = groups.iter();
-    groups.map(|(name, own)| (name.clone(), of(own))).collect()
+    groups.map(|(name, group)| (name.clone(), of(group))).collect()
 }
 
 #[cfg(test)]
@@ -86,8 +86,8 @@ mod tests {
         let mut data = square();
         data.nodes.insert("base".into(), vec![0, 1, 2]);
         data.lines.insert("side".into(), vec![[3, 2]]);
-        let (mesh, told) = data.read(MeshReading::in_unit(10.0)).unwrap();
-        assert!(told.is_empty(), "{told:?}");
+        let (mesh, warnings) = data.read(MeshReading::in_unit(10.0)).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
         assert_eq!(mesh.nodes[2], [10.0, 10.0]);
         assert_eq!(mesh.groups()["base"].edges, mesh.groups()["bottom"].edges);
         assert_eq!(mesh.groups()["side"].edges, mesh.groups()["right"].edges);
@@ -97,10 +97,10 @@ mod tests {
     fn groups_without_nodes_and_cells_of_a_wrong_size_are_told() {
         let mut data = square();
         data.nodes.insert("nothing".into(), vec![0]);
-        let told = data.read(MeshReading::in_unit(1.0)).unwrap_err();
-        assert!(told[0].message.contains("`nothing`"), "{told:?}");
+        let faults = data.read(MeshReading::in_unit(1.0)).unwrap_err();
+        assert!(faults[0].message.contains("`nothing`"), "{faults:?}");
         data.cells[0].1.pop();
-        let told = data.read(MeshReading::in_unit(1.0)).unwrap_err();
-        assert!(told[0].message.contains("the cell 0"), "{told:?}");
+        let faults = data.read(MeshReading::in_unit(1.0)).unwrap_err();
+        assert!(faults[0].message.contains("the cell 0"), "{faults:?}");
     }
 }

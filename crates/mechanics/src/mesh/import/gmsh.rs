@@ -58,13 +58,13 @@ fn view_step(words: &mut Words) -> Result<Option<Step>, Unreadable> {
         .map(|_| words.next())
         .collect::<Result<_, _>>()?;
     let count: usize = words.next()?;
-    let whole = words.list(count)?;
-    let [_, components, nodes, ..] = whole[..] else {
+    let integers = words.list(count)?;
+    let [_, components, nodes, ..] = integers[..] else {
         return Err("has a $NodeData without its number of components and nodes".into());
     };
     let mut values = Displacements::new();
     for _ in 0..nodes {
-        let node = words.whole()?;
+        let node = words.integer()?;
         let vector: Vec<f64> = (0..components)
             .map(|_| words.next())
             .collect::<Result<_, _>>()?;
@@ -99,7 +99,7 @@ impl Words<'_> {
     }
 
     /// A whole number; some programs write it with a decimal point.
-    fn whole(&mut self) -> Result<u64, Unreadable> {
+    fn integer(&mut self) -> Result<u64, Unreadable> {
         let number: f64 = self.next()?;
         if number < 0.0 || number.fract() != 0.0 {
             return Err(format!(
@@ -112,7 +112,7 @@ impl Words<'_> {
     }
 
     fn list(&mut self, count: usize) -> Result<Vec<u64>, Unreadable> {
-        (0..count).map(|_| self.whole()).collect()
+        (0..count).map(|_| self.integer()).collect()
     }
 }
 
@@ -220,7 +220,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     let mut raw = Raw::default();
     let mut words = section(text, "Nodes")?;
     for _ in 0..words.next::<usize>()? {
-        let tag = words.whole()?;
+        let tag = words.integer()?;
         raw.positions
             .insert(tag, [words.next()?, words.next()?, words.next()?]);
     }
@@ -229,7 +229,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
         words.skip(1)?;
         let (kind, count) = kind(words.next()?)?;
         let tags: usize = words.next()?;
-        let physical = if tags > 0 { words.whole()? as i64 } else { 0 };
+        let physical = if tags > 0 { words.integer()? as i64 } else { 0 };
         words.skip(tags.saturating_sub(1))?;
         let nodes = words.list(count)?;
         let dimension = match kind {
@@ -272,11 +272,11 @@ fn version_4(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     for _ in 0..blocks {
         let entity: (i64, i64) = (words.next()?, words.next()?);
         let (kind, nodes) = kind(words.next()?)?;
-        let own = groups.get(&entity).map_or(&[][..], |groups| &groups[..]);
+        let entity_groups = groups.get(&entity).map_or(&[][..], |groups| &groups[..]);
         for _ in 0..words.next::<usize>()? {
             words.skip(1)?;
             let nodes = words.list(nodes)?;
-            raw.add(&kind, nodes, own);
+            raw.add(&kind, nodes, entity_groups);
         }
     }
     Ok(raw)
@@ -296,15 +296,15 @@ fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>
             let tag: i64 = words.next()?;
             // A point's place, or the box of a curve or a surface.
             words.skip(if dimension == 0 { 3 } else { 6 })?;
-            let mut own = Vec::new();
+            let mut entity_groups = Vec::new();
             for _ in 0..words.next::<usize>()? {
-                own.push(group(names, dimension, words.next()?));
+                entity_groups.push(group(names, dimension, words.next()?));
             }
             if dimension > 0 {
                 let bounding: usize = words.next()?;
                 words.skip(bounding)?;
             }
-            groups.insert((dimension, tag), own);
+            groups.insert((dimension, tag), entity_groups);
         }
     }
     Ok(groups)

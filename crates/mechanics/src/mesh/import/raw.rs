@@ -116,9 +116,9 @@ impl Raw {
         let cells: Vec<_> = self
             .cells
             .iter()
-            .map(|(shape, own)| {
-                let own: Vec<usize> = own.iter().map(|name| names[name]).collect();
-                (*shape, counter_clockwise(*shape, own, &nodes))
+            .map(|(shape, cell)| {
+                let cell: Vec<usize> = cell.iter().map(|name| names[name]).collect();
+                (*shape, counter_clockwise(*shape, cell, &nodes))
             })
             .collect();
         let mut mesh = Mesh::new(nodes, cells);
@@ -180,13 +180,13 @@ impl Raw {
                 .iter()
                 .filter_map(|[a, b]| Some([*names.get(a)?, *names.get(b)?]));
             let ends: BTreeSet<[usize; 2]> = ends.map(|[a, b]| key(a, b)).collect();
-            let own = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
+            let on_lines = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
                 let named = |side: &&Vec<usize>| ends.contains(&key(side[0], side[1]));
                 sides.iter().filter(named).cloned().collect()
             };
             let group = Group {
-                edges: own(mesh.boundary()),
-                lines: own(&inner),
+                edges: on_lines(mesh.boundary()),
+                lines: on_lines(&inner),
                 ..Group::default()
             };
             if !(group.edges.is_empty() && group.lines.is_empty()) {
@@ -216,8 +216,8 @@ impl Raw {
             let has_more = self.lines.contains_key(name)
                 || self.points.contains_key(name)
                 || self.sets.contains_key(name);
-            let own = mesh.groups().get(name).filter(|_| has_more);
-            let mut group = own.cloned().unwrap_or_default();
+            let existing = mesh.groups().get(name).filter(|_| has_more);
+            let mut group = existing.cloned().unwrap_or_default();
             group.cells.extend(cells);
             group.cells.sort_unstable();
             group.cells.dedup();

@@ -36,7 +36,7 @@ fn longer_side([low, high]: [[f64; 2]; 2]) -> f64 {
 pub fn doubtful_sides(mesh: &Mesh, is_named: impl Fn(&str) -> bool) -> Vec<Diagnostic> {
     let bounds = mesh.bounding_box();
     let doubtful = |(name, axis, end): (&str, usize, usize)| {
-        let own = mesh.groups()[name].edges.len();
+        let named = mesh.groups()[name].edges.len();
         let (value, size) = (bounds[end][axis], longer_side(bounds));
         let away = |edge: &Vec<usize>| {
             let distances = edge
@@ -46,12 +46,12 @@ pub fn doubtful_sides(mesh: &Mesh, is_named: impl Fn(&str) -> bool) -> Vec<Diagn
         };
         let close = mesh.boundary().iter().map(away);
         let close: Vec<f64> = close.filter(|away| *away <= DOUBTFUL * size).collect();
-        if own == 0 || close.len() == own || is_named(name) {
+        if named == 0 || close.len() == named || is_named(name) {
             return None;
         }
         let most = close.iter().copied().fold(0.0, f64::max);
         let message = format!(
-            "the side `{name}` has {own} of the {} edges that lie within {most:.1e} mm of the mesh's box",
+            "the side `{name}` has {named} of the {} edges that lie within {most:.1e} mm of the mesh's box",
             close.len()
         );
         let hint = "name the edges in the file as a group of their own, or save the nodes with more digits";
@@ -85,11 +85,11 @@ mod tests {
         }
         assert!(doubtful_sides(&rounded, |_| false).is_empty());
         let rough = strip(1.2e-5);
-        let told = doubtful_sides(&rough, |_| false);
+        let warnings = doubtful_sides(&rough, |_| false);
         assert!(
-            told.iter()
+            warnings.iter()
                 .any(|one| one.message.contains("edges that lie within")),
-            "{told:?}"
+            "{warnings:?}"
         );
         assert!(doubtful_sides(&rough, |_| true).is_empty());
     }

@@ -18,7 +18,7 @@ fn read(name: &str, text: &str) -> Result<Mesh, String> {
     let (_folder, path) = with(name, text);
     match import(&path, MeshReading::in_unit(10.0)) {
         Ok((mesh, _)) => Ok(mesh),
-        Err(told) => Err(told.iter().map(ToString::to_string).collect()),
+        Err(faults) => Err(faults.iter().map(ToString::to_string).collect()),
     }
 }
 
@@ -147,8 +147,8 @@ fn what_cannot_be_read_is_refused_by_name() {
             "ends within $Nodes",
         ),
     ] {
-        let found = read("a.msh", &text).unwrap_err();
-        assert!(found.contains(reason), "{found}");
+        let error = read("a.msh", &text).unwrap_err();
+        assert!(error.contains(reason), "{error}");
     }
     assert!(read("a.stl", "").unwrap_err().contains("is not a .msh"));
     assert!(
@@ -185,17 +185,17 @@ fn views_of_gmsh_are_fields_with_their_times() {
         let second = &series.steps[1];
         assert_eq!(second.displacement[2..4], [2.0, 0.0]);
         assert!(second.displacement[4..].iter().all(|u| u.is_nan()));
-        let told = import_field(&path, 1.0, None, 1.0).unwrap_err().to_string();
+        let error = import_field(&path, 1.0, None, 1.0).unwrap_err().to_string();
         assert!(
-            told.contains("of the node 3 that is not a number"),
-            "{told}"
+            error.contains("of the node 3 that is not a number"),
+            "{error}"
         );
         let chosen = import_field(&path, 1.0, None, 0.5).unwrap();
         assert_eq!(chosen.displacement, *first);
     }
     let (_folder, path) = with("a.msh", VERSION_2);
-    let told = import_series(&path, 1.0, None).unwrap_err().to_string();
-    assert!(told.contains("no vectors"), "{told}");
+    let error = import_series(&path, 1.0, None).unwrap_err().to_string();
+    assert!(error.contains("no vectors"), "{error}");
 }
 
 #[test]
@@ -220,11 +220,11 @@ fn collections_name_their_files_and_times() {
         format!("{VERSION_2}$NodeData{view}"),
     )
     .unwrap();
-    let found = of(&list(
+    let series = of(&list(
         &(step(1.0, "a&amp;b.msh") + &step(2.5, "a&amp;b.msh")),
     ))
     .unwrap();
-    let times: Vec<_> = found.steps.iter().map(|step| step.time).collect();
+    let times: Vec<_> = series.steps.iter().map(|step| step.time).collect();
     assert_eq!(times, [Some(1.0), Some(2.5)]);
     for (text, reason) in [
         (list(""), "names no files"),
@@ -238,8 +238,8 @@ fn collections_name_their_files_and_times() {
         ),
         (list(&step(1.0, "all.pvd")), "as one of its files"),
     ] {
-        let told = of(&text).unwrap_err();
-        assert!(told.to_string().contains(reason), "{told}");
+        let error = of(&text).unwrap_err();
+        assert!(error.to_string().contains(reason), "{error}");
     }
 }
 
@@ -270,7 +270,7 @@ fn groups_of_cells_and_of_lines_on_the_sheet_are_kept_as_nodes() {
          $Nodes\n16\n{nodes}$EndNodes\n$Elements\n{count}\n{elements}$EndElements\n"
     );
     let (_folder, path) = with("a.msh", &text);
-    let (mesh, told) = import(&path, MeshReading::in_unit(1.0)).unwrap();
+    let (mesh, warnings) = import(&path, MeshReading::in_unit(1.0)).unwrap();
     for name in ["ring", "pad"] {
         let group = &mesh.groups()[name];
         assert_eq!(group.nodes, [5, 6, 9, 10], "{name}");
@@ -280,8 +280,8 @@ fn groups_of_cells_and_of_lines_on_the_sheet_are_kept_as_nodes() {
     assert_eq!(mesh.groups()["pad"].cells.len(), 1);
     assert_eq!(mesh.groups()["sheet"].nodes.len(), 16);
     assert!(
-        told[0].to_string().contains("supports act on them"),
-        "{told:?}"
+        warnings[0].to_string().contains("supports act on them"),
+        "{warnings:?}"
     );
     let finer = mesh.refined();
     assert_eq!(finer.groups()["pad"].nodes.len(), 9);
@@ -296,6 +296,6 @@ fn groups_of_cells_and_of_lines_on_the_sheet_are_kept_as_nodes() {
     let ring = &both.groups()["ring"];
     assert_eq!([ring.lines.len(), ring.cells.len()], [4, 1]);
     // What holds all cells says nothing.
-    let whole = read("a.msh", &text.replace("3 2 8 1", "3 2 9 1")).unwrap();
-    assert!(!whole.groups().contains_key("sheet"));
+    let merged = read("a.msh", &text.replace("3 2 8 1", "3 2 9 1")).unwrap();
+    assert!(!merged.groups().contains_key("sheet"));
 }

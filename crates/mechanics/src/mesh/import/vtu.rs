@@ -143,8 +143,8 @@ impl Layout {
             }
             "Piece" => self.piece = Some(attributes(tag)?),
             "AppendedData" => {
-                let found = attributes(tag)?;
-                self.appended_encoding = found.get("encoding").cloned().unwrap_or_default();
+                let fields = attributes(tag)?;
+                self.appended_encoding = fields.get("encoding").cloned().unwrap_or_default();
             }
             "Points" | "Cells" | "PointData" | "CellData" | "FieldData" => name.clone_into(part),
             _ => {}
@@ -249,9 +249,9 @@ impl<'a> XmlFile<'a> {
 
     /// The array of a name in a part, or its only one.
     fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, Unreadable> {
-        let mut own = self.layout.arrays.iter().filter(|(of, _)| of == part);
-        let found = own.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
-        let (_, array) = found.ok_or_else(|| {
+        let mut arrays = self.layout.arrays.iter().filter(|(of, _)| of == part);
+        let matching = arrays.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
+        let (_, array) = matching.ok_or_else(|| {
             let name = name.map_or(String::new(), |name| format!("`{name}` "));
             format!("has no array {name}of {part}")
         })?;
@@ -260,8 +260,8 @@ impl<'a> XmlFile<'a> {
 
     /// The arrays of a part that hold numbers, with the names of their own.
     fn arrays(&self, part: &str, tuples: usize) -> Result<Vec<(String, Vec<f64>)>, Unreadable> {
-        let own = self.layout.arrays.iter().filter(|(of, _)| of == part);
-        let numbers = own.filter(|(_, array)| width(array.attribute("type")).is_some());
+        let of_part = self.layout.arrays.iter().filter(|(of, _)| of == part);
+        let numbers = of_part.filter(|(_, array)| width(array.attribute("type")).is_some());
         let decode = |(_, array): &(String, DataArray)| {
             let components = array.components()?;
             // A tensor of a symmetric kind has six, a whole one nine.

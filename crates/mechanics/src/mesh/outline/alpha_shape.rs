@@ -27,10 +27,10 @@ pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), Outlin
     let spacing = median_edge(points, &triangles);
     let small = |triangle: &[usize; 3]| radius(points, triangle) < wider * RADIUS * spacing;
     let mut inside: Vec<bool> = triangles.iter().map(small).collect();
-    let beyond = neighbours(&triangles);
-    mend_touching(&triangles, &beyond, &mut inside);
-    largest_part(points, &triangles, &beyond, &mut inside)?;
-    let boundary = boundary_edges(&triangles, &beyond, &inside);
+    let adjacent = neighbours(&triangles);
+    mend_touching(&triangles, &adjacent, &mut inside);
+    largest_part(points, &triangles, &adjacent, &mut inside)?;
+    let boundary = boundary_edges(&triangles, &adjacent, &inside);
     let lines = boundary_lines(boundary).into_iter();
     let positions = lines.map(|line| line.iter().map(|point| points[*point]).collect());
     Ok((positions.collect(), spacing))
@@ -68,36 +68,36 @@ fn neighbours(triangles: &[[usize; 3]]) -> Neighbours {
         });
     let mut sides: Vec<_> = sides.collect();
     sides.sort_unstable();
-    let mut beyond = vec![[None; 3]; triangles.len()];
+    let mut adjacent = vec![[None; 3]; triangles.len()];
     for pair in sides.windows(2) {
         let [(edge, one, of_one), (same, other, of_other)] = [pair[0], pair[1]];
         if edge == same {
-            beyond[one][of_one] = Some(other);
-            beyond[other][of_other] = Some(one);
+            adjacent[one][of_one] = Some(other);
+            adjacent[other][of_other] = Some(one);
         }
     }
-    beyond
+    adjacent
 }
 
 /// The edges of triangles inside without one at their other side, by their first point, inside to the left.
 fn boundary_edges(
     triangles: &[[usize; 3]],
-    beyond: &Neighbours,
+    adjacent: &Neighbours,
     inside: &[bool],
 ) -> Vec<[usize; 2]> {
     let kept = (0..triangles.len()).filter(|triangle| inside[*triangle]);
     let edges = kept.flat_map(|triangle| [0, 1, 2].map(|side| (triangle, side)));
     let open = edges
-        .filter(|(triangle, side)| !beyond[*triangle][*side].is_some_and(|other| inside[other]));
+        .filter(|(triangle, side)| !adjacent[*triangle][*side].is_some_and(|other| inside[other]));
     open.map(|(triangle, side)| [side, (side + 1) % 3].map(|corner| triangles[triangle][corner]))
         .collect()
 }
 
 /// Where two lines of the boundary touch in a point, all triangles around it become inside.
-fn mend_touching(triangles: &[[usize; 3]], beyond: &Neighbours, inside: &mut [bool]) {
+fn mend_touching(triangles: &[[usize; 3]], adjacent: &Neighbours, inside: &mut [bool]) {
     loop {
         let mut leaving: HashMap<usize, usize> = HashMap::new();
-        for [from, _] in boundary_edges(triangles, beyond, inside) {
+        for [from, _] in boundary_edges(triangles, adjacent, inside) {
             *leaving.entry(from).or_default() += 1;
         }
         let mut changed = false;
@@ -119,18 +119,18 @@ fn mend_touching(triangles: &[[usize; 3]], beyond: &Neighbours, inside: &mut [bo
 fn largest_part(
     points: &[[f64; 2]],
     triangles: &[[usize; 3]],
-    beyond: &Neighbours,
+    adjacent: &Neighbours,
     inside: &mut [bool],
 ) -> Result<(), OutlineFault> {
     let mut parts = Parts::new(triangles.len());
     for triangle in (0..triangles.len()).filter(|triangle| inside[*triangle]) {
-        for next in beyond[triangle].into_iter().flatten() {
+        for next in adjacent[triangle].into_iter().flatten() {
             if inside[next] {
                 parts.join(triangle, next);
             }
         }
     }
-    let part: Vec<usize> = (0..triangles.len()).map(|own| parts.first(own)).collect();
+    let part: Vec<usize> = (0..triangles.len()).map(|index| parts.first(index)).collect();
     let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
     for triangle in (0..triangles.len()).filter(|triangle| inside[*triangle]) {
         let corners = triangles[triangle].map(|point| points[point]);
@@ -140,9 +140,9 @@ fn largest_part(
     let Some((&largest, _)) = largest else {
         return Err(OutlineFault::TooFarApart);
     };
-    let whole: f64 = areas.values().sum();
+    let total: f64 = areas.values().sum();
     let mut others = areas.iter().filter(|(first, _)| **first != largest);
-    if let Some((&first, _)) = others.find(|(_, area)| **area > STRAY * whole) {
+    if let Some((&first, _)) = others.find(|(_, area)| **area > STRAY * total) {
         return Err(OutlineFault::SeparatedPoints(points[triangles[first][0]]));
     }
     for (inside, part) in inside.iter_mut().zip(&part) {

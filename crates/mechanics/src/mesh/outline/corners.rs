@@ -15,26 +15,26 @@ pub fn corners(line: &[[f64; 2]]) -> Vec<bool> {
     let point = |number: usize| line[number % count];
     let length: f64 = (0..count).map(|i| distance(point(i), point(i + 1))).sum();
     let reach = (REACH * length).min(polygon_area(line).abs() / length);
-    let turns: Vec<f64> = (0..count).map(|own| turn(line, own, reach)).collect();
-    let is_sharpest = |own: usize| {
-        let near = |other: &usize| *other != own && distance(line[*other], line[own]) < reach;
+    let turns: Vec<f64> = (0..count).map(|index| turn(line, index, reach)).collect();
+    let is_sharpest = |index: usize| {
+        let near = |other: &usize| *other != index && distance(line[*other], line[index]) < reach;
         let mut others = (0..count).filter(near);
         // The first of several equal ones.
-        others.all(|other| (turns[other], own) < (turns[own], other))
+        others.all(|other| (turns[other], index) < (turns[index], other))
     };
     (0..count)
-        .map(|own| turns[own] > CORNER && is_sharpest(own))
+        .map(|index| turns[index] > CORNER && is_sharpest(index))
         .collect()
 }
 
 /// By how much a line turns between the nearest points at the reach or farther away on both sides of one of its points.
-fn turn(line: &[[f64; 2]], own: usize, reach: f64) -> f64 {
+fn turn(line: &[[f64; 2]], index: usize, reach: f64) -> f64 {
     let count = line.len();
-    let at = line[own];
+    let at = line[index];
     let away = |step: usize| {
-        let far = (1..count).map(|steps| line[(own + steps * step) % count]);
+        let far = (1..count).map(|steps| line[(index + steps * step) % count]);
         let mut far = far.skip_while(|point| distance(*point, at) < reach);
-        far.next().unwrap_or(line[(own + step) % count])
+        far.next().unwrap_or(line[(index + step) % count])
     };
     let (from, to) = (away(count - 1), away(1));
     let (a, b) = (

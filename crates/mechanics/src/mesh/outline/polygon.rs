@@ -158,8 +158,8 @@ pub fn crossing(lines: &[Polygon]) -> Option<[f64; 2]> {
     edges.sort_by(|one, other| left(one).total_cmp(&left(other)));
     for (i, (line, [a, b])) in edges.iter().enumerate() {
         let right = a[0].max(b[0]);
-        let beside = edges[i + 1..].iter();
-        for (other, [c, d]) in beside.take_while(|edge| left(edge) <= right) {
+        let following = edges[i + 1..].iter();
+        for (other, [c, d]) in following.take_while(|edge| left(edge) <= right) {
             // Neighbours have a point in common; they cross where one runs back on the other.
             if line == other && b == c {
                 if a != d && distance([*a, *b], *d) == 0.0 {

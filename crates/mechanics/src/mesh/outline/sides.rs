@@ -62,9 +62,9 @@ impl Span {
         if !lies_on_the_hull && !amid {
             let chains = chains(&sharp_turns(&pieces), false);
             let each = chains.iter().flat_map(|chain| {
-                let own = facing(&pieces, chain);
+                let facing_side = facing(&pieces, chain);
                 let edges = chain.iter().map(|number| pieces[*number]);
-                edges.map(move |edge| (Some(own), edge))
+                edges.map(move |edge| (Some(facing_side), edge))
             });
             return each.collect();
         }
@@ -72,8 +72,8 @@ impl Span {
             let (from, to) = (pair[0], pair[1]);
             let depth = (from..=to).map(off).fold(0.0, f64::max);
             let is_shallow = depth <= length(self.points[from], self.points[to]);
-            let own = is_shallow.then_some(side);
-            pieces[from..to].iter().map(move |edge| (own, *edge))
+            let name = is_shallow.then_some(side);
+            pieces[from..to].iter().map(move |edge| (name, *edge))
         });
         pockets.collect()
     }
@@ -155,9 +155,9 @@ fn has_four_sides(edges: &[Edge], chains: &[Vec<usize>]) -> bool {
         high - low
     };
     let reaches = |side: &str, axis: usize| {
-        let own = chains.iter().filter(|chain| facing(edges, chain) == side);
-        let mut own = own.flatten().map(|edge| edges[*edge]);
-        extent(axis, &mut own) > LEAST * extent(axis, &mut edges.iter().copied())
+        let facing_edges = chains.iter().filter(|chain| facing(edges, chain) == side);
+        let mut facing_edges = facing_edges.flatten().map(|edge| edges[*edge]);
+        extent(axis, &mut facing_edges) > LEAST * extent(axis, &mut edges.iter().copied())
     };
     let sides = [("left", 1), ("right", 1), ("bottom", 0), ("top", 0)];
     sides.into_iter().all(|(side, axis)| reaches(side, axis))
@@ -186,7 +186,7 @@ mod tests {
 
     /// How long the edges of a side are together.
     fn total(line: &[[f64; 2]], side: Option<&str>) -> f64 {
-        let of_side = sides(line).into_iter().filter(|(own, _)| *own == side);
+        let of_side = sides(line).into_iter().filter(|(name, _)| *name == side);
         of_side.map(|(_, [a, b])| length(a, b)).sum()
     }
 

@@ -88,17 +88,17 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         .iter()
         .zip(following)
         .map(|(from, to)| {
-            let own = part(line, kept[*from], kept[*to]);
+            let piece = part(line, kept[*from], kept[*to]);
             let is_one_edge = (from + 1) % count == *to;
-            if is_one_edge && (is_straight[*from] || bulge(&own) < BULGE * spacing) {
-                (vec![own[0]], SideLine::of(&own, spacing))
+            if is_one_edge && (is_straight[*from] || bulge(&piece) < BULGE * spacing) {
+                (vec![piece[0]], SideLine::of(&piece, spacing))
             } else {
-                (open_curve(&own, near, spacing), None)
+                (open_curve(&piece, near, spacing), None)
             }
         })
         .collect();
-    let found = joined(parts, near);
-    if found.len() < 3 { plain() } else { found }
+    let outline = joined(parts, near);
+    if outline.len() < 3 { plain() } else { outline }
 }
 
 /// The points of a part but for its last one, and its line where it is straight and points lie about it.
@@ -109,8 +109,8 @@ fn joined(mut parts: Vec<Smoothed>, near: f64) -> Vec<[f64; 2]> {
     let count = parts.len();
     for index in 0..count {
         let before = parts[(index + count - 1) % count].1;
-        let (points, own) = &mut parts[index];
-        points[0] = corner(points[0], [before, *own], near);
+        let (points, side_line) = &mut parts[index];
+        points[0] = corner(points[0], [before, *side_line], near);
     }
     parts.into_iter().flat_map(|(points, _)| points).collect()
 }
@@ -186,23 +186,23 @@ struct Followed<'a> {
     line: &'a [[f64; 2]],
     at: Vec<f64>,
     /// The arc length of the whole line.
-    whole: f64,
+    total: f64,
     is_closed: bool,
     reach: f64,
 }
 
 impl Followed<'_> {
     /// The value of the parabola around an arc length.
-    fn position(&self, own: f64) -> [f64; 2] {
+    fn position(&self, arc: f64) -> [f64; 2] {
         let Self { line, at, .. } = self;
         let from_here = |at: &f64| {
-            let t = at - own;
+            let t = at - arc;
             let turns = if self.is_closed {
-                (t / self.whole).round()
+                (t / self.total).round()
             } else {
                 0.0
             };
-            t - self.whole * turns
+            t - self.total * turns
         };
         let apart: Vec<f64> = at.iter().map(from_here).collect();
         let mut sorted: Vec<f64> = apart.iter().map(|t| t.abs()).collect();
@@ -217,11 +217,11 @@ impl Followed<'_> {
         let of_axis = |axis: usize| {
             let points = near.iter();
             let points = points.map(|(t, other, weight)| (*t, line[*other][axis], *weight));
-            parabola(points).map(|found| found[0])
+            parabola(points).map(|coefficients| coefficients[0])
         };
         match [0, 1].map(of_axis) {
             [Some(x), Some(y)] => [x, y],
-            _ => self.on_the_line(own),
+            _ => self.on_the_line(arc),
         }
     }
 
@@ -254,13 +254,13 @@ impl Followed<'_> {
     }
 
     /// The place at an arc length on the line itself.
-    fn on_the_line(&self, own: f64) -> [f64; 2] {
-        let last = self.at.partition_point(|at| *at <= own).max(1) - 1;
+    fn on_the_line(&self, arc: f64) -> [f64; 2] {
+        let last = self.at.partition_point(|at| *at <= arc).max(1) - 1;
         let next = (last + 1) % self.line.len();
         let [a, b] = [self.line[last], self.line[next]];
         let size = length(a, b);
         let share = if size > 0.0 {
-            ((own - self.at[last]) / size).min(1.0)
+            ((arc - self.at[last]) / size).min(1.0)
         } else {
             0.0
         };
@@ -270,7 +270,7 @@ impl Followed<'_> {
     /// Arc lengths from the first point on, a step apart.
     fn steps(&self, step: f64) -> Vec<f64> {
         let end = if self.is_closed {
-            self.whole
+            self.total
         } else {
             self.at[self.at.len() - 1]
         };
@@ -284,9 +284,9 @@ impl Followed<'_> {
 fn arc_lengths(line: &[[f64; 2]]) -> (Vec<f64>, f64) {
     let mut sum = 0.0;
     let at = Polygon(line).edges().map(|[a, b]| {
-        let own = sum;
+        let start = sum;
         sum += length(a, b);
-        own
+        start
     });
     let at: Vec<f64> = at.collect();
     (at, sum)
@@ -294,13 +294,13 @@ fn arc_lengths(line: &[[f64; 2]]) -> (Vec<f64>, f64) {
 
 /// A closed line with parabolas around all its points.
 fn closed(line: &[[f64; 2]], spacing: f64) -> Followed<'_> {
-    let (at, whole) = arc_lengths(line);
+    let (at, total) = arc_lengths(line);
     Followed {
         line,
         at,
-        whole,
+        total,
         is_closed: true,
-        reach: (BESIDE * spacing).min(SHARE * whole).max(LEAST * spacing),
+        reach: (BESIDE * spacing).min(SHARE * total).max(LEAST * spacing),
     }
 }
 
@@ -331,11 +331,11 @@ fn outside(line: &[[f64; 2]], point: [f64; 2]) -> f64 {
 /// The curve behind a part between two corners or straight edges, without its last point: its ends stay, and what lies between
 /// is moved out to the outermost points.
 fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
-    let (at, whole) = arc_lengths(part);
+    let (at, total) = arc_lengths(part);
     let followed = Followed {
         line: part,
         at,
-        whole,
+        total,
         is_closed: false,
         reach: BESIDE * spacing,
     };
@@ -343,7 +343,7 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         return without_the_last(&curve, FINEST * spacing);
     }
     let at = followed.steps(STEP * spacing);
-    let whole = at[at.len() - 1];
+    let total = at[at.len() - 1];
     let mut curve: Vec<[f64; 2]> = at.iter().map(|at| followed.position(*at)).collect();
     let last = curve.len() - 1;
     let normal = |i: usize| {
@@ -362,11 +362,11 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
     let out = out.fold(0.0, f64::max).min(near);
     for (i, [nx, ny]) in normals.into_iter().enumerate() {
         // The ends stay where they are.
-        let ease = (at[i].min(whole - at[i]) / (BESIDE * spacing)).min(1.0);
+        let ease = (at[i].min(total - at[i]) / (BESIDE * spacing)).min(1.0);
         let blend = |axis: usize, n: f64| {
             let moved = curve[i][axis] + out * n;
-            let own = followed.on_the_line(at[i])[axis];
-            own + ease * (moved - own)
+            let on_line = followed.on_the_line(at[i])[axis];
+            on_line + ease * (moved - on_line)
         };
         curve[i] = [blend(0, nx), blend(1, ny)];
     }

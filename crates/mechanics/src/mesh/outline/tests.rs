@@ -42,18 +42,18 @@ fn mesh_area(mesh: &Mesh) -> f64 {
 
 #[test]
 fn a_grid_of_points_has_the_outline_of_the_plate() {
-    let found = Outline::of_points(&grid(|_| true)).unwrap();
-    assert_eq!(found.spacing, 5.0);
-    assert_eq!(found.outline.outer.len(), 4);
-    assert!((found.outline.area() - 7500.0).abs() < 1e-9);
-    assert!(found.outline.holes.is_empty());
+    let traced = Outline::of_points(&grid(|_| true)).unwrap();
+    assert_eq!(traced.spacing, 5.0);
+    assert_eq!(traced.outline.outer.len(), 4);
+    assert!((traced.outline.area() - 7500.0).abs() < 1e-9);
+    assert!(traced.outline.holes.is_empty());
     for shape in [
         CellShape::Triangle3,
         CellShape::Triangle6,
         CellShape::Quad4,
         CellShape::Quad9,
     ] {
-        let mesh = found.outline.mesh(5.0, shape);
+        let mesh = traced.outline.mesh(5.0, shape);
         assert!((mesh_area(&mesh) - 7500.0).abs() < 1e-6, "{shape:?}");
         assert_eq!(mesh.shape(0), shape);
         let least = smallest_angle(&mesh);
@@ -99,14 +99,14 @@ fn scattered_points_and_round_specimens_have_outlines() {
             [radius * angle.cos(), radius * angle.sin()]
         })
         .collect();
-    let found = Outline::of_points(&points).unwrap();
+    let traced = Outline::of_points(&points).unwrap();
     assert!(
-        (found.outline.area() / (100.0 * PI) - 1.0).abs() < 0.08,
+        (traced.outline.area() / (100.0 * PI) - 1.0).abs() < 0.08,
         "{}",
-        found.outline.area()
+        traced.outline.area()
     );
-    assert!(found.outline.holes.is_empty());
-    let mesh = found.outline.mesh(1.0, CellShape::Triangle3);
+    assert!(traced.outline.holes.is_empty());
+    let mesh = traced.outline.mesh(1.0, CellShape::Triangle3);
     assert!(smallest_angle(&mesh) > 20.0);
     assert!(mesh.groups().contains_key("left") && mesh.groups().contains_key("top"));
 }
@@ -150,28 +150,28 @@ fn bad_outlines_are_refused_in_words() {
             "encloses no area",
         ),
     ] {
-        let told = Outline::of_lines(lines).unwrap_err().to_string();
-        assert!(told.contains(reason), "{told}");
+        let fault = Outline::of_lines(lines).unwrap_err().to_string();
+        assert!(fault.contains(reason), "{fault}");
     }
     let apart = grid(|[x, _]| !(60.0..90.0).contains(&x));
-    let told = Outline::of_points(&apart).unwrap_err().to_string();
-    assert!(told.contains("two separated parts"), "{told}");
+    let fault = Outline::of_points(&apart).unwrap_err().to_string();
+    assert!(fault.contains("two separated parts"), "{fault}");
     let line: Vec<_> = (0..20).map(|i| [f64::from(i), 2.0]).collect();
-    let told = Outline::of_points(&line).unwrap_err();
-    assert_eq!(told, OutlineFault::OneLine);
+    let fault = Outline::of_points(&line).unwrap_err();
+    assert_eq!(fault, OutlineFault::OneLine);
 }
 
 #[test]
 fn lost_markers_at_an_edge_are_told() {
-    let whole = Outline::of_points(&grid(|_| true)).unwrap();
-    assert!(whole.doubts.is_empty(), "{:?}", whole.doubts);
+    let full = Outline::of_points(&grid(|_| true)).unwrap();
+    assert!(full.doubts.is_empty(), "{:?}", full.doubts);
     // A row of ten lost at the lower edge.
     let notched = grid(|[x, y]| y > 0.0 || !(50.0..100.0).contains(&x));
-    let found = Outline::of_points(&notched).unwrap();
+    let traced = Outline::of_points(&notched).unwrap();
     assert!(
-        found.doubts[0].contains("steps of less than"),
+        traced.doubts[0].contains("steps of less than"),
         "{:?}",
-        found.doubts
+        traced.doubts
     );
 }
 
@@ -186,18 +186,18 @@ fn half_of_a_grid_keeps_its_outline_with_a_word() {
             .filter(|(_, kept)| *kept)
             .map(|(point, _)| point)
             .collect();
-        let found = Outline::of_points(&points).unwrap();
+        let traced = Outline::of_points(&points).unwrap();
         assert!(
-            found.doubts[0].contains("irregularly spaced"),
+            traced.doubts[0].contains("irregularly spaced"),
             "{seed}: {:?}",
-            found.doubts
+            traced.doubts
         );
         assert!(
-            found.outline.area() > 0.9 * 7500.0,
+            traced.outline.area() > 0.9 * 7500.0,
             "{seed}: {}",
-            found.outline.area()
+            traced.outline.area()
         );
-        let margin = found.outline.widened(found.spacing).unwrap();
+        let margin = traced.outline.widened(traced.spacing).unwrap();
         assert!(margin.area() > 7500.0, "{seed}: {}", margin.area());
     }
 }
@@ -246,19 +246,19 @@ fn small_grids_have_four_corners() {
                     [300.0 + cosine * x - sine * y, sine * x + cosine * y]
                 })
                 .collect();
-            let found = Outline::of_points(&points).unwrap().outline;
+            let outline = Outline::of_points(&points).unwrap().outline;
             let area = 400.0 * ratio * f64::from((columns - 1) * (rows - 1));
             let named = format!(
                 "{columns} × {rows}, {ratio}, {turn}, {jitter}: {:?}",
-                found.outer
+                outline.outer
             );
-            assert_eq!(found.outer.len(), 4, "{named}");
-            assert!((found.area() / area - 1.0).abs() < 0.05, "{named}");
+            assert_eq!(outline.outer.len(), 4, "{named}");
+            assert!((outline.area() / area - 1.0).abs() < 0.05, "{named}");
         }
     }
     let disc = grid(|[x, y]| (x - 75.0).hypot(y - 25.0) < 13.0);
-    let found = Outline::of_points(&disc).unwrap().outline;
-    assert!(found.outer.len() > 8, "{:?}", found.outer);
+    let outline = Outline::of_points(&disc).unwrap().outline;
+    assert!(outline.outer.len() > 8, "{:?}", outline.outer);
 }
 
 /// Markers a little off their grid leave the edge as sure as all of a row make it, and say how rough their rows are.
@@ -271,8 +271,8 @@ fn edges_are_nearest_to_all_markers_of_their_rows() {
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
         let moved = |point: [f64; 2]| point.map(|x| x + off.sample(&mut random));
         let points: Vec<[f64; 2]> = grid(|_| true).into_iter().map(moved).collect();
-        let found = Outline::of_points(&points).unwrap();
-        let outer = &found.outline.outer;
+        let traced = Outline::of_points(&points).unwrap();
+        let outer = &traced.outline.outer;
         assert_eq!(outer.len(), 4, "{seed}: {outer:?}");
         for [[a, b], [c, d]] in polygon::Polygon(outer).edges() {
             let [x, y] = [(a + c) / 2.0, (b + d) / 2.0];
@@ -284,7 +284,7 @@ fn edges_are_nearest_to_all_markers_of_their_rows() {
             };
             assert!(off.abs() < far, "{seed}: {outer:?}");
         }
-        assert!((0.1..0.3).contains(&found.roughness), "{}", found.roughness);
+        assert!((0.1..0.3).contains(&traced.roughness), "{}", traced.roughness);
     }
     let exact = Outline::of_points(&grid(|_| true)).unwrap();
     assert!(exact.roughness < 1e-12, "{}", exact.roughness);
@@ -302,8 +302,8 @@ fn scattered_markers_have_four_sides() {
             ]
         };
         let points: Vec<[f64; 2]> = (0..400).map(|_| point()).collect();
-        let found = Outline::of_points(&points).unwrap();
-        let mesh = found.outline.mesh(4.0, CellShape::Triangle3);
+        let traced = Outline::of_points(&points).unwrap();
+        let mesh = traced.outline.mesh(4.0, CellShape::Triangle3);
         for (side, axis, extent) in [
             ("left", 1, 50.0),
             ("right", 1, 50.0),

@@ -91,13 +91,13 @@ fn on_rakes(rakes: Rakes) -> Vec<Demand> {
         radius,
     } = rakes;
     let outside = "the tines of a side must lie on the sheet";
-    let beyond = "the tines must be nearer to their side than to the middle";
+    let too_far = "the tines must be nearer to their side than to the middle";
     let close = "rows of tines, also of neighbouring sides, and the edges beside them need 1.2 diameters between their centres";
     let least = size[0].min(size[1]);
     let most_spacing = (least - 2.0 * LEAST_GAP * radius) / (tines as f64 - 1.0).max(1.0);
     vec![
         ("tine_spacing", spacing, most_spacing, outside),
-        ("tine_inset", inset, 0.4 * least, beyond),
+        ("tine_inset", inset, 0.4 * least, too_far),
         (
             "tine_diameter",
             2.0 * radius,

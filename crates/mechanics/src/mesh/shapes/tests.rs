@@ -89,10 +89,10 @@ fn areas_are_those_of_the_outlines() {
         _ => f64::NAN,
     };
     for shape in SHAPES {
-        let (found, exact) = (shape.mesh(64, CellShape::Quad9).area(), exact(shape));
+        let (area, exact) = (shape.mesh(64, CellShape::Quad9).area(), exact(shape));
         assert!(
-            exact.is_nan() || (found / exact - 1.0).abs() < 1e-5,
-            "{shape:?}: {found} {exact}"
+            exact.is_nan() || (area / exact - 1.0).abs() < 1e-5,
+            "{shape:?}: {area} {exact}"
         );
     }
 }
@@ -158,29 +158,29 @@ fn measures_that_do_not_fit_are_told() {
         size: [30.0, 10.0],
         radius: 5.0,
     };
-    let told = |shape: Shape| shape.check().unwrap_err();
-    assert_eq!(told(hole).measure, "hole_diameter");
-    assert!(told(hole).remedy().contains("less than \"9 mm\""));
+    let fault = |shape: Shape| shape.check().unwrap_err();
+    assert_eq!(fault(hole).measure, "hole_diameter");
+    assert!(fault(hole).remedy().contains("less than \"9 mm\""));
     let bone = Shape::DogBone {
         size: [75.0, 12.5],
         narrow: [60.0, 4.0],
         shoulder: 8.0,
     };
-    assert!(told(bone).reason.contains("shorter"));
-    assert!(told(bone).remedy().contains("less than \"59 mm\""));
+    assert!(fault(bone).reason.contains("shorter"));
+    assert!(fault(bone).remedy().contains("less than \"59 mm\""));
     let notch = Shape::NotchedStrip {
         size: [30.0, 10.0],
         depth: 4.0,
         half_length: 4.0,
     };
-    assert_eq!(told(notch).measure, "notch_depth");
-    assert!(told(notch).remedy().contains("less than \"3.8 mm\""));
+    assert_eq!(fault(notch).measure, "notch_depth");
+    assert!(fault(notch).remedy().contains("less than \"3.8 mm\""));
     let shoulder = Shape::DogBone {
         size: [75.0, 30.0],
         narrow: [25.0, 4.0],
         shoulder: 8.0,
     };
-    assert!(told(shoulder).remedy().contains("more than \"13 mm\""));
+    assert!(fault(shoulder).remedy().contains("more than \"13 mm\""));
 }
 
 /// Steep arcs on the coarsest meshes, whose quadratic edges turn far.

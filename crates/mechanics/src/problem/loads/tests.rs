@@ -12,9 +12,9 @@ fn a_force_is_spread_evenly_over_the_length_of_edges() {
             let mesh = Mesh::of_grid(Grid::new([20.0, 10.0], [5, 3], grading), shape);
             let load = |load| dead_forces(&mesh, &("right".to_owned(), load), thickness).unwrap();
             let traction = force.map(|force| force / (thickness * 10.0));
-            let (found, expected) = (load(Load::Force(force)), load(Load::Traction(traction)));
-            for (found, expected) in found.iter().zip(&expected) {
-                assert!((found - expected).abs() < 1e-14, "{shape:?} {grading}");
+            let (computed, expected) = (load(Load::Force(force)), load(Load::Traction(traction)));
+            for (computed, expected) in computed.iter().zip(&expected) {
+                assert!((computed - expected).abs() < 1e-14, "{shape:?} {grading}");
             }
         }
     }

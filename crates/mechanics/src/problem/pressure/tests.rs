@@ -167,11 +167,11 @@ fn a_pressure_may_end_at_a_free_corner() {
     let mesh = Shape::Strip { size: [100.0, 5.0] }.mesh(2, CellShape::Quad9);
     for pressure in [1e-8, 1.5e-5] {
         let problem = problem(&[("left", CLAMP)], &[("top", Load::Pressure(pressure))]);
-        let found = solved(&problem, &mesh, &[]);
-        assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
-        let log = &found.state.convergence;
+        let solution = solved(&problem, &mesh, &[]);
+        assert!(solution.balance.relative() < 1e-9, "{:?}", solution.balance);
+        let log = &solution.state.convergence;
         assert!(log.iterations() <= 15, "{:?}", log.residuals);
-        let [x, y] = mesh.displacement_at(&found.state.displacement, [100.0, 0.0]);
+        let [x, y] = mesh.displacement_at(&solution.state.displacement, [100.0, 0.0]);
         let beam = elastica(pressure, 0.3 * 5.0_f64.powi(3) / 12.0, 100.0);
         let off = (x - beam[0]).hypot(y - beam[1]) / beam[1].abs();
         assert!(off < 0.02, "{x} {y} {beam:?}");

@@ -22,7 +22,7 @@ const Y: Support = Support::Displacement([None, Some(0.0)]);
 #[test]
 fn free_motions_of_one_part_are_named() {
     let mesh = strip();
-    for (supports, told) in [
+    for (supports, message) in [
         (vec![], "move along x and y and rotate: nothing holds it"),
         (vec![("left", X)], "move along y without"),
         (vec![("bottom", Y)], "move along x without"),
@@ -47,19 +47,19 @@ fn free_motions_of_one_part_are_named() {
             "move along x and y without",
         ),
     ] {
-        let found = checked(&mesh, &supports);
-        assert_eq!(found.len(), 1, "{supports:?}: {found:?}");
+        let diagnostics = checked(&mesh, &supports);
+        assert_eq!(diagnostics.len(), 1, "{supports:?}: {diagnostics:?}");
         assert!(
-            found[0].message.starts_with("the specimen can "),
+            diagnostics[0].message.starts_with("the specimen can "),
             "{}",
-            found[0].message
+            diagnostics[0].message
         );
         assert!(
-            found[0].message.contains(told),
+            diagnostics[0].message.contains(message),
             "{supports:?}: {}",
-            found[0].message
+            diagnostics[0].message
         );
-        let hint = found[0].hint.as_deref().unwrap_or_default();
+        let hint = diagnostics[0].hint.as_deref().unwrap_or_default();
         assert!(hint.contains("`left`"), "{hint}");
     }
 }
@@ -87,10 +87,10 @@ fn supports_that_suffice_are_accepted() {
 /// A single point has no line on which it slides.
 #[test]
 fn a_roller_on_a_point_is_refused() {
-    let told = checked(&strip(), &[("left", CLAMP), ("end", Support::Roller)]);
+    let diagnostics = checked(&strip(), &[("left", CLAMP), ("end", Support::Roller)]);
     assert!(
-        told.len() == 1 && told[0].message.contains("single point"),
-        "{told:?}"
+        diagnostics.len() == 1 && diagnostics[0].message.contains("single point"),
+        "{diagnostics:?}"
     );
 }
 

@@ -17,8 +17,8 @@ const PATIENT: NewtonSettings = NewtonSettings {
 fn reached(problem: &super::super::BoundaryProblem, mesh: &Mesh, factors: &[f64]) -> Option<State> {
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).unwrap();
-    let found = model.solve(factors, NEWTON, &|_| ());
-    found
+    let path = model.solve(factors, NEWTON, &|_| ());
+    path
         .ok()
         .map(|mut states| states.remove(factors.len() - 1))
 }
@@ -45,11 +45,11 @@ fn turns_are_followed_all_the_way() {
         }
     }
     // A body that is turned as a whole is turned by any angle.
-    let whole = |angle: f64| Support::Rotation {
+    let about_origin = |angle: f64| Support::Rotation {
         centre: [0.0, 0.0],
         angle,
     };
-    let turned = problem(&[("left", whole(7.0)), ("right", whole(7.0))], &[]);
+    let turned = problem(&[("left", about_origin(7.0)), ("right", about_origin(7.0))], &[]);
     let state = reached(&turned, &mesh, &[1.0]).unwrap();
     let position = |node: usize| mesh.nodes[node];
     for node in 0..mesh.nodes.len() {

@@ -39,11 +39,11 @@ fn axes_of_symmetry_share_no_force_at_their_corner() {
             left.force[1].abs() + left.moment.abs() < 1e-9,
             "{name}: {left:?}"
         );
-        for own in others {
-            let parts = [own.force[0], own.force[1], own.moment, own.size];
+        for reaction in others {
+            let parts = [reaction.force[0], reaction.force[1], reaction.moment, reaction.size];
             assert!(
                 parts.iter().all(|part| part.abs() < 1e-9),
-                "{name}: {own:?}"
+                "{name}: {reaction:?}"
             );
         }
     }
@@ -61,7 +61,7 @@ fn forces_of_sides_that_meet_add_up_to_those_of_all_supports() {
         ];
         let load = [("right", Load::Traction([0.01, 0.004]))];
         let all = at_groups(cells, &supports, &load);
-        let sum = |axis: usize| all.iter().map(|own| own.force[axis]).sum::<f64>();
+        let sum = |axis: usize| all.iter().map(|reaction| reaction.force[axis]).sum::<f64>();
         assert!((sum(0) + 0.2).abs() < 1e-10 && (sum(1) + 0.08).abs() < 1e-10);
         assert_eq!((all[1].force[0], all[3].force[1]), (0.0, 0.0));
         assert!(
@@ -87,13 +87,13 @@ fn sides_that_hold_one_corner_have_the_forces_of_their_own_tractions() {
     for (name, cells) in CellShape::NAMES {
         let [left, bottom, right, top] = at_groups(cells, &supports, &[]);
         assert!(right.force[0] > 0.1 && top.force[1].abs() > 0.01);
-        for (own, across, other) in [(left, 1, right), (bottom, 0, top)] {
+        for (reaction, across, other) in [(left, 1, right), (bottom, 0, top)] {
             let along = 1 - across;
             assert!(
-                (own.force[along] + other.force[along]).abs() < 1e-10,
-                "{name}: {own:?} {other:?}"
+                (reaction.force[along] + other.force[along]).abs() < 1e-10,
+                "{name}: {reaction:?} {other:?}"
             );
-            for side in [own, other] {
+            for side in [reaction, other] {
                 assert!(
                     side.force[across].abs() + side.moment.abs() < 1e-10,
                     "{name}: {side:?}"
@@ -122,11 +122,11 @@ fn moments_are_about_the_middle_of_the_group_however_its_nodes_lie() {
         let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
         let reactions = model.reactions(&state);
         for group in ["left", "right"] {
-            let own = reactions.at_group(group);
+            let reaction = reactions.at_group(group);
             let middle = 0.5 * (low + high);
-            assert!((own.position[1] - middle).abs() < 1e-9, "{group}: {own:?}");
+            assert!((reaction.position[1] - middle).abs() < 1e-9, "{group}: {reaction:?}");
             // Of the force at half the width a small share: the cells are coarse.
-            let arm = own.moment / (own.force[0] * width);
+            let arm = reaction.moment / (reaction.force[0] * width);
             assert!(arm.abs() < 0.02, "{group}: {arm}");
         }
     }

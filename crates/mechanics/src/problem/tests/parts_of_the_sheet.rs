@@ -21,18 +21,18 @@ fn part(mesh: &Mesh, [from, to]: [f64; 2]) -> Mesh {
         from < x && x < to
     });
     let cells: Vec<usize> = cells.collect();
-    let own: BTreeSet<usize> = cells
+    let kept: BTreeSet<usize> = cells
         .iter()
         .flat_map(|cell| mesh.cell(*cell))
         .copied()
         .collect();
-    let own: Vec<usize> = own.into_iter().collect();
-    let number = |node: &usize| own.binary_search(node).unwrap();
+    let kept: Vec<usize> = kept.into_iter().collect();
+    let number = |node: &usize| kept.binary_search(node).unwrap();
     let cells = cells.iter().map(|cell| {
         let nodes = mesh.cell(*cell).iter().map(number);
         (mesh.shape(*cell), nodes.collect())
     });
-    let mut part = Mesh::new(own.iter().map(|node| mesh.nodes[*node]).collect(), cells);
+    let mut part = Mesh::new(kept.iter().map(|node| mesh.nodes[*node]).collect(), cells);
     part.name_boundary("left", |[x, _]| (x - from).abs() < 1e-9);
     part.name_boundary("right", |[x, _]| (x - to).abs() < 1e-9);
     part
@@ -54,18 +54,18 @@ const FINER: [fn(&Mesh) -> Mesh; 4] = [
 fn rigid_tabs_leave_the_strip_between_them() {
     let pull = Support::Displacement([Some(3.0), Some(0.0)]);
     for (_, shape) in CellShape::NAMES {
-        let mut whole = strip(shape);
-        name(&mut whole, "grip", |[x, _]| x < 7.6);
-        name(&mut whole, "jaw", |[x, _]| x > 22.4);
-        let gauge = part(&whole, [7.5, 22.5]);
+        let mut full = strip(shape);
+        name(&mut full, "grip", |[x, _]| x < 7.6);
+        name(&mut full, "jaw", |[x, _]| x > 22.4);
+        let gauge = part(&full, [7.5, 22.5]);
         for finer in FINER {
             let tabs = problem(&[("grip", CLAMP), ("jaw", pull)], &[]);
             let ends = problem(&[("left", CLAMP), ("right", pull)], &[]);
-            let found = solved(&tabs, &finer(&whole), &["grip", "jaw"]);
+            let solution = solved(&tabs, &finer(&full), &["grip", "jaw"]);
             let expected = solved(&ends, &finer(&gauge), &["left", "right"]);
-            for (own, other) in found.reactions.iter().zip(&expected.reactions) {
-                let apart = (own[0] - other[0]).abs() + (own[1] - other[1]).abs();
-                assert!(apart < 1e-10, "{shape:?}: {own:?} {other:?}");
+            for (force, other) in solution.reactions.iter().zip(&expected.reactions) {
+                let apart = (force[0] - other[0]).abs() + (force[1] - other[1]).abs();
+                assert!(apart < 1e-10, "{shape:?}: {force:?} {other:?}");
             }
         }
     }
@@ -79,24 +79,24 @@ fn lines_on_the_sheet_are_held_whole_and_forces_of_groups_add_up() {
     let stretched = Support::LinearDisplacement([Some(along), None]);
     let pull = Support::Displacement([Some(1.5), Some(0.0)]);
     for (_, shape) in CellShape::NAMES {
-        let mut whole = strip(shape);
-        name(&mut whole, "across", |[x, _]| (x - 15.0).abs() < 1e-9);
-        name(&mut whole, "along", |[_, y]| (y - 5.0).abs() < 1e-9);
-        let half = part(&whole, [0.0, 15.0]);
+        let mut full = strip(shape);
+        name(&mut full, "across", |[x, _]| (x - 15.0).abs() < 1e-9);
+        name(&mut full, "along", |[_, y]| (y - 5.0).abs() < 1e-9);
+        let half = part(&full, [0.0, 15.0]);
         for finer in FINER {
-            let (whole, half) = (finer(&whole), finer(&half));
+            let (full, half) = (finer(&full), finer(&half));
             let across = problem(&[("left", CLAMP), ("across", pull)], &[]);
             let ends = problem(&[("left", CLAMP), ("right", pull)], &[]);
-            let found = solved(&across, &whole, &["left", "across"]).reactions;
+            let reactions = solved(&across, &full, &["left", "across"]).reactions;
             let expected = solved(&ends, &half, &["right"]).reactions[0];
-            assert!((found[1][0] - expected[0]).abs() < 1e-10, "{shape:?}");
-            assert!((found[0][0] + found[1][0]).abs() < 1e-10, "{shape:?}");
+            assert!((reactions[1][0] - expected[0]).abs() < 1e-10, "{shape:?}");
+            assert!((reactions[0][0] + reactions[1][0]).abs() < 1e-10, "{shape:?}");
             let middle = problem(&[("left", CLAMP), ("along", stretched)], &[]);
-            let found = solved(&middle, &whole, &["left", "along"]).reactions;
-            assert!(found[1][0] > 0.01, "{found:?}");
+            let reactions = solved(&middle, &full, &["left", "along"]).reactions;
+            assert!(reactions[1][0] > 0.01, "{reactions:?}");
             assert!(
-                (found[0][0] + found[1][0]).abs() < 1e-10,
-                "{shape:?} {found:?}"
+                (reactions[0][0] + reactions[1][0]).abs() < 1e-10,
+                "{shape:?} {reactions:?}"
             );
         }
     }

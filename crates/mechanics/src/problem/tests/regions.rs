@@ -77,13 +77,13 @@ fn forces_of_strips_in_parallel_add() {
     for (_, shape) in CellShape::NAMES {
         let mesh = halves(1, shape);
         let problem = pulled(both([&laws[0], &laws[1]]), true);
-        let found = solved(&problem, &mesh, &["right"]);
+        let solution = solved(&problem, &mesh, &["right"]);
         assert!(
-            (found.reactions[0][0] / exact - 1.0).abs() < 1e-8,
+            (solution.reactions[0][0] / exact - 1.0).abs() < 1e-8,
             "{shape:?}"
         );
         // Each place has the stress of its own law.
-        let sheet = problem.deformed(&mesh, &found.state);
+        let sheet = problem.deformed(&mesh, &solution.state);
         let middle = mesh.middle()[1];
         for (y, stress) in [(middle - 3.0, soft), (middle + 3.0, stiff)] {
             let p = sheet.stress_at([10.0, y]).unwrap().first_piola_kirchhoff;
@@ -115,12 +115,12 @@ fn strips_in_series_carry_the_same_force() {
     for (_, shape) in CellShape::NAMES {
         let mesh = halves(0, shape);
         let problem = pulled(both([&laws[0], &laws[1]]), false);
-        let found = solved(&problem, &mesh, &["right"]);
+        let solution = solved(&problem, &mesh, &["right"]);
         assert!(
-            (found.reactions[0][0] / exact - 1.0).abs() < 1e-8,
+            (solution.reactions[0][0] / exact - 1.0).abs() < 1e-8,
             "{shape:?}"
         );
-        let sheet = problem.deformed(&mesh, &found.state);
+        let sheet = problem.deformed(&mesh, &solution.state);
         let [ux, _] = sheet.displacement_at([12.0, mesh.middle()[1]]).unwrap();
         assert!((ux / (12.0 * first) - 1.0).abs() < 1e-8, "{shape:?}: {ux}");
     }
@@ -149,10 +149,10 @@ fn forces_of_lattices_in_parallel_add() {
             2.0 * SIZE[1] * Mode::Uniaxial.nominal_stress(&**law, 0.4)
         };
         let usual = soft_force / exact(&soft);
-        let found = mixed / (0.5 * (exact(&soft) + exact(&stiff)));
+        let ratio = mixed / (0.5 * (exact(&soft) + exact(&stiff)));
         assert!(
-            (found / usual - 1.0).abs() < rounding,
-            "{shape:?}: {found} {usual}"
+            (ratio / usual - 1.0).abs() < rounding,
+            "{shape:?}: {ratio} {usual}"
         );
     }
 }
@@ -195,7 +195,7 @@ fn names_and_laws_are_exchanged_without_effect() {
     let [one, other, rest] = problems
         .each_ref()
         .map(|problem| solved(problem, &mesh, &[]));
-    let [spring, other_spring, rest_spring] = problems.each_ref().map(|own| springs(own, &mesh).0);
+    let [spring, other_spring, rest_spring] = problems.each_ref().map(|problem| springs(problem, &mesh).0);
     for (one, other) in [
         (&one.state, &other.state),
         (&one.state, &rest.state),

@@ -42,19 +42,19 @@ pub fn problem(supports: &[(&str, Support)], loads: &[(&str, Load)]) -> Boundary
 }
 
 /// A state at load factor 1 with what follows from it.
-pub struct Found {
+pub struct Solution {
     pub state: State,
     pub balance: Balance,
     pub reactions: Vec<[f64; 2]>,
 }
 
 /// The state at load factor 1 with the reactions of some groups.
-pub fn solved(problem: &BoundaryProblem, mesh: &Mesh, groups: &[&str]) -> Found {
+pub fn solved(problem: &BoundaryProblem, mesh: &Mesh, groups: &[&str]) -> Solution {
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).unwrap();
     let state = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap().remove(1);
     let reactions = model.reactions(&state);
-    Found {
+    Solution {
         balance: reactions.balance(),
         reactions: groups
             .iter()

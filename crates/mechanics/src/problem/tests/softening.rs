@@ -113,18 +113,18 @@ fn sheets_that_change_volume_soften_in_their_whole_energy() {
             (force, last)
         };
         let (first, top) = solved(Arc::clone(&virgin), &[0.8]);
-        let (below, own) = solved(Arc::clone(&virgin), &[0.3]);
-        let (found, state) = solved(softened(Arc::clone(&virgin)), &[0.8, 0.3]);
+        let (below, virgin_state) = solved(Arc::clone(&virgin), &[0.3]);
+        let (softened_force, state) = solved(softened(Arc::clone(&virgin)), &[0.8, 0.3]);
         let density = |state: &crate::solve::State| {
             let gradient = mesh.gradient_at(&state.displacement, 3, [0.0, 0.0]);
             virgin.stress(&Kinematics::new(&gradient.into()).unwrap()).0
         };
-        let [factor, _] = SOFTENING.factor(density(&own), density(&top));
+        let [factor, _] = SOFTENING.factor(density(&virgin_state), density(&top));
         assert!(
-            (found / (factor * below) - 1.0).abs() < 1e-10,
-            "{found} {below} {first}"
+            (softened_force / (factor * below) - 1.0).abs() < 1e-10,
+            "{softened_force} {below} {first}"
         );
-        let pairs = state.displacement.iter().zip(&own.displacement);
+        let pairs = state.displacement.iter().zip(&virgin_state.displacement);
         assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9));
     }
 }
@@ -163,17 +163,17 @@ fn the_work_of_the_grip_is_stored_or_dissipated() {
     let energy = problem.finite_elements(&mesh);
     let model = problem.on(&mesh, &energy).unwrap();
     let [coarse, fine] = [16, 32].map(|steps| works(&model, steps));
-    let error = |[external, own]: [f64; 2]| external / own - 1.0;
+    let error = |[external, internal]: [f64; 2]| external / internal - 1.0;
     // Trapezoids are right to second order.
     let extrapolated = (4.0 * fine[0] - coarse[0]) / 3.0;
     let (off, ratio) = (extrapolated / fine[1] - 1.0, error(coarse) / error(fine));
-    let told = format!("{coarse:?} {fine:?}: {off:.1e}, {ratio:.2}");
+    let message = format!("{coarse:?} {fine:?}: {off:.1e}, {ratio:.2}");
     assert!(
         error(fine).abs() < 3e-3 && (3.4..4.6).contains(&ratio),
-        "{told}"
+        "{message}"
     );
-    assert!(off.abs() < 1e-4, "{told}");
-    assert!((coarse[1] / fine[1] - 1.0).abs() < 1e-6, "{told}");
+    assert!(off.abs() < 1e-4, "{message}");
+    assert!((coarse[1] / fine[1] - 1.0).abs() < 1e-6, "{message}");
 }
 
 /// Load factors on the way change nothing, nor do the steps in which one is reached; while it is loaded for the first time the

@@ -54,7 +54,7 @@ impl Aggregates {
             count += 1;
         }
         let roots = of.clone();
-        for (row, own) in of.iter_mut().enumerate().filter(|(_, own)| **own == NONE) {
+        for (row, aggregate) in of.iter_mut().enumerate().filter(|(_, aggregate)| **aggregate == NONE) {
             let near = strong(row).filter(|(other, _)| roots[*other] != NONE);
             let nearest = near.fold((NONE, 0.0), |best, (other, strength)| {
                 let better = strength > best.1;
@@ -64,7 +64,7 @@ impl Aggregates {
                     best
                 }
             });
-            *own = nearest.0;
+            *aggregate = nearest.0;
         }
         for row in 0..rows {
             if of[row] == NONE {
@@ -87,17 +87,17 @@ impl Aggregates {
 /// ‖Aᵢₖ‖² / (‖Aᵢᵢ‖ ‖Aₖₖ‖) of every block.
 fn strengths<const N: usize>(matrix: &Blocks<N, N>) -> Vec<f64> {
     let square = |block: &[[f64; N]; N]| block.iter().flatten().map(|x| x * x).sum::<f64>();
-    let own = |row: usize| {
+    let diagonal_size = |row: usize| {
         let diagonal = matrix.row(row).find(|(column, _)| *column == row);
         diagonal.map_or(0.0, |(_, block)| square(block).sqrt())
     };
-    let sizes: Vec<f64> = (0..matrix.rows()).map(own).collect();
+    let sizes: Vec<f64> = (0..matrix.rows()).map(diagonal_size).collect();
     let of_row = |row: usize| {
-        let own = sizes[row];
+        let size = sizes[row];
         let sizes = &sizes;
         matrix
             .row(row)
-            .map(move |(column, block)| square(block) / (own * sizes[column]))
+            .map(move |(column, block)| square(block) / (size * sizes[column]))
     };
     (0..matrix.rows()).flat_map(of_row).collect()
 }

@@ -106,16 +106,16 @@ impl<const N: usize> Operator<N> {
                 }
             }
         }
-        let own = times(&self.inverses[row], &sum);
+        let solution = times(&self.inverses[row], &sum);
         for (column, block) in columns.iter().zip(blocks) {
             let before = &mut before[*column as usize];
             for i in 0..N {
                 for k in 0..N {
-                    before[k] -= block[i][k] * own[i];
+                    before[k] -= block[i][k] * solution[i];
                 }
             }
         }
-        x[row] = own;
+        x[row] = solution;
     }
 }
 

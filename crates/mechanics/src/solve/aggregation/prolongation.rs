@@ -25,7 +25,7 @@ pub fn tentative<const N: usize>(
         members[*aggregate as usize].push(node);
     }
     let mut rigid = motions.to_vec();
-    let coarse = members.iter().map(|own| orthonormalise(&mut rigid, own));
+    let coarse = members.iter().map(|nodes| orthonormalise(&mut rigid, nodes));
     let coarse = coarse.collect();
     (rigid, coarse)
 }
@@ -38,7 +38,7 @@ fn orthonormalise<const N: usize>(rigid: &mut [Motions<N>], nodes: &[usize]) -> 
             let rows = nodes.iter().flat_map(|node| &rigid[*node]);
             rows.map(|row| row[a] * row[b]).sum()
         };
-        let whole = product(rigid, column, column).sqrt();
+        let original = product(rigid, column, column).sqrt();
         for _ in 0..2 {
             for before in 0..column {
                 let share = product(rigid, before, column);
@@ -51,7 +51,7 @@ fn orthonormalise<const N: usize>(rigid: &mut [Motions<N>], nodes: &[usize]) -> 
             }
         }
         let length = product(rigid, column, column).sqrt();
-        let independent = length > DEPENDENT * whole;
+        let independent = length > DEPENDENT * original;
         factor[column][column] = if independent { length } else { 0.0 };
         let scale = if independent { 1.0 / length } else { 0.0 };
         for node in nodes {
@@ -80,9 +80,9 @@ pub fn smoothed<const N: usize>(
     let mut sums: Vec<(u32, Motions<N>)> = Vec::new();
     for row in 0..matrix.rows() {
         sums.clear();
-        let own = aggregates.of[row];
-        positions[own as usize] = 0;
-        sums.push((own, [[0.0; 3]; N]));
+        let row_aggregate = aggregates.of[row];
+        positions[row_aggregate as usize] = 0;
+        sums.push((row_aggregate, [[0.0; 3]; N]));
         for (node, block) in matrix.row(row) {
             let aggregate = aggregates.of[node];
             let position = &mut positions[aggregate as usize];
@@ -101,7 +101,7 @@ pub fn smoothed<const N: usize>(
         }
         for (aggregate, sum) in &mut sums {
             let image = *sum;
-            *sum = if *aggregate == own {
+            *sum = if *aggregate == row_aggregate {
                 rigid[row]
             } else {
                 [[0.0; 3]; N]
@@ -132,9 +132,9 @@ fn largest_eigenvalue<const N: usize>(matrix: &Blocks<N, N>, inverses: &[[[f64; 
     let size = matrix.rows();
     let irregular = super::super::krylov::irregular(N * size, 0);
     let chunks = irregular.chunks_exact(N);
-    let mut now: Vec<[f64; N]> = chunks.map(|own| std::array::from_fn(|i| own[i])).collect();
+    let mut now: Vec<[f64; N]> = chunks.map(|entries| std::array::from_fn(|i| entries[i])).collect();
     let mut image = vec![[0.0; N]; size];
-    let mut found = 1.0;
+    let mut quotient = 1.0;
     for _ in 0..STEPS {
         matrix.multiply(&now, &mut image);
         let (mut above, mut below, mut most) = (0.0, 0.0, 0.0_f64);
@@ -149,9 +149,9 @@ fn largest_eigenvalue<const N: usize>(matrix: &Blocks<N, N>, inverses: &[[[f64; 
             }
             *now = next;
         }
-        found = above / below;
+        quotient = above / below;
         let scale = 1.0 / most;
         now.iter_mut().flatten().for_each(|x| *x *= scale);
     }
-    SAFE * found
+    SAFE * quotient
 }

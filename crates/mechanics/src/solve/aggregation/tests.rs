@@ -99,21 +99,21 @@ impl Sheet {
 
     fn prepare(&self) -> (Nodes, NodalMatrix, Hierarchy) {
         let (nodes, matrix) = self.matrix();
-        let cycle = Hierarchy::new(&matrix.whole(), &nodes.motions()).unwrap();
+        let cycle = Hierarchy::new(&matrix.full(), &nodes.motions()).unwrap();
         (nodes, matrix, cycle)
     }
 
     fn iterations(&self) -> usize {
         let (nodes, matrix, mut cycle) = self.prepare();
-        let found = conjugate_gradients(
+        let solution = conjugate_gradients(
             &matrix,
             |r, z| cycle.apply(r, z),
             &nodes.uneven(),
             1e-8,
             200,
         );
-        let found = found.unwrap();
-        assert!(found.reduction <= 1e-8);
+        let solution = solution.unwrap();
+        assert!(solution.reduction <= 1e-8);
         // The true residual has fallen too.
         let b = nodes.gather(&nodes.uneven());
         let assembly = Assembly::new(self, &self.held);
@@ -123,14 +123,14 @@ impl Sheet {
         assert_eq!(matrix.entries(&nodes, assembly.pattern()), values);
         let image = assembly
             .pattern()
-            .multiply(&values, &nodes.gather(&found.x));
-        let left = crate::solve::vector::difference(&b, &image);
-        let (left, whole) = (
-            crate::solve::vector::norm(&left),
+            .multiply(&values, &nodes.gather(&solution.x));
+        let residual = crate::solve::vector::difference(&b, &image);
+        let (residual, size) = (
+            crate::solve::vector::norm(&residual),
             crate::solve::vector::norm(&b),
         );
-        assert!(left < 1e-4 * whole, "{left} of {whole}");
-        found.iterations
+        assert!(residual < 1e-4 * size, "{residual} of {size}");
+        solution.iterations
     }
 }
 
@@ -178,8 +178,8 @@ fn iterations_hardly_depend_on_the_number_of_nodes() {
 #[test]
 fn long_cells_and_sliding_sides_take_a_few_iterations_more() {
     for slides in [false, true] {
-        let found = sheet([24, 16], [3.0, 0.5], slides, |node| node).iterations();
-        assert!(found <= 40, "{slides}: {found}");
+        let iterations = sheet([24, 16], [3.0, 0.5], slides, |node| node).iterations();
+        assert!(iterations <= 40, "{slides}: {iterations}");
     }
 }
 
@@ -200,7 +200,7 @@ fn an_indefinite_matrix_is_seen() {
         let block = &mut matrix.blocks.values[end - 1];
         (block[0][0], block[1][1]) = (block[0][0] - 0.01, block[1][1] - 0.01);
     }
-    let seen = match Hierarchy::new(&matrix.whole(), &nodes.motions()) {
+    let seen = match Hierarchy::new(&matrix.full(), &nodes.motions()) {
         Err(_) => true,
         Ok(mut cycle) => {
             conjugate_gradients(&matrix, |r, z| cycle.apply(r, z), &nodes.uneven(), 0.0, 12)

@@ -47,7 +47,7 @@ impl NodalMatrix {
         for row in 0..nodes.count() {
             for block in blocks.starts[row]..blocks.starts[row + 1] {
                 let column = blocks.columns[block] as usize;
-                let free = nodes.free[row].map(|own| nodes.free[column].map(|other| own && other));
+                let free = nodes.free[row].map(|is_free| nodes.free[column].map(|other| is_free && other));
                 if free != [[true; 2]; 2] {
                     partly.push(PartlyFree {
                         block,
@@ -89,11 +89,11 @@ impl NodalMatrix {
         if energy.is_err() {
             self.blocks.values.fill([[f64::NAN; 2]; 2]);
         }
-        for own in &self.partly {
-            let block = &mut self.blocks.values[own.block];
-            for (i, (row, free)) in block.iter_mut().zip(own.free).enumerate() {
+        for partial in &self.partly {
+            let block = &mut self.blocks.values[partial.block];
+            for (i, (row, free)) in block.iter_mut().zip(partial.free).enumerate() {
                 for k in (0..2).filter(|k| !free[*k]) {
-                    row[k] = if own.on_diagonal && i == k { 1.0 } else { 0.0 };
+                    row[k] = if partial.on_diagonal && i == k { 1.0 } else { 0.0 };
                 }
             }
         }
@@ -119,22 +119,22 @@ impl NodalMatrix {
         y.fill([0.0; 2]);
         for row in 0..y.len() {
             let below = starts[row]..starts[row + 1] - 1;
-            let (own, mut sum) = (x[row], [0.0; 2]);
+            let (x_row, mut sum) = (x[row], [0.0; 2]);
             for (column, block) in columns[below.clone()].iter().zip(&values[below.clone()]) {
                 add_product(&mut sum, block, &x[*column as usize]);
                 let before = &mut y[*column as usize];
-                before[0] += block[0][0] * own[0] + block[1][0] * own[1];
-                before[1] += block[0][1] * own[0] + block[1][1] * own[1];
+                before[0] += block[0][0] * x_row[0] + block[1][0] * x_row[1];
+                before[1] += block[0][1] * x_row[0] + block[1][1] * x_row[1];
             }
-            add_product(&mut sum, &values[below.end], &own);
+            add_product(&mut sum, &values[below.end], &x_row);
             y[row] = sum;
         }
     }
 
     /// All blocks, those above the diagonal too.
-    pub fn whole(&self) -> Blocks<2, 2> {
+    pub fn full(&self) -> Blocks<2, 2> {
         let above = self.blocks.transposed(self.blocks.rows());
-        let mut whole = Blocks {
+        let mut full = Blocks {
             starts: vec![0],
             ..Blocks::default()
         };
@@ -142,12 +142,12 @@ impl NodalMatrix {
             let below = self.blocks.row(row);
             // The first one above is that on the diagonal.
             for (column, block) in below.chain(above.row(row).skip(1)) {
-                whole.columns.push(column as u32);
-                whole.values.push(*block);
+                full.columns.push(column as u32);
+                full.values.push(*block);
             }
-            whole.starts.push(whole.columns.len());
+            full.starts.push(full.columns.len());
         }
-        whole
+        full
     }
 
     /// The values of a pattern over the unknowns of the nodes.
@@ -170,19 +170,19 @@ impl ElementBlocks {
             let nodes = potential.element_unknowns(element).len() / 2;
             nodes * (nodes + 1) / 2
         };
-        let mut own = Self {
+        let mut element_blocks = Self {
             pairs: Vec::with_capacity((0..potential.elements()).map(count).sum()),
             starts: Vec::with_capacity(potential.elements() + 1),
         };
-        assert!(own.pairs.capacity() < NONE as usize, "fewer than 2³² pairs");
-        own.starts.push(0);
+        assert!(element_blocks.pairs.capacity() < NONE as usize, "fewer than 2³² pairs");
+        element_blocks.starts.push(0);
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
             if has_both_unknowns_in_turn(unknowns) {
                 let row = |node: usize| rows[unknowns[2 * node] as usize / 2];
                 for a in 0..unknowns.len() / 2 {
                     for b in 0..=a {
-                        own.pairs.push(match [row(a), row(b)] {
+                        element_blocks.pairs.push(match [row(a), row(b)] {
                             [NONE, _] | [_, NONE] => NONE,
                             [a, b] if a < b => 2 * find(blocks, b as usize, a as usize) as u32 + 1,
                             [a, b] => 2 * find(blocks, a as usize, b as usize) as u32,
@@ -190,9 +190,9 @@ impl ElementBlocks {
                     }
                 }
             }
-            own.starts.push(own.pairs.len() as u32);
+            element_blocks.starts.push(element_blocks.pairs.len() as u32);
         }
-        own
+        element_blocks
     }
 
     fn of(&self, element: usize) -> &[u32] {
@@ -203,7 +203,7 @@ impl ElementBlocks {
 /// Whether unknowns are both of one node, both of another one, and so on.
 fn has_both_unknowns_in_turn(unknowns: &[u32]) -> bool {
     let nodes = unknowns.chunks(2);
-    let both = |own: &[u32]| own.len() == 2 && own[0].is_multiple_of(2) && own[1] == own[0] + 1;
+    let both = |pair: &[u32]| pair.len() == 2 && pair[0].is_multiple_of(2) && pair[1] == pair[0] + 1;
     let other = |position: usize| !unknowns[..position].contains(&unknowns[position]);
     nodes.clone().all(both) && (0..unknowns.len()).step_by(2).all(other)
 }
@@ -222,16 +222,16 @@ fn pattern(count: usize, rows: &[u32], potential: &dyn Potential) -> Blocks<2, 2
         begins.push(members.len());
     }
     let all = (0..potential.elements()).flat_map(|element| {
-        let own = members[begins[element]..begins[element + 1]].iter();
-        own.map(move |row| (*row as usize, element as u32))
+        let element_rows = members[begins[element]..begins[element + 1]].iter();
+        element_rows.map(move |row| (*row as usize, element as u32))
     });
     let (around, elements) = grouped(count, all);
     let (mut starts, mut columns) = (vec![0], Vec::new());
     let mut seen = vec![NONE; count];
     for row in 0..count as u32 {
-        let own = around[row as usize]..around[row as usize + 1];
+        let entries = around[row as usize]..around[row as usize + 1];
         let begin = columns.len();
-        for element in &elements[own] {
+        for element in &elements[entries] {
             let element = *element as usize;
             for column in &members[begins[element]..begins[element + 1]] {
                 if *column < row && seen[*column as usize] != row {
@@ -255,8 +255,8 @@ fn pattern(count: usize, rows: &[u32], potential: &dyn Potential) -> Blocks<2, 2
 /// Where a block on or below the diagonal is.
 fn find(blocks: &Blocks<2, 2>, row: usize, column: usize) -> usize {
     let start = blocks.starts[row];
-    let own = &blocks.columns[start..blocks.starts[row + 1]];
-    start + own.binary_search(&(column as u32)).expect("a block")
+    let columns = &blocks.columns[start..blocks.starts[row + 1]];
+    start + columns.binary_search(&(column as u32)).expect("a block")
 }
 
 /// Adds an element's stiffness, whose lower triangle is known.
@@ -268,16 +268,16 @@ fn add_pairs(blocks: &mut Blocks<2, 2>, pairs: &[u32], size: usize, stiffness: &
             if *pair == NONE {
                 continue;
             }
-            let mut own = [0, 1].map(|i| [rows[i][2 * b], rows[i][2 * b + 1]]);
+            let mut block = [0, 1].map(|i| [rows[i][2 * b], rows[i][2 * b + 1]]);
             if a == b {
-                own[0][1] = own[1][0];
+                block[0][1] = block[1][0];
             } else if pair % 2 == 1 {
-                own = [[own[0][0], own[1][0]], [own[0][1], own[1][1]]];
+                block = [[block[0][0], block[1][0]], [block[0][1], block[1][1]]];
             }
             let sum = &mut blocks.values[*pair as usize / 2];
             for i in 0..2 {
                 for k in 0..2 {
-                    sum[i][k] += own[i][k];
+                    sum[i][k] += block[i][k];
                 }
             }
         }

@@ -47,9 +47,9 @@ impl Header<'_> {
         } else {
             ("UInt32", 4)
         };
-        let (own, rest) = self.bytes.split_at_checked(width).ok_or("is cut off")?;
+        let (word, rest) = self.bytes.split_at_checked(width).ok_or("is cut off")?;
         self.bytes = rest;
-        Ok(self.numbers.number(kind, own) as usize)
+        Ok(self.numbers.number(kind, word) as usize)
     }
 }
 
@@ -71,9 +71,9 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable>
     for size in sizes? {
         let (block, behind) = rest.split_at_checked(size).ok_or("is cut off")?;
         rest = behind;
-        let left = (wanted - data.len()) as u64;
+        let remaining = (wanted - data.len()) as u64;
         let read = ZlibDecoder::new(block)
-            .take(left + 1)
+            .take(remaining + 1)
             .read_to_end(&mut data);
         read.map_err(|cause| format!("cannot be decompressed: {cause}"))?;
         if data.len() > wanted {
@@ -91,8 +91,8 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable>
 pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Unreadable> {
     // What follows appended data is XML again.
     let end = text.iter().position(|byte| *byte == b'<');
-    let own = text[..end.unwrap_or(text.len())].iter().copied();
-    let plain: Vec<u8> = own.filter(|byte| !byte.is_ascii_whitespace()).collect();
+    let encoded = text[..end.unwrap_or(text.len())].iter().copied();
+    let plain: Vec<u8> = encoded.filter(|byte| !byte.is_ascii_whitespace()).collect();
     let (mut bytes, mut start) = (Vec::new(), 0);
     while start < plain.len() {
         let padding = plain[start..].iter().position(|byte| *byte == b'=');

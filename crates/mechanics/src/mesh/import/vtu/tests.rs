@@ -13,7 +13,7 @@ use super::*;
 
 /// How a file is written.
 #[derive(Clone, Copy, Debug)]
-struct Way {
+struct Encoding {
     format: &'static str,
     encoding: &'static str,
     compressed: bool,
@@ -21,7 +21,7 @@ struct Way {
     big_endian: bool,
 }
 
-const ASCII: Way = Way {
+const ASCII: Encoding = Encoding {
     format: "ascii",
     encoding: "",
     compressed: false,
@@ -31,15 +31,15 @@ const ASCII: Way = Way {
 
 /// A triangle and a quadrilateral side by side, with a displacement.
 struct Written {
-    way: Way,
+    options: Encoding,
     appended: Vec<u8>,
 }
 
 impl Written {
     fn size(&self, number: usize) -> Vec<u8> {
-        let whole = (number as u64).to_le_bytes();
-        let mut bytes = whole[..if self.way.wide_header { 8 } else { 4 }].to_vec();
-        if self.way.big_endian {
+        let full = (number as u64).to_le_bytes();
+        let mut bytes = full[..if self.options.wide_header { 8 } else { 4 }].to_vec();
+        if self.options.big_endian {
             bytes.reverse();
         }
         bytes
@@ -50,7 +50,7 @@ impl Written {
         let head = format!(
             "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\""
         );
-        if self.way.format == "ascii" {
+        if self.options.format == "ascii" {
             let values: Vec<String> = values.iter().map(f64::to_string).collect();
             return format!(
                 "{head} format=\"ascii\">\n{}\n</DataArray>\n",
@@ -65,24 +65,24 @@ impl Written {
                 "Int64" => (*value as i64).to_le_bytes().to_vec(),
                 _ => vec![*value as u8],
             };
-            if self.way.big_endian {
+            if self.options.big_endian {
                 bytes.reverse();
             }
             data.extend(bytes);
         }
-        let parts = if !self.way.compressed {
+        let parts = if !self.options.compressed {
             vec![self.size(data.len()), data]
         } else {
             self.blocks(&data)
         };
-        let stored: Vec<u8> = match (self.way.format, self.way.encoding) {
+        let stored: Vec<u8> = match (self.options.format, self.options.encoding) {
             ("appended", "raw") => parts.concat(),
             _ => parts
                 .iter()
                 .flat_map(|part| STANDARD.encode(part).into_bytes())
                 .collect(),
         };
-        if self.way.format == "appended" {
+        if self.options.format == "appended" {
             let offset = self.appended.len();
             self.appended.extend(stored);
             return format!("{head} format=\"appended\" offset=\"{offset}\"/>\n");
@@ -108,9 +108,9 @@ impl Written {
     }
 }
 
-fn file(way: Way) -> Vec<u8> {
+fn file(options: Encoding) -> Vec<u8> {
     let mut written = Written {
-        way,
+        options,
         appended: Vec::new(),
     };
     let points = [
@@ -129,17 +129,17 @@ fn file(way: Way) -> Vec<u8> {
     );
     let ends = written.array("offsets", "Int64", 1, &[4.0, 7.0]);
     let kinds = written.array("types", "UInt8", 1, &[9.0, 5.0]);
-    let compressor = if way.compressed {
+    let compressor = if options.compressed {
         " compressor=\"vtkZLibDataCompressor\""
     } else {
         ""
     };
-    let order = if way.big_endian {
+    let order = if options.big_endian {
         "BigEndian"
     } else {
         "LittleEndian"
     };
-    let header = if way.wide_header { "UInt64" } else { "UInt32" };
+    let header = if options.wide_header { "UInt64" } else { "UInt32" };
     let mut bytes = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{order}\" \
          header_type=\"{header}\"{compressor}>\n<UnstructuredGrid>\n\
@@ -147,8 +147,8 @@ fn file(way: Way) -> Vec<u8> {
          <CellData/>\n<Points>\n{points}</Points>\n<Cells>\n{nodes}{ends}{kinds}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
     )
     .into_bytes();
-    if way.format == "appended" {
-        bytes.extend(format!("<AppendedData encoding=\"{}\">\n _", way.encoding).into_bytes());
+    if options.format == "appended" {
+        bytes.extend(format!("<AppendedData encoding=\"{}\">\n _", options.encoding).into_bytes());
         bytes.extend(written.appended);
         bytes.extend(b"\n</AppendedData>\n");
     }
@@ -156,11 +156,11 @@ fn file(way: Way) -> Vec<u8> {
     bytes
 }
 
-fn ways() -> Vec<Way> {
-    let mut ways = vec![ASCII];
+fn encodings() -> Vec<Encoding> {
+    let mut encodings = vec![ASCII];
     for (format, encoding) in [("binary", ""), ("appended", "raw"), ("appended", "base64")] {
         for switches in 0..8 {
-            ways.push(Way {
+            encodings.push(Encoding {
                 format,
                 encoding,
                 compressed: switches & 1 != 0,
@@ -169,26 +169,26 @@ fn ways() -> Vec<Way> {
             });
         }
     }
-    ways
+    encodings
 }
 
 #[test]
 fn a_grid_is_the_same_however_it_is_written() {
-    for way in ways() {
-        let grid = read(&file(way)).unwrap_or_else(|reason| panic!("{way:?}: {reason}"));
+    for options in encodings() {
+        let grid = read(&file(options)).unwrap_or_else(|reason| panic!("{options:?}: {reason}"));
         assert_eq!(
             grid.cells,
             [(9, vec![0, 1, 2, 3]), (5, vec![1, 4, 2])],
-            "{way:?}"
+            "{options:?}"
         );
-        assert_eq!(grid.points[12..], [2.0, 0.5, 0.0], "{way:?}");
+        assert_eq!(grid.points[12..], [2.0, 0.5, 0.0], "{options:?}");
         let [(name, values)] = &grid.point_arrays[..] else {
-            panic!("{way:?}");
+            panic!("{options:?}");
         };
         assert_eq!(
             (&**name, values.len(), values[13]),
             ("displacement", 15, -0.125),
-            "{way:?}"
+            "{options:?}"
         );
     }
 }
@@ -226,23 +226,23 @@ fn a_file_that_asks_for_more_than_it_holds_is_refused_before_anything_is_made() 
         ),
         ("\"Float64\"", "\"String\"", "is of the type `String`"),
     ] {
-        let found = read(plain.replacen(from, to, 1).as_bytes()).err();
-        let found = found.unwrap_or_else(|| panic!("{from} -> {to} was read"));
+        let error = read(plain.replacen(from, to, 1).as_bytes()).err();
+        let error = error.unwrap_or_else(|| panic!("{from} -> {to} was read"));
         assert!(
-            found.to_string().contains(reason),
-            "{from} -> {to}: {found}"
+            error.to_string().contains(reason),
+            "{from} -> {to}: {error}"
         );
     }
-    let squeezed = Way {
+    let squeezed = Encoding {
         compressed: true,
-        ..ways()[1]
+        ..encodings()[1]
     };
     let text = String::from_utf8(file(squeezed)).unwrap();
     let bomb = text.replace("NumberOfPoints=\"5\"", "NumberOfPoints=\"4000000\"");
-    let found = read(bomb.as_bytes()).err().unwrap();
+    let error = read(bomb.as_bytes()).err().unwrap();
     assert!(
-        found.to_string().contains("bytes that belong to it"),
-        "{found}"
+        error.to_string().contains("bytes that belong to it"),
+        "{error}"
     );
 }
 
@@ -270,11 +270,11 @@ proptest! {
     /// Damage is an error or another grid, and never a panic.
     #[test]
     fn damaged_files_never_panic(
-        way in 0..25_usize,
+        index in 0..25_usize,
         positions in proptest::collection::vec((0.0..1.0_f64, any::<u8>()), 1..6),
         cut in 0.0..1.2_f64,
     ) {
-        let mut bytes = file(ways()[way]);
+        let mut bytes = file(encodings()[index]);
         let length = bytes.len();
         for (position, byte) in positions {
             bytes[(position * length as f64) as usize] = byte;

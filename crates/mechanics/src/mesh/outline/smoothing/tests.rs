@@ -15,9 +15,9 @@ fn a_round_hole_among_markers_is_round_and_ends_at_the_innermost_ones() {
     for radius in [3.0, 5.0, 8.0] {
         for shift in [[0.0, 0.0], [0.3, 0.1], [0.5, 0.5], [0.77, 0.42]] {
             let points = markers(shift, radius);
-            let found = Outline::of_points(&points).unwrap().outline;
-            assert_eq!(found.holes.len(), 1);
-            let hole = &found.holes[0];
+            let outline = Outline::of_points(&points).unwrap().outline;
+            assert_eq!(outline.holes.len(), 1);
+            let hole = &outline.holes[0];
             let radii = hole.iter().map(|point| distance(*point, [20.0, 15.0]));
             let [low, high] = crate::statistics::extremes(radii);
             assert!(
@@ -27,10 +27,10 @@ fn a_round_hole_among_markers_is_round_and_ends_at_the_innermost_ones() {
             // No marker tells of what is nearer than the nearest one.
             let reached = points.iter().map(|point| distance(*point, [20.0, 15.0]));
             let nearest = reached.fold(f64::INFINITY, f64::min);
-            let own = (-polygon_area(hole) / std::f64::consts::PI).sqrt();
+            let mean_radius = (-polygon_area(hole) / std::f64::consts::PI).sqrt();
             assert!(
-                own > nearest - 0.1 && own < nearest + 0.3,
-                "{radius} {shift:?}: {own} {nearest}"
+                mean_radius > nearest - 0.1 && mean_radius < nearest + 0.3,
+                "{radius} {shift:?}: {mean_radius} {nearest}"
             );
         }
     }
@@ -49,21 +49,21 @@ fn curves_go_through_markers_that_lie_on_them() {
                 [5000.0 + radius * cosine, radius * sine]
             })
         });
-        let found = Outline::of_points(&rings.collect::<Vec<_>>()).unwrap();
-        let outline = found.outline;
+        let traced = Outline::of_points(&rings.collect::<Vec<_>>()).unwrap();
+        let outline = traced.outline;
         assert_eq!(outline.holes.len(), 1);
         for (line, radius) in [(&outline.outer, 24.0), (&outline.holes[0], 8.0)] {
             for point in line {
                 let off = distance(*point, [5000.0, 0.0]) - radius;
                 assert!(
-                    off.abs() < 2e-3 * found.spacing,
+                    off.abs() < 2e-3 * traced.spacing,
                     "{spacing} {radius}: {off}"
                 );
             }
-            let own = (polygon_area(line).abs() / std::f64::consts::PI).sqrt();
+            let mean_radius = (polygon_area(line).abs() / std::f64::consts::PI).sqrt();
             assert!(
-                (own - radius).abs() < 4e-3 * found.spacing,
-                "{spacing}: {own}"
+                (mean_radius - radius).abs() < 4e-3 * traced.spacing,
+                "{spacing}: {mean_radius}"
             );
         }
     }
@@ -73,9 +73,9 @@ fn curves_go_through_markers_that_lie_on_them() {
         let height = 12.0 + 4.0 * (std::f64::consts::PI * x / 40.0).sin();
         (0..=12).map(move |j| [x, height * f64::from(j) / 12.0])
     });
-    let found = Outline::of_points(&sheet.collect::<Vec<_>>()).unwrap();
+    let traced = Outline::of_points(&sheet.collect::<Vec<_>>()).unwrap();
     let exact = 40.0 * (12.0 + 8.0 / std::f64::consts::PI);
-    let area = polygon_area(&found.outline.outer);
+    let area = polygon_area(&traced.outline.outer);
     assert!((area / exact - 1.0).abs() < 1e-3, "{area} {exact}");
 }
 
@@ -94,9 +94,9 @@ fn corners_of_small_specimens_stay() {
         let points: Vec<[f64; 2]> = (0..=across)
             .flat_map(|i| (0..=along).map(move |j| [f64::from(i), f64::from(j)]))
             .collect();
-        let found = Outline::of_points(&points).unwrap().outline;
-        assert_eq!(found.outer.len(), 4, "{across} {along}: {:?}", found.outer);
-        assert_eq!(polygon_area(&found.outer), f64::from(across * along));
+        let outline = Outline::of_points(&points).unwrap().outline;
+        assert_eq!(outline.outer.len(), 4, "{across} {along}: {:?}", outline.outer);
+        assert_eq!(polygon_area(&outline.outer), f64::from(across * along));
     }
 }
 
@@ -107,16 +107,16 @@ fn corners_and_straight_edges_stay() {
         .into_iter()
         .filter(square)
         .collect();
-    let found = Outline::of_points(&points).unwrap().outline;
-    assert_eq!(found.outer.len(), 4);
+    let outline = Outline::of_points(&points).unwrap().outline;
+    assert_eq!(outline.outer.len(), 4);
     // Triangles of neighbours close the corners of a hole.
     for (axis, ends) in [[13.0, 27.0], [10.0, 20.0]].into_iter().enumerate() {
-        let reached = crate::statistics::extremes(found.holes[0].iter().map(|p| p[axis]));
+        let reached = crate::statistics::extremes(outline.holes[0].iter().map(|p| p[axis]));
         for (end, reached) in ends.into_iter().zip(reached) {
-            assert!((end - reached).abs() < 0.05, "{:?}", found.holes[0]);
+            assert!((end - reached).abs() < 0.05, "{:?}", outline.holes[0]);
         }
     }
-    assert!((-polygon_area(&found.holes[0]) / 140.0 - 1.0).abs() < 0.1);
+    assert!((-polygon_area(&outline.holes[0]) / 140.0 - 1.0).abs() < 0.1);
 }
 
 /// A waist of circular arcs between straight edges, as a dog-bone has it.
@@ -135,8 +135,8 @@ fn arcs_between_straight_edges_are_round() {
         .flat_map(|i| (-15..=15).map(move |j| [f64::from(i), f64::from(j)]))
         .filter(|[x, y]| y.abs() <= half(*x) + 1e-9)
         .collect();
-    let found = Outline::of_points(&points).unwrap().outline;
-    for [x, y] in &found.outer {
+    let outline = Outline::of_points(&points).unwrap().outline;
+    for [x, y] in &outline.outer {
         assert!(
             y.abs() < half(*x) + 0.6 && (*x <= 0.0 || *x >= 60.0 || y.abs() > half(*x) - 0.6),
             "{x} {y}"
@@ -146,8 +146,8 @@ fn arcs_between_straight_edges_are_round() {
         .map(|i| 0.02 * half(f64::from(i) * 0.01 + 0.005))
         .sum();
     assert!(
-        (polygon_area(&found.outer) / area - 1.0).abs() < 5e-3,
+        (polygon_area(&outline.outer) / area - 1.0).abs() < 5e-3,
         "{} {area}",
-        polygon_area(&found.outer)
+        polygon_area(&outline.outer)
     );
 }
