@@ -114,8 +114,8 @@ impl FiniteElements {
     ) -> Vec<Result<ErrorEstimate, SolveFault>> {
         let quarter = Quarter::of(plate, &self.mesh, LinearSolver::Automatic);
         let by_quarter = quarter.and_then(|quarter| quarter.influences(states));
-        let of_full = || self.model(plate).influences(states, Side::Right.name(), 0);
-        let influences = by_quarter.unwrap_or_else(of_full);
+        let by_full_plate = || self.model(plate).influences(states, Side::Right.name(), 0);
+        let influences = by_quarter.unwrap_or_else(by_full_plate);
         let laws = CellLaws::from(Arc::clone(&plate.law));
         let solved = states.iter().map(|state| SheetSolution {
             laws: &laws,
