@@ -232,7 +232,8 @@ mod tests {
             mode(2.0, [0.7, 0.0, 0.7, -0.3]),
             mode(3.0, [-0.1, 0.8, 0.0, 0.9]),
         ];
-        let frequencies = [0, 1].map(|axis| strongest(modes.clone(), &[1.0; 4], axis).unwrap().frequency);
+        let frequencies =
+            [0, 1].map(|axis| strongest(modes.clone(), &[1.0; 4], axis).unwrap().frequency);
         assert_eq!(frequencies, [2.0, 3.0]);
         assert_eq!(strongest(modes[..1].to_vec(), &[1.0; 4], 0), None);
     }

@@ -58,7 +58,10 @@ impl<'a> SheetViscosity<'a> {
             let q = [0, 1, 2].map(|i| branches.iter().map(|q| q[i]).sum());
             stress += first_piola_kirchhoff(kinematics, q);
             if with_tangents {
-                let takes: f64 = material.recursions(elapsed).map(|recursion| recursion.takes).sum();
+                let takes: f64 = material
+                    .recursions(elapsed)
+                    .map(|recursion| recursion.takes)
+                    .sum();
                 let rest = [0, 1, 2].map(|i| q[i] - takes * now[i]);
                 by_displacement = takes * tangent + geometric_tangent(rest);
             }

@@ -39,7 +39,10 @@ impl StepForces<'_> {
             memory: self.memory.of(element),
             elapsed: self.elapsed,
         };
-        let size = local.stiffness.as_ref().map_or(0, |stiffness| stiffness.len());
+        let size = local
+            .stiffness
+            .as_ref()
+            .map_or(0, |stiffness| stiffness.len());
         let [mut by_displacement, mut by_velocity] = [(); 2].map(|()| vec![0.0; size]);
         let tangents = [&mut by_displacement[..], &mut by_velocity[..]];
         let viscous_local = ViscousLocal {

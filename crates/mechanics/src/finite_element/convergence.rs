@@ -117,7 +117,10 @@ mod tests {
         // The error changes its sign between the last two meshes: 1 %, 0.1 % and -0.09 %, or nearly vanishes.
         for fine in [0.9991, 1.000_999] {
             let extrapolation = richardson([1.01, 1.001, fine]);
-            assert!(extrapolation.error_percent > 0.003, "{fine}: {extrapolation:?}");
+            assert!(
+                extrapolation.error_percent > 0.003,
+                "{fine}: {extrapolation:?}"
+            );
         }
         assert_eq!(richardson([2.0; 3]).error_percent, 0.0);
     }

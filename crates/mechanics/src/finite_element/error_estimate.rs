@@ -216,8 +216,11 @@ impl SheetSolution<'_> {
             for (local, weight) in self.mesh.shape(cell).product_quadrature(&GAUSS_3) {
                 let gradient = self.mesh.gradient_at(self.displacement, cell, local);
                 let gradient = Vector4::from(gradient);
-                let response = Kinematics::new(&gradient).map(|kinematics| law.response(&kinematics));
-                let Some(response) = response.ok().filter(|response| response.tangent.sum().is_finite())
+                let response =
+                    Kinematics::new(&gradient).map(|kinematics| law.response(&kinematics));
+                let Some(response) = response
+                    .ok()
+                    .filter(|response| response.tangent.sum().is_finite())
                 else {
                     all = false;
                     continue;

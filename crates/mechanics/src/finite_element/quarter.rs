@@ -127,7 +127,10 @@ impl Quarter {
     /// The fields of the whole plate in mm/mm caused by a motion of the right grip along X at states; `None` where one of these is not symmetric.
     pub fn influences(&self, states: &[State]) -> Option<Vec<Result<Vec<f64>, SolveFault>>> {
         let quarters: Option<Vec<State>> = states.iter().map(|state| self.folded(state)).collect();
-        let influences = self.model().influences(&quarters?, MIDDLES[0], 0).into_iter();
+        let influences = self
+            .model()
+            .influences(&quarters?, MIDDLES[0], 0)
+            .into_iter();
         // The middle moves half as far as the grip.
         let unfold = |quarter: Vec<f64>| {
             let halved: Vec<f64> = quarter.iter().map(|z| 0.5 * z).collect();
@@ -170,7 +173,9 @@ impl Quarter {
 /// The cells of a plate whose nodes are images of themselves, with the middle lines as groups.
 fn part(full: &Mesh, images: &[(usize, [bool; 2])]) -> Mesh {
     let is_kept = |node: &usize| images[*node].1 == [false; 2];
-    let nodes = (0..images.len()).filter(is_kept).map(|node| full.nodes[node]);
+    let nodes = (0..images.len())
+        .filter(is_kept)
+        .map(|node| full.nodes[node]);
     let cells = (0..full.cell_count()).filter(|cell| full.cell(*cell).iter().all(is_kept));
     let cells = cells.map(|cell| {
         let nodes = full.cell(cell).iter().map(|node| images[*node].0);

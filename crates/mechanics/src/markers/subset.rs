@@ -154,7 +154,10 @@ mod tests {
         let job = "%%% i_Subset\n<Step$size>=<7>\n<Subset$size>=<21>\n";
         let table = "a,b\n1,2\n";
         assert_eq!(subset_in(&[("a.txt", dice)], "DICe"), Some([27.0, 35.0]));
-        assert_eq!(subset_in(&[("a.txt", gom)], "GOM, nodemap"), Some([19.0, 16.0]));
+        assert_eq!(
+            subset_in(&[("a.txt", gom)], "GOM, nodemap"),
+            Some([19.0, 16.0])
+        );
         let files = [
             ("foam_csv_2026/1.csv", table),
             ("foam_parameters_2026.json", aldic),

@@ -88,7 +88,10 @@ fn sections(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
         let count = free.len();
         free.retain(|i| sections[*i] >= -1e-12 * most);
         if free.len() == count {
-            return sections.into_iter().map(|section| section.max(0.0)).collect();
+            return sections
+                .into_iter()
+                .map(|section| section.max(0.0))
+                .collect();
         }
     }
 }
@@ -154,7 +157,8 @@ mod tests {
         for cells in [[6, 6], [6, 4], [8, 6]] {
             let mesh = Mesh::plate([6.0, 6.0], cells, CellShape::Quad4);
             let computed = tensor(&mesh, 36.0);
-            for (computed, expected) in computed.iter().zip([9.0 / 8.0, 3.0 / 8.0, 9.0 / 8.0, 0.0]) {
+            for (computed, expected) in computed.iter().zip([9.0 / 8.0, 3.0 / 8.0, 9.0 / 8.0, 0.0])
+            {
                 assert!((computed - expected).abs() < 1e-12, "{cells:?}: {computed}");
             }
         }

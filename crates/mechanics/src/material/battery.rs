@@ -202,7 +202,10 @@ fn biaxial_stresses_are_those_of_the_sheet() {
             let computed = law.biaxial(strains);
             for (computed, exact) in computed.iter().zip([sheet[0], sheet[3]]) {
                 let scale = sheet.norm();
-                assert!((computed - exact).abs() < 1e-13 * scale, "{name} {strains:?}");
+                assert!(
+                    (computed - exact).abs() < 1e-13 * scale,
+                    "{name} {strains:?}"
+                );
             }
         }
     });

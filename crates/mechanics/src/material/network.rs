@@ -354,7 +354,10 @@ mod tests {
         let stress = sheet.stress(&state).1;
         let computed = sheet.cauchy_stress(&state, &stress)[0];
         let expected = modulus * (1.0 - low * low) / low;
-        assert!((computed / expected - 1.0).abs() < 1e-9, "{computed} {expected}");
+        assert!(
+            (computed / expected - 1.0).abs() < 1e-9,
+            "{computed} {expected}"
+        );
     }
 
     #[test]

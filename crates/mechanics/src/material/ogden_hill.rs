@@ -1,7 +1,7 @@
 //! The law of Ogden and Hill for foams, and Blatz and Ko's.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-use super::exponential::{exponential_remainder, exponential_less_one, second_quotient};
+use super::exponential::{exponential_less_one, exponential_remainder, second_quotient};
 use super::law::HyperelasticLaw;
 use super::ogden::Powers;
 use super::parameters::Parameters;
@@ -120,7 +120,8 @@ impl BodyLaw for OgdenHill {
             let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * total];
             let [grown_remainder, across_remainder] = [grown, across].map(exponential_remainder);
             let volume = exponential_less_one(-beta * all);
-            let (growth_less_1, across_less_1) = (grown + grown_remainder, across + across_remainder);
+            let (growth_less_1, across_less_1) =
+                (grown + grown_remainder, across + across_remainder);
             let growth = 1.0 + growth_less_1;
             sum.energy += factor
                 * (2.0 * (growth * t_minus_1 + grown_remainder)

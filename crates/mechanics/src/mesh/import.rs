@@ -91,7 +91,8 @@ fn sound(
     let wrong = faults.iter().any(|fault| fault.severity == Severity::Error);
     if !wrong {
         faults.extend(lost_groups(&lost, &mesh));
-        let is_named = |side: &str| lost.contains_key(side) || areas.iter().any(|area| area == side);
+        let is_named =
+            |side: &str| lost.contains_key(side) || areas.iter().any(|area| area == side);
         faults.extend(doubtful_sides(&mesh, is_named));
         if !reading.allowed.polygons {
             faults.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));

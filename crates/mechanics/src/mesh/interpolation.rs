@@ -173,7 +173,10 @@ impl Mesh {
         let map = self.map(cell, derivatives);
         let jacobian = determinant(&map);
         let inverse = [[map[1][1], -map[0][1]], [-map[1][0], map[0][0]]];
-        (inverse.map(|row| row.map(|entry| entry / jacobian)), jacobian)
+        (
+            inverse.map(|row| row.map(|entry| entry / jacobian)),
+            jacobian,
+        )
     }
 
     /// ∂Xᵢ/∂ξⱼ of a cell.
@@ -237,7 +240,10 @@ mod tests {
         let u: Vec<f64> = mesh.nodes.iter().flat_map(|node| field(*node)).collect();
         let point = [1.3, 0.7];
         let (interpolated, exact) = (mesh.displacement_at(&u, point), field(point));
-        assert!((interpolated[0] - exact[0]).abs() < 1e-14 && (interpolated[1] - exact[1]).abs() < 1e-14);
+        assert!(
+            (interpolated[0] - exact[0]).abs() < 1e-14
+                && (interpolated[1] - exact[1]).abs() < 1e-14
+        );
         let (cell, local) = mesh.locate(point);
         let gradient = mesh.gradient_at(&u, cell, local);
         let expected = [2.0 * 1.3 - 2.0 * 0.7, -2.6, 1.0, 0.7];

@@ -152,7 +152,8 @@ impl Mesh {
     ) -> bool {
         let buckets = self.buckets();
         let around = buckets.around(point).iter();
-        let mut others = around.filter(|cell| !is_excluded(**cell) && buckets.is_in_box(**cell, point));
+        let mut others =
+            around.filter(|cell| !is_excluded(**cell) && buckets.is_in_box(**cell, point));
         others.any(|cell| {
             let local = self.natural_coordinates(*cell, point);
             local.is_some_and(|local| self.shape(*cell).depth(local) > margin)
@@ -171,7 +172,12 @@ impl Mesh {
             }
             _ => None,
         });
-        bounding_box(nodes.iter().map(|node| self.nodes[*node]).chain(control_points))
+        bounding_box(
+            nodes
+                .iter()
+                .map(|node| self.nodes[*node])
+                .chain(control_points),
+        )
     }
 }
 

@@ -133,7 +133,12 @@ impl BoundaryProblem {
         let mut by = BTreeMap::new();
         for (number, support) in self.supports.iter().enumerate().rev() {
             let constraints = Constraints::of(mesh, std::slice::from_ref(support))?;
-            by.extend(constraints.held.into_keys().map(|unknown| (unknown, number)));
+            by.extend(
+                constraints
+                    .held
+                    .into_keys()
+                    .map(|unknown| (unknown, number)),
+            );
         }
         Ok(by)
     }

@@ -195,7 +195,10 @@ mod tests {
             ([("left", grip), ("top", grip)], "with another grip"),
         ] {
             let messages = messages_of(&supports);
-            assert!(messages.iter().any(|text| text.contains(words)), "{messages:?}");
+            assert!(
+                messages.iter().any(|text| text.contains(words)),
+                "{messages:?}"
+            );
         }
         let three = [
             ("left", CLAMP),

@@ -103,7 +103,9 @@ impl<'a> Bodies<'a> {
         }
         let mut parts = Parts::new(bodies);
         for members in &self.of_node {
-            members.windows(2).for_each(|pair| parts.join(pair[0], pair[1]));
+            members
+                .windows(2)
+                .for_each(|pair| parts.join(pair[0], pair[1]));
         }
         for (unknown, tie) in &constraints.ties {
             let [tied, others] =
@@ -229,7 +231,8 @@ impl<'a> Bodies<'a> {
                 self.mesh.describe_cell(self.cells[body])
             ),
         };
-        let is_on_body = |nodes: &[usize]| nodes.iter().any(|node| self.of_node[*node].contains(&body));
+        let is_on_body =
+            |nodes: &[usize]| nodes.iter().any(|node| self.of_node[*node].contains(&body));
         let groups = self.mesh.groups().iter();
         let names = groups
             .filter(|(_, group)| is_on_body(&group.nodes))

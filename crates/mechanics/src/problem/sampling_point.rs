@@ -112,8 +112,10 @@ impl<'a> SamplingPoint<'a> {
         let size = 2 * self.derivatives.len();
         for (node, rows) in stiffness.chunks_exact_mut(2 * size).enumerate() {
             let row_derivative = self.derivatives[node];
-            let x = tangent.map(|column| row_derivative[0] * column[0] + row_derivative[1] * column[1]);
-            let y = tangent.map(|column| row_derivative[0] * column[2] + row_derivative[1] * column[3]);
+            let x =
+                tangent.map(|column| row_derivative[0] * column[0] + row_derivative[1] * column[1]);
+            let y =
+                tangent.map(|column| row_derivative[0] * column[2] + row_derivative[1] * column[3]);
             let (along_x, along_y) = rows.split_at_mut(size);
             let pairs = along_x
                 .as_chunks_mut()

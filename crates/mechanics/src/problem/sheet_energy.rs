@@ -192,12 +192,15 @@ impl Remembering for SheetEnergy {
             let (density, stress) = match &mut local.stiffness {
                 None => {
                     let virgin = law.stress(&kinematics);
-                    softening.map_or(virgin, |(softening, most)| softening.stress(virgin, most[index]))
+                    softening.map_or(virgin, |(softening, most)| {
+                        softening.stress(virgin, most[index])
+                    })
                 }
                 Some(stiffness) => {
                     let virgin = law.response(&kinematics);
-                    let response =
-                        softening.map_or(virgin, |(softening, most)| softening.response(virgin, most[index]));
+                    let response = softening.map_or(virgin, |(softening, most)| {
+                        softening.response(virgin, most[index])
+                    });
                     point.add_stiffness(response.tangent.as_slice(), stiffness);
                     (response.energy, response.first_piola_kirchhoff_stress)
                 }
@@ -289,7 +292,8 @@ mod tests {
         let law = |c01| Arc::new(MooneyRivlin { c10: 0.307, c01 });
         let mesh = mesh();
         let rest = vec![0.0; 2 * mesh.nodes.len()];
-        let instability = |c01| SheetEnergy::of_mesh(law(c01), &mesh, 2.0).instability(0, &rest[..18]);
+        let instability =
+            |c01| SheetEnergy::of_mesh(law(c01), &mesh, 2.0).instability(0, &rest[..18]);
         assert_eq!(instability(-0.359).as_deref(), Some("I₁ = 3.00"));
         assert_eq!(instability(0.1), None);
     }

@@ -33,7 +33,8 @@ impl SheetEnergy {
             let mut position = 0;
             for cell in cells {
                 let indexed = (position..).zip(self.cell_points(cell));
-                let terms = indexed.map(|(index, point)| point.volume() * points.responses[0][index]);
+                let terms =
+                    indexed.map(|(index, point)| point.volume() * points.responses[0][index]);
                 energy += terms.sum::<f64>();
                 points.add_forces(self, cell, position, forces);
                 if let Some(take) = &mut take {
@@ -118,7 +119,10 @@ impl Points {
             component.resize(count, 0.0);
         }
         let gradients = self.gradients.each_ref().map(|component| &component[..]);
-        let responses = self.responses.each_mut().map(|component| &mut component[..]);
+        let responses = self
+            .responses
+            .each_mut()
+            .map(|component| &mut component[..]);
         let positive = law.responses(gradients, responses, tangents);
         let evaluated = if tangents { COMPONENTS } else { 5 };
         let mut values = self.responses[..evaluated].iter().flatten();
@@ -215,7 +219,8 @@ mod tests {
                 let potential = model.potential(1.0, &[]);
                 let mut with_energy = vec![0.0; u.len()];
                 let mut lower = Vec::new();
-                let mut take = |element: usize, stiffness: &[f64]| lower.push((element, stiffness.to_vec()));
+                let mut take =
+                    |element: usize, stiffness: &[f64]| lower.push((element, stiffness.to_vec()));
                 let take = Some(&mut take as &mut dyn FnMut(usize, &[f64]));
                 let energy = evaluate_by_elements(&*potential, &u, &mut with_energy, take).unwrap();
                 let (mut together, mut position) = (vec![0.0; u.len()], 0);

@@ -173,7 +173,10 @@ fn a_ring_s_supports_carry_the_pressure_on_its_bore() {
             let bore = bore.fold(0.0, f64::max);
             assert!(bore > 11.0, "{bore}");
             // Each line carries the pressure on the projection of the bore along it.
-            let forces = solution.reactions.iter().map(|force| force[0].hypot(force[1]));
+            let forces = solution
+                .reactions
+                .iter()
+                .map(|force| force[0].hypot(force[1]));
             for (force, radius) in forces.zip(corners) {
                 let exact = pressure * 2.0 * radius;
                 assert!((force / exact - 1.0).abs() < 1e-10, "{force} {exact}");

@@ -27,7 +27,10 @@ impl<'a> TiedPotential<'a> {
         for element in 0..potential.elements() {
             let element_unknowns = potential.element_unknowns(element);
             let element_unknowns = element_unknowns.iter().map(|unknown| *unknown as usize);
-            if !element_unknowns.clone().any(|unknown| ties.contains_key(&unknown)) {
+            if !element_unknowns
+                .clone()
+                .any(|unknown| ties.contains_key(&unknown))
+            {
                 connectivity.push(element_unknowns);
                 continue;
             }
@@ -107,16 +110,17 @@ impl Potential for TiedPotential<'_> {
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
         let couplings = self.potential.skew_couplings().into_iter();
-        couplings.map(|coupling| {
-            let (row, of_row) = followed(self.ties, coupling.row);
-            let (column, of_column) = followed(self.ties, coupling.column);
-            SkewCoupling {
-                row,
-                column,
-                stiffness: of_row * of_column * coupling.stiffness,
-            }
-        })
-        .collect()
+        couplings
+            .map(|coupling| {
+                let (row, of_row) = followed(self.ties, coupling.row);
+                let (column, of_column) = followed(self.ties, coupling.column);
+                SkewCoupling {
+                    row,
+                    column,
+                    stiffness: of_row * of_column * coupling.stiffness,
+                }
+            })
+            .collect()
     }
 
     fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {

@@ -112,7 +112,11 @@ impl Hierarchy {
         let mut flat: Vec<f64> = last.iter().flatten().map(|b| f64::from(*b)).collect();
         coarsest.substitute(&mut flat);
         for (last, correction) in last.iter_mut().zip(flat.chunks_exact(3)) {
-            *last = [correction[0] as f32, correction[1] as f32, correction[2] as f32];
+            *last = [
+                correction[0] as f32,
+                correction[1] as f32,
+                correction[2] as f32,
+            ];
         }
         for index in (0..coarse.len()).rev() {
             let (upper, lower) = coarse.split_at_mut(index + 1);

@@ -108,7 +108,8 @@ impl Connectivity {
     /// When all elements together have 2³² unknowns or more.
     pub fn push(&mut self, unknowns: impl IntoIterator<Item = usize>) {
         let added = &mut self.added;
-        added.unknowns
+        added
+            .unknowns
             .extend(unknowns.into_iter().map(|unknown| unknown as u32));
         let end = u32::try_from(added.unknowns.len());
         added.starts.push(end.expect("fewer than 2³² unknowns"));

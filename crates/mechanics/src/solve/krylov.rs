@@ -53,7 +53,8 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
     }
     let eigen = SymmetricEigen::new(tridiagonal);
     let bounds = (0..count).map(|i| {
-        eigen.eigenvalues[i].abs() + off_diagonal[count - 1] * eigen.eigenvectors[(count - 1, i)].abs()
+        eigen.eigenvalues[i].abs()
+            + off_diagonal[count - 1] * eigen.eigenvectors[(count - 1, i)].abs()
     });
     bounds.fold(0.0, f64::max)
 }

@@ -35,7 +35,9 @@ pub struct SkewPart {
 impl SkewPart {
     /// The skew part from couplings between free unknowns, given by their positions.
     pub fn new(all: &[SkewCoupling]) -> Self {
-        let ends = all.iter().flat_map(|coupling| [coupling.row, coupling.column]);
+        let ends = all
+            .iter()
+            .flat_map(|coupling| [coupling.row, coupling.column]);
         let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
         let mut couplings = DMatrix::zeros(coupled.len(), coupled.len());
         for coupling in all {

@@ -106,7 +106,10 @@ impl Tangent {
             return Ok(Vec::new());
         };
         if !self.skew.is_none() {
-            return residuals.iter().map(|residual| self.change(residual)).collect();
+            return residuals
+                .iter()
+                .map(|residual| self.change(residual))
+                .collect();
         }
         if residuals.len() > WORTH_FACTOR {
             self.replace_by_factor()?;

@@ -183,7 +183,8 @@ fn tables_that_only_look_like_those_of_a_program_are_read_as_they_are() {
     let text = "x [mm],y [mm],displacement_x [mm],displacement_y [mm]\n1,2,3,4\n";
     let error = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
     assert!(
-        error.to_string()
+        error
+            .to_string()
             .contains("--columns x=NAME,y=NAME,ux=NAME,uy=NAME"),
         "{error}"
     );
@@ -340,7 +341,10 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
         ],
     );
     let warning = measured.warnings[0].to_string();
-    assert!(warning.contains("states mm, --unit states 1000 mm"), "{warning}");
+    assert!(
+        warning.contains("states mm, --unit states 1000 mm"),
+        "{warning}"
+    );
     // Of different units each stands.
     let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
     let measured = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();

@@ -102,7 +102,10 @@ fn fung_has_its_closed_form_stresses() {
     let growth = 0.02 * (5.0 * across * across + 4.0 * amount * amount).exp();
     let expected = growth * (4.0 * amount + amount * 5.0 * across);
     let computed = curve::simple_shear(&*law, amount);
-    assert!((computed / expected - 1.0).abs() < 1e-14, "{computed} {expected}");
+    assert!(
+        (computed / expected - 1.0).abs() < 1e-14,
+        "{computed} {expected}"
+    );
 }
 
 #[test]
@@ -199,7 +202,8 @@ fn holzapfel_and_ogdens_law_has_its_limits() {
     // f and s exchanged: equal b where both have one.
     let text = |text: &str| text.replace("b_s = 0.3", "b_s = 0.2");
     let pair = |f: &str, s: &str, angle: f64| {
-        let parameters = format!("a_f = \"{f} MPa\"\na_s = \"{s} MPa\"\na_fs = \"0.01 MPa\"\nangle = ");
+        let parameters =
+            format!("a_f = \"{f} MPa\"\na_s = \"{s} MPa\"\na_fs = \"0.01 MPa\"\nangle = ");
         turned(
             "holzapfel-ogden",
             &format!("{}{parameters}", text(HOLZAPFEL_OGDEN)),

@@ -105,7 +105,10 @@ fn stress_and_thickness_of_the_usual_tests_are_the_textbooks() {
                     } else {
                         principal(expected)[2]
                     };
-                    assert!((computed - thickness_stress).abs() < 1e-12, "{context}: {computed} {thickness_stress}");
+                    assert!(
+                        (computed - thickness_stress).abs() < 1e-12,
+                        "{context}: {computed} {thickness_stress}"
+                    );
                 }
             }
         }

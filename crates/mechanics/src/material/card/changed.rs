@@ -15,7 +15,11 @@ impl Card {
         });
         let softening = self.law.softening().into_iter();
         let softening = softening.flat_map(|ogden_roxburgh| {
-            let keys = [("r", ogden_roxburgh.r), ("m", ogden_roxburgh.m), ("beta", ogden_roxburgh.beta)];
+            let keys = [
+                ("r", ogden_roxburgh.r),
+                ("m", ogden_roxburgh.m),
+                ("beta", ogden_roxburgh.beta),
+            ];
             keys.map(|(key, value)| (format!("softening.{key}"), value))
         });
         of_law.chain(terms).chain(softening).collect()

@@ -69,7 +69,8 @@ fn all_faults_of_a_card_are_told_at_once() {
         "{messages:#?}"
     );
     assert!(
-        messages.iter()
+        messages
+            .iter()
             .any(|line| line.contains("did you mean `exponent`")),
         "{messages:#?}"
     );

@@ -216,7 +216,9 @@ fn parameters_by_the_names_of_another_code_are_those_of_its_export() {
         };
         for (key, text) in &stated {
             let plain = |name: &str| name.to_lowercase();
-            let value = parameters.iter().find(|(symbol, _)| plain(symbol) == plain(key));
+            let value = parameters
+                .iter()
+                .find(|(symbol, _)| plain(symbol) == plain(key));
             let number: f64 = text.split(' ').next().unwrap().parse().unwrap();
             let (_, value) = value.unwrap_or_else(|| panic!("{name} {key}: {parameters:?}"));
             assert!((value - number).abs() < 1e-15, "{name} {key}: {value}");

@@ -152,7 +152,10 @@ fn stress_and_tangent_are_derivatives_of_the_energy() {
                 let error = (column - tangent).norm() / response.tangent.norm();
                 assert!(error < 1e-7, "{virgin:?} {softening:?}: {error:.1e}");
             }
-            assert!((response.tangent - response.tangent.transpose()).norm() < 1e-12 * response.tangent.norm());
+            assert!(
+                (response.tangent - response.tangent.transpose()).norm()
+                    < 1e-12 * response.tangent.norm()
+            );
         }
     }
 }

@@ -118,7 +118,10 @@ fn cells_given_twice_and_cells_on_each_other_are_found() {
     nodes.extend([[1.2, 0.3], [1.9, 0.3], [1.9, 0.9]]);
     cells.push(vec![15, 16, 17]);
     let messages = messages_of(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
-    assert!(messages[0].contains("2 parts are not attached"), "{messages:?}");
+    assert!(
+        messages[0].contains("2 parts are not attached"),
+        "{messages:?}"
+    );
     let messages = messages_of(&mesh(nodes, cells), ALL);
     assert!(messages[0].contains("covered by two cells"), "{messages:?}");
 }

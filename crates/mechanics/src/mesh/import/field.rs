@@ -182,7 +182,9 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
         }
         match &mut combined {
             None => combined = Some(part),
-            Some(combined) if combined.mesh.nodes == part.mesh.nodes => combined.steps.extend(part.steps),
+            Some(combined) if combined.mesh.nodes == part.mesh.nodes => {
+                combined.steps.extend(part.steps)
+            }
             Some(_) => {
                 return Err(
                     format!("names {name}, which has another mesh than the first file").into(),

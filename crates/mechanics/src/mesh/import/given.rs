@@ -65,7 +65,9 @@ fn numbers(nodes: &[usize]) -> Vec<u64> {
 
 fn by_name<T, U>(groups: &BTreeMap<String, T>, of: impl Fn(&T) -> U) -> BTreeMap<String, U> {
     let groups = groups.iter();
-    groups.map(|(name, group)| (name.clone(), of(group))).collect()
+    groups
+        .map(|(name, group)| (name.clone(), of(group)))
+        .collect()
 }
 
 #[cfg(test)]

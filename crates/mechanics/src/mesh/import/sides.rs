@@ -87,7 +87,8 @@ mod tests {
         let rough = strip(1.2e-5);
         let warnings = doubtful_sides(&rough, |_| false);
         assert!(
-            warnings.iter()
+            warnings
+                .iter()
                 .any(|one| one.message.contains("edges that lie within")),
             "{warnings:?}"
         );

@@ -250,7 +250,8 @@ impl<'a> XmlFile<'a> {
     /// The array of a name in a part, or its only one.
     fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, Unreadable> {
         let mut arrays = self.layout.arrays.iter().filter(|(of, _)| of == part);
-        let matching = arrays.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
+        let matching =
+            arrays.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
         let (_, array) = matching.ok_or_else(|| {
             let name = name.map_or(String::new(), |name| format!("`{name}` "));
             format!("has no array {name}of {part}")

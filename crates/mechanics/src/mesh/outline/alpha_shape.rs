@@ -130,7 +130,9 @@ fn largest_part(
             }
         }
     }
-    let part: Vec<usize> = (0..triangles.len()).map(|index| parts.first(index)).collect();
+    let part: Vec<usize> = (0..triangles.len())
+        .map(|index| parts.first(index))
+        .collect();
     let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
     for triangle in (0..triangles.len()).filter(|triangle| inside[*triangle]) {
         let corners = triangles[triangle].map(|point| points[point]);

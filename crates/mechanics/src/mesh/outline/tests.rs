@@ -284,7 +284,11 @@ fn edges_are_nearest_to_all_markers_of_their_rows() {
             };
             assert!(off.abs() < far, "{seed}: {outer:?}");
         }
-        assert!((0.1..0.3).contains(&traced.roughness), "{}", traced.roughness);
+        assert!(
+            (0.1..0.3).contains(&traced.roughness),
+            "{}",
+            traced.roughness
+        );
     }
     let exact = Outline::of_points(&grid(|_| true)).unwrap();
     assert!(exact.roughness < 1e-12, "{}", exact.roughness);

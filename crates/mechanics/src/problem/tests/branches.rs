@@ -18,9 +18,7 @@ fn reached(problem: &super::super::BoundaryProblem, mesh: &Mesh, factors: &[f64]
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).unwrap();
     let path = model.solve(factors, NEWTON, &|_| ());
-    path
-        .ok()
-        .map(|mut states| states.remove(factors.len() - 1))
+    path.ok().map(|mut states| states.remove(factors.len() - 1))
 }
 
 /// A whole turn of one end is not that of none, and one of 350° is not −10°.
@@ -49,7 +47,10 @@ fn turns_are_followed_all_the_way() {
         centre: [0.0, 0.0],
         angle,
     };
-    let turned = problem(&[("left", about_origin(7.0)), ("right", about_origin(7.0))], &[]);
+    let turned = problem(
+        &[("left", about_origin(7.0)), ("right", about_origin(7.0))],
+        &[],
+    );
     let state = reached(&turned, &mesh, &[1.0]).unwrap();
     let position = |node: usize| mesh.nodes[node];
     for node in 0..mesh.nodes.len() {

@@ -40,7 +40,12 @@ fn axes_of_symmetry_share_no_force_at_their_corner() {
             "{name}: {left:?}"
         );
         for reaction in others {
-            let parts = [reaction.force[0], reaction.force[1], reaction.moment, reaction.size];
+            let parts = [
+                reaction.force[0],
+                reaction.force[1],
+                reaction.moment,
+                reaction.size,
+            ];
             assert!(
                 parts.iter().all(|part| part.abs() < 1e-9),
                 "{name}: {reaction:?}"
@@ -124,7 +129,10 @@ fn moments_are_about_the_middle_of_the_group_however_its_nodes_lie() {
         for group in ["left", "right"] {
             let reaction = reactions.at_group(group);
             let middle = 0.5 * (low + high);
-            assert!((reaction.position[1] - middle).abs() < 1e-9, "{group}: {reaction:?}");
+            assert!(
+                (reaction.position[1] - middle).abs() < 1e-9,
+                "{group}: {reaction:?}"
+            );
             // Of the force at half the width a small share: the cells are coarse.
             let arm = reaction.moment / (reaction.force[0] * width);
             assert!(arm.abs() < 0.02, "{group}: {arm}");

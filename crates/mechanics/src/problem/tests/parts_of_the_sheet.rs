@@ -90,7 +90,10 @@ fn lines_on_the_sheet_are_held_whole_and_forces_of_groups_add_up() {
             let reactions = solved(&across, &full, &["left", "across"]).reactions;
             let expected = solved(&ends, &half, &["right"]).reactions[0];
             assert!((reactions[1][0] - expected[0]).abs() < 1e-10, "{shape:?}");
-            assert!((reactions[0][0] + reactions[1][0]).abs() < 1e-10, "{shape:?}");
+            assert!(
+                (reactions[0][0] + reactions[1][0]).abs() < 1e-10,
+                "{shape:?}"
+            );
             let middle = problem(&[("left", CLAMP), ("along", stretched)], &[]);
             let reactions = solved(&middle, &full, &["left", "along"]).reactions;
             assert!(reactions[1][0] > 0.01, "{reactions:?}");

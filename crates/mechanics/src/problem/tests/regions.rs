@@ -195,7 +195,8 @@ fn names_and_laws_are_exchanged_without_effect() {
     let [one, other, rest] = problems
         .each_ref()
         .map(|problem| solved(problem, &mesh, &[]));
-    let [spring, other_spring, rest_spring] = problems.each_ref().map(|problem| springs(problem, &mesh).0);
+    let [spring, other_spring, rest_spring] =
+        problems.each_ref().map(|problem| springs(problem, &mesh).0);
     for (one, other) in [
         (&one.state, &other.state),
         (&one.state, &rest.state),

@@ -25,7 +25,9 @@ pub fn tentative<const N: usize>(
         members[*aggregate as usize].push(node);
     }
     let mut rigid = motions.to_vec();
-    let coarse = members.iter().map(|nodes| orthonormalise(&mut rigid, nodes));
+    let coarse = members
+        .iter()
+        .map(|nodes| orthonormalise(&mut rigid, nodes));
     let coarse = coarse.collect();
     (rigid, coarse)
 }
@@ -132,7 +134,9 @@ fn largest_eigenvalue<const N: usize>(matrix: &Blocks<N, N>, inverses: &[[[f64; 
     let size = matrix.rows();
     let irregular = super::super::krylov::irregular(N * size, 0);
     let chunks = irregular.chunks_exact(N);
-    let mut now: Vec<[f64; N]> = chunks.map(|entries| std::array::from_fn(|i| entries[i])).collect();
+    let mut now: Vec<[f64; N]> = chunks
+        .map(|entries| std::array::from_fn(|i| entries[i]))
+        .collect();
     let mut image = vec![[0.0; N]; size];
     let mut quotient = 1.0;
     for _ in 0..STEPS {

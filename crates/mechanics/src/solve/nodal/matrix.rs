@@ -47,7 +47,8 @@ impl NodalMatrix {
         for row in 0..nodes.count() {
             for block in blocks.starts[row]..blocks.starts[row + 1] {
                 let column = blocks.columns[block] as usize;
-                let free = nodes.free[row].map(|is_free| nodes.free[column].map(|other| is_free && other));
+                let free =
+                    nodes.free[row].map(|is_free| nodes.free[column].map(|other| is_free && other));
                 if free != [[true; 2]; 2] {
                     partly.push(PartlyFree {
                         block,
@@ -93,7 +94,11 @@ impl NodalMatrix {
             let block = &mut self.blocks.values[partial.block];
             for (i, (row, free)) in block.iter_mut().zip(partial.free).enumerate() {
                 for k in (0..2).filter(|k| !free[*k]) {
-                    row[k] = if partial.on_diagonal && i == k { 1.0 } else { 0.0 };
+                    row[k] = if partial.on_diagonal && i == k {
+                        1.0
+                    } else {
+                        0.0
+                    };
                 }
             }
         }
@@ -174,7 +179,10 @@ impl ElementBlocks {
             pairs: Vec::with_capacity((0..potential.elements()).map(count).sum()),
             starts: Vec::with_capacity(potential.elements() + 1),
         };
-        assert!(element_blocks.pairs.capacity() < NONE as usize, "fewer than 2³² pairs");
+        assert!(
+            element_blocks.pairs.capacity() < NONE as usize,
+            "fewer than 2³² pairs"
+        );
         element_blocks.starts.push(0);
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
@@ -190,7 +198,9 @@ impl ElementBlocks {
                     }
                 }
             }
-            element_blocks.starts.push(element_blocks.pairs.len() as u32);
+            element_blocks
+                .starts
+                .push(element_blocks.pairs.len() as u32);
         }
         element_blocks
     }
@@ -203,7 +213,8 @@ impl ElementBlocks {
 /// Whether unknowns are both of one node, both of another one, and so on.
 fn has_both_unknowns_in_turn(unknowns: &[u32]) -> bool {
     let nodes = unknowns.chunks(2);
-    let both = |pair: &[u32]| pair.len() == 2 && pair[0].is_multiple_of(2) && pair[1] == pair[0] + 1;
+    let both =
+        |pair: &[u32]| pair.len() == 2 && pair[0].is_multiple_of(2) && pair[1] == pair[0] + 1;
     let other = |position: usize| !unknowns[..position].contains(&unknowns[position]);
     nodes.clone().all(both) && (0..unknowns.len()).step_by(2).all(other)
 }

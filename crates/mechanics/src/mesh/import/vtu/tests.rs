@@ -139,7 +139,11 @@ fn file(options: Encoding) -> Vec<u8> {
     } else {
         "LittleEndian"
     };
-    let header = if options.wide_header { "UInt64" } else { "UInt32" };
+    let header = if options.wide_header {
+        "UInt64"
+    } else {
+        "UInt32"
+    };
     let mut bytes = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{order}\" \
          header_type=\"{header}\"{compressor}>\n<UnstructuredGrid>\n\

@@ -95,7 +95,12 @@ fn corners_of_small_specimens_stay() {
             .flat_map(|i| (0..=along).map(move |j| [f64::from(i), f64::from(j)]))
             .collect();
         let outline = Outline::of_points(&points).unwrap().outline;
-        assert_eq!(outline.outer.len(), 4, "{across} {along}: {:?}", outline.outer);
+        assert_eq!(
+            outline.outer.len(),
+            4,
+            "{across} {along}: {:?}",
+            outline.outer
+        );
         assert_eq!(polygon_area(&outline.outer), f64::from(across * along));
     }
 }
