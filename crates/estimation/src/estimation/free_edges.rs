@@ -36,11 +36,17 @@ pub fn search<'a>(
         knowledge: &knowledge,
         ..task.clone()
     };
-    let begun = decided(&exact, edges.clone()).and_then(|(field, edges)| {
-        let nearest = nearest_from(task, &edges, MOST_STEPS, &field)?;
-        Ok((nearest, edges))
-    });
-    begun.or_else(|_| decided(task, edges))
+    let Ok((field, edges)) = decided(&exact, edges.clone()) else {
+        return decided(task, edges);
+    };
+    match nearest_from(task, &edges, MOST_STEPS, &field) {
+        Ok(nearest) => Ok((nearest, edges)),
+        Err(Error::Input(_)) => Err(Error::input(
+            "the data do not determine forces on the interior beside the motion of the edges",
+            "state more about the edges (free, rigid, known), or let equilibrium hold exactly (--physics exact)",
+        )),
+        Err(fault) => Err(fault),
+    }
 }
 
 /// Searches with the edges as they are, then with those to be tested freed one after the other, the longest first. Where many edges that
